@@ -1,0 +1,121 @@
+//! Running other programs from the root of the workspace.
+
+use std::env;
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use crate::error::Error;
+
+/// The cargo that runs us, at the root of the workspace.
+pub(crate) fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(workspace_root());
+    command
+}
+
+/// The directory of the root manifest.
+///
+/// Asked of cargo's environment at run time, so that a workspace that was moved finds itself.
+pub(crate) fn workspace_root() -> PathBuf {
+    let manifest = env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    let mut root = PathBuf::from(manifest);
+    root.pop();
+    root.pop();
+    root
+}
+
+/// Runs to the end with our own input and output.
+///
+/// # Errors
+/// [`Error::Start`], or [`Error::Failed`] where the exit code is not 0.
+pub(crate) fn run(command: &mut Command) -> Result<(), Error> {
+    let status = command.status().map_err(|source| Error::Start { program: program_of(command), source })?;
+    if status.success() { Ok(()) } else { Err(Error::Failed { command: line_of(command), status }) }
+}
+
+/// As [`run`], after printing the command line.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn announce_and_run(command: &mut Command) -> Result<(), Error> {
+    println!("{}", line_of(command));
+    run(command)
+}
+
+/// As [`announce_and_run`], with each piece of standard output given to `sink` as well as to the terminal, when it comes.
+///
+/// # Errors
+/// As [`run`], and [`Error::Output`] where the output cannot be read or passed on.
+pub(crate) fn announce_and_tee(command: &mut Command, mut sink: impl FnMut(&[u8])) -> Result<(), Error> {
+    println!("{}", line_of(command));
+    let program = program_of(command);
+    let mut child = command
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(|source| Error::Start { program: program.clone(), source })?;
+    let output = |source| Error::Output { program: program.clone(), source };
+    if let Some(mut pipe) = child.stdout.take() {
+        let mut terminal = std::io::stdout();
+        let mut piece = [0; 8192];
+        loop {
+            let length = pipe.read(&mut piece).map_err(output)?;
+            if length == 0 {
+                break;
+            }
+            terminal.write_all(&piece[..length]).and_then(|()| terminal.flush()).map_err(output)?;
+            sink(&piece[..length]);
+        }
+    }
+    let status = child.wait().map_err(output)?;
+    if status.success() { Ok(()) } else { Err(Error::Failed { command: line_of(command), status }) }
+}
+
+/// Whether the program starts, runs and exits with 0, its output thrown away.
+pub(crate) fn succeeds(command: &mut Command) -> bool {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
+
+/// The command as one would type it; the path of the program is left out.
+pub(crate) fn line_of(command: &Command) -> String {
+    let mut line = program_of(command);
+    for argument in command.get_args() {
+        line.push(' ');
+        line.push_str(&argument.to_string_lossy());
+    }
+    line
+}
+
+fn program_of(command: &Command) -> String {
+    let program = PathBuf::from(command.get_program());
+    program.file_name().unwrap_or(program.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_shown_as_typed() {
+        let mut command = Command::new("/usr/bin/cargo");
+        command.args(["fmt", "--all", "--check"]);
+        assert_eq!(line_of(&command), "cargo fmt --all --check");
+    }
+
+    #[test]
+    fn a_program_that_does_not_exist_is_named() {
+        let error = run(&mut Command::new("/nowhere/no-such-program")).expect_err("it does not exist");
+        assert!(error.to_string().starts_with("cannot start `no-such-program`: "), "{error}");
+    }
+
+    #[test]
+    fn the_root_holds_the_workspace_manifest() {
+        let manifest = std::fs::read_to_string(workspace_root().join("Cargo.toml")).unwrap();
+        assert!(manifest.starts_with("[workspace]"));
+    }
+}

@@ -1,0 +1,72 @@
+//! What can go wrong, and the exit code of each.
+
+use std::fmt;
+use std::io;
+use std::process::{ExitCode, ExitStatus};
+
+use crate::counts::Counts;
+
+/// A failure of a command of this program.
+#[derive(Debug)]
+pub(crate) enum Error {
+    /// The command line is wrong.
+    Usage { message: String },
+    /// Tools are missing and only the user can install them.
+    Missing { tools: Vec<&'static str>, remedy: String },
+    /// `LIBCLANG_PATH` is obeyed by bindgen even where it holds no libclang.
+    LibclangPath { path: String },
+    /// The installation went through but a tool is still not found.
+    StillMissing { tools: Vec<&'static str> },
+    /// A program could not be started.
+    Start { program: String, source: io::Error },
+    /// The output of a program could not be passed on.
+    Output { program: String, source: io::Error },
+    /// A program ran and failed.
+    Failed { command: String, status: ExitStatus },
+    /// Tests failed, or their programs did.
+    Tests { counts: Counts, failure: Box<Error> },
+    /// Every test binary was empty, or none was run.
+    NoTests,
+}
+
+impl Error {
+    /// 2 for a wrong command line, 1 for everything else.
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        match self {
+            Error::Usage { .. } => ExitCode::from(2),
+            _ => ExitCode::FAILURE,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Usage { message } => f.write_str(message),
+            Error::Missing { tools, remedy } => write!(f, "missing: {}\n{remedy}", tools.join(", ")),
+            Error::LibclangPath { path } => {
+                write!(f, "LIBCLANG_PATH is `{path}`, where there is no libclang; correct it or unset it")
+            }
+            Error::StillMissing { tools } => {
+                write!(f, "installed, but still not found: {}", tools.join(", "))
+            }
+            Error::Start { program, source } => write!(f, "cannot start `{program}`: {source}"),
+            Error::Output { program, source } => {
+                write!(f, "cannot pass on the output of `{program}`: {source}")
+            }
+            Error::Failed { command, status } => write!(f, "`{command}` failed: {status}"),
+            Error::Tests { failure, .. } => failure.fmt(f),
+            Error::NoTests => f.write_str("no test was run"),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Error::Tests { failure, .. } => failure.source(),
+            Error::Start { source, .. } | Error::Output { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}

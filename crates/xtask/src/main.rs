@@ -1,0 +1,108 @@
+//! Set-up, demonstration, tests and benchmarks of the workspace: `cargo xtask`.
+//!
+//! No dependency beyond the standard library and nothing native, so that it builds in seconds
+//! on a machine that has only Rust and can then say, or install, what else is needed.
+
+mod bench;
+mod command;
+mod counts;
+mod demo;
+mod error;
+mod packages;
+mod setup;
+mod test;
+mod tools;
+
+use std::env;
+use std::process::ExitCode;
+
+use error::Error;
+
+const USAGE: &str = "\
+usage: cargo xtask <command>
+
+  demo             build `pc`, derive, integrate and plot a heavy top in target/demo
+  test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
+  bench [NAME…]    run the benchmarks, all of them or those named
+  setup            install what the build needs (the commands above do it by themselves)
+  help             this text";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    match dispatch(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            match &error {
+                Error::Usage { .. } => eprintln!("\n{USAGE}"),
+                // A program that crashed or was not built has counted nothing: then the sums say nothing.
+                Error::Tests { counts, .. } if counts.failed > 0 => println!("{counts}"),
+                _ => {}
+            }
+            error.exit_code()
+        }
+    }
+}
+
+fn dispatch(arguments: &[String]) -> Result<(), Error> {
+    let (name, rest) = match arguments {
+        [] => ("help", arguments),
+        [name, rest @ ..] => (name.as_str(), rest),
+    };
+    match name {
+        "demo" => {
+            no_more(name, rest)?;
+            demo::run()
+        }
+        "test" => test::run(quick(rest)?),
+        "bench" => bench::run(rest),
+        "setup" => {
+            no_more(name, rest)?;
+            setup::everything()
+        }
+        "help" | "-h" | "--help" => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        unknown => Err(Error::Usage { message: format!("there is no command `{unknown}`") }),
+    }
+}
+
+fn quick(rest: &[String]) -> Result<bool, Error> {
+    match rest {
+        [] => Ok(false),
+        [flag, more @ ..] if flag == "--quick" => no_more("test --quick", more).map(|()| true),
+        [other, ..] => Err(Error::Usage { message: format!("`test` does not take `{other}`") }),
+    }
+}
+
+fn no_more(name: &str, rest: &[String]) -> Result<(), Error> {
+    match rest.first() {
+        None => Ok(()),
+        Some(extra) => Err(Error::Usage { message: format!("`{name}` does not take `{extra}`") }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message_of(arguments: &[&str]) -> String {
+        let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
+        dispatch(&arguments).expect_err("a wrong command line").to_string()
+    }
+
+    #[test]
+    fn wrong_command_lines_name_the_word_at_fault() {
+        assert_eq!(message_of(&["tset"]), "there is no command `tset`");
+        assert_eq!(message_of(&["demo", "--fast"]), "`demo` does not take `--fast`");
+        assert_eq!(message_of(&["test", "--fast"]), "`test` does not take `--fast`");
+        assert_eq!(message_of(&["test", "--quick", "x"]), "`test --quick` does not take `x`");
+    }
+
+    #[test]
+    fn help_is_not_an_error() {
+        assert!(dispatch(&[]).is_ok());
+        assert!(dispatch(&["help".into()]).is_ok());
+    }
+}

@@ -1,0 +1,119 @@
+//! Which packages hold the tools, for each package manager.
+
+use crate::tools::{Machine, Tool};
+
+/// The package managers for which we know the names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PackageManager {
+    /// Debian, Ubuntu.
+    Apt,
+    /// Fedora.
+    Dnf,
+    /// Arch Linux.
+    Pacman,
+    /// openSUSE.
+    Zypper,
+    /// macOS: libclang, make and the compiler are in Apple's command line tools.
+    Brew,
+}
+
+impl PackageManager {
+    const ALL: [(&str, PackageManager); 5] = [
+        ("apt-get", PackageManager::Apt),
+        ("dnf", PackageManager::Dnf),
+        ("pacman", PackageManager::Pacman),
+        ("zypper", PackageManager::Zypper),
+        ("brew", PackageManager::Brew),
+    ];
+
+    /// The package manager found on this machine.
+    pub(crate) fn of(machine: &Machine) -> Option<PackageManager> {
+        Self::ALL.into_iter().find(|(program, _)| machine.has_program(program)).map(|(_, manager)| manager)
+    }
+
+    /// The packages that hold these tools.
+    pub(crate) fn packages(self, tools: &[Tool]) -> Vec<&'static str> {
+        tools.iter().flat_map(|&tool| self.packages_of(tool)).copied().collect()
+    }
+
+    /// The command line, or lines, that installs these tools.
+    pub(crate) fn install_line(self, tools: &[Tool]) -> String {
+        let packages = self.packages(tools).join(" ");
+        match self {
+            PackageManager::Apt => format!("sudo apt-get install --no-install-recommends {packages}"),
+            PackageManager::Dnf => format!("sudo dnf install {packages}"),
+            PackageManager::Pacman => format!("sudo pacman -S --needed {packages}"),
+            PackageManager::Zypper => format!("sudo zypper install {packages}"),
+            PackageManager::Brew => {
+                let mut lines = Vec::new();
+                if tools.iter().any(|&tool| self.packages_of(tool).is_empty()) {
+                    lines.push("xcode-select --install".to_owned());
+                }
+                if !packages.is_empty() {
+                    lines.push(format!("brew install {packages}"));
+                }
+                lines.join("\n  ")
+            }
+        }
+    }
+
+    fn packages_of(self, tool: Tool) -> &'static [&'static str] {
+        match (self, tool) {
+            (PackageManager::Brew, Tool::CCompiler | Tool::Make | Tool::Libclang) => &[],
+            (_, Tool::Cmake) => &["cmake"],
+            (_, Tool::Make) => &["make"],
+            (PackageManager::Apt, Tool::CCompiler) => &["gcc", "libc6-dev"],
+            (PackageManager::Pacman, Tool::CCompiler) => &["gcc"],
+            (PackageManager::Dnf | PackageManager::Zypper, Tool::CCompiler) => &["gcc", "glibc-devel"],
+            (PackageManager::Apt, Tool::Libclang) => &["libclang-dev"],
+            (PackageManager::Pacman, Tool::Libclang) => &["clang"],
+            (PackageManager::Dnf | PackageManager::Zypper, Tool::Libclang) => &["clang-devel"],
+        }
+    }
+}
+
+/// What to tell the user where we do not install by ourselves.
+pub(crate) fn remedy(manager: Option<PackageManager>, tools: &[Tool]) -> String {
+    match manager {
+        Some(manager) => format!("install with\n  {}", manager.install_line(tools)),
+        None => "install these with your system's packages; LIBCLANG_PATH may name the directory of libclang"
+            .into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_package_manager_has_its_names() {
+        for (manager, line) in [
+            (
+                PackageManager::Apt,
+                "sudo apt-get install --no-install-recommends gcc libc6-dev cmake make libclang-dev",
+            ),
+            (PackageManager::Dnf, "sudo dnf install gcc glibc-devel cmake make clang-devel"),
+            (PackageManager::Pacman, "sudo pacman -S --needed gcc cmake make clang"),
+            (PackageManager::Zypper, "sudo zypper install gcc glibc-devel cmake make clang-devel"),
+            (PackageManager::Brew, "xcode-select --install\n  brew install cmake"),
+        ] {
+            assert_eq!(manager.install_line(&Tool::ALL), line);
+        }
+    }
+
+    #[test]
+    fn only_what_is_missing_is_installed() {
+        assert_eq!(PackageManager::Apt.packages(&[Tool::Libclang]), ["libclang-dev"]);
+        assert_eq!(PackageManager::Brew.install_line(&[Tool::Cmake]), "brew install cmake");
+        assert_eq!(PackageManager::Brew.install_line(&[Tool::Libclang]), "xcode-select --install");
+    }
+
+    #[test]
+    fn the_remedy_is_a_line_to_copy() {
+        assert_eq!(
+            remedy(Some(PackageManager::Pacman), &[Tool::Cmake, Tool::Libclang]),
+            "install with\n  sudo pacman -S --needed cmake clang"
+        );
+        assert!(remedy(None, &[Tool::Cmake]).contains("LIBCLANG_PATH"));
+    }
+}

@@ -1,0 +1,86 @@
+//! `cargo xtask test`: everything that has to hold before a change goes in.
+
+use std::env;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::command::{announce_and_run, announce_and_tee, cargo, succeeds};
+use crate::counts::{Counter, Counts};
+use crate::error::Error;
+use crate::setup;
+
+/// Runs the stages in order and stops at the first that fails.
+///
+/// The last line on standard output is the sum over all test binaries; `quick` stops after the tests.
+pub(crate) fn run(quick: bool) -> Result<(), Error> {
+    let start = Instant::now();
+    stage("set-up", setup::everything)?;
+    cargo_stage("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    cargo_stage("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let counts = tests()?;
+    if !quick {
+        let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
+        cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
+        stage("licences", licences)?;
+    }
+    println!("\nall of it: {}", seconds(start.elapsed()));
+    println!("{counts}");
+    Ok(())
+}
+
+/// Unit, integration and documentation tests of all crates; a failure in one does not keep the others from running.
+fn tests() -> Result<Counts, Error> {
+    let mut counter = Counter::default();
+    let mut command = cargo(&["test", "--workspace", "--no-fail-fast"]);
+    let outcome = stage("tests", || announce_and_tee(&mut command, |piece| counter.feed(piece)));
+    let counts = counter.finish();
+    match outcome {
+        Err(failure) => Err(Error::Tests { counts, failure: Box::new(failure) }),
+        Ok(()) if counts.executed() == 0 => Err(Error::NoTests),
+        Ok(()) => Ok(counts),
+    }
+}
+
+/// Licences, sources and duplicates of the dependencies, by `deny.toml`.
+///
+/// Advisories are left out: they need a database from the network and change without a change of ours.
+fn licences() -> Result<(), Error> {
+    if !succeeds(&mut cargo(&["deny", "--version"])) {
+        if !is_ci() {
+            println!("skipped: cargo-deny is not installed (cargo install --locked cargo-deny)");
+            return Ok(());
+        }
+        // Unoptimised it takes a third of the time to build and checks us in a second all the same.
+        announce_and_run(&mut cargo(&[
+            "install",
+            "--debug",
+            "--locked",
+            "cargo-deny",
+            "--version",
+            "~0.20",
+        ]))?;
+    }
+    announce_and_run(&mut cargo(&["deny", "check", "--hide-inclusion-graph", "licenses", "bans", "sources"]))
+}
+
+fn is_ci() -> bool {
+    env::var_os("CI").is_some_and(|value| value == "true")
+}
+
+fn cargo_stage(title: &str, command: &mut Command) -> Result<(), Error> {
+    stage(title, || announce_and_run(command))
+}
+
+/// Header, work, time; the time of a failed stage as well.
+fn stage(title: &str, work: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
+    println!("\n== {title}");
+    let start = Instant::now();
+    let outcome = work();
+    let verdict = if outcome.is_ok() { "passed" } else { "failed" };
+    println!("== {title} {verdict} in {}", seconds(start.elapsed()));
+    outcome
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.1} s", time.as_secs_f64())
+}
