@@ -1,0 +1,81 @@
+//! The nodes that some expressions depend on, in topological order.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::dag::{Atom, Dag, NodeId};
+
+/// The sub-graph below some roots: children before parents.
+pub(crate) struct Cone {
+    pub(crate) order: Vec<NodeId>,
+}
+
+impl Cone {
+    /// Everything below `roots`; iterative, so that no depth overflows the stack.
+    pub(crate) fn below(dag: &Dag, roots: impl IntoIterator<Item = Atom>) -> Cone {
+        let mut seen = FxHashSet::default();
+        let mut open: Vec<NodeId> = Vec::new();
+        let mut order = Vec::new();
+        let mut reach = |node, open: &mut Vec<NodeId>| {
+            if seen.insert(node) {
+                open.push(node);
+                order.push(node);
+            }
+        };
+        for root in roots {
+            if let Atom::Node(node) = root {
+                reach(node, &mut open);
+            }
+        }
+        while let Some(node) = open.pop() {
+            dag.for_each_child(node, |child| reach(child, &mut open));
+        }
+        order.sort_unstable(); // children have smaller indices
+        Cone { order }
+    }
+
+    /// The nodes of the cone that depend on one of `symbols`.
+    pub(crate) fn depending_on(&self, dag: &Dag, symbols: &[NodeId]) -> FxHashSet<NodeId> {
+        let mut active: FxHashSet<NodeId> = symbols.iter().copied().collect();
+        for &node in &self.order {
+            let mut depends = false;
+            dag.for_each_child(node, |child| depends |= active.contains(&child));
+            if depends {
+                active.insert(node);
+            }
+        }
+        active
+    }
+}
+
+/// Values attached to the nodes of a cone; a node without one stands for itself.
+#[derive(Default)]
+pub(crate) struct Assignment(FxHashMap<NodeId, Atom>);
+
+impl Assignment {
+    pub(crate) fn from_pairs(pairs: &[(NodeId, Atom)]) -> Assignment {
+        Assignment(pairs.iter().copied().collect())
+    }
+
+    pub(crate) fn contains(&self, node: NodeId) -> bool {
+        self.0.contains_key(&node)
+    }
+
+    pub(crate) fn set(&mut self, node: NodeId, value: Atom) {
+        self.0.insert(node, value);
+    }
+
+    pub(crate) fn get(&self, node: NodeId) -> Option<Atom> {
+        self.0.get(&node).copied()
+    }
+
+    pub(crate) fn node(&self, node: NodeId) -> Atom {
+        self.get(node).unwrap_or(Atom::Node(node))
+    }
+
+    pub(crate) fn atom(&self, atom: Atom) -> Atom {
+        match atom {
+            Atom::Constant(_) => atom,
+            Atom::Node(node) => self.node(node),
+        }
+    }
+}

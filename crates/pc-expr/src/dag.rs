@@ -1,0 +1,666 @@
+//! The arena of interned nodes and the rules by which sums, products and calls are normalised as they are built.
+//!
+//! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, a product a power product Π nᵢ^eᵢ with
+//! integer exponents; rational factors of products live in the sum around them. Children always have smaller
+//! indices than their parents, so ascending index order is a topological order.
+
+use std::hash::{Hash, Hasher};
+
+use hashbrown::HashTable;
+use rustc_hash::FxHasher;
+
+use crate::fingerprint::Fingerprint;
+use crate::function::{Function, Parity};
+use crate::number::Number;
+
+/// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
+/// `s = s + x` of n terms from costing n² memory.
+const MERGED_TERMS: usize = 24;
+/// The same for products.
+const MERGED_FACTORS: usize = 64;
+/// Larger integer powers stay calls of `pow`.
+const MAX_EXPONENT: i32 = 1 << 16;
+
+/// Index of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct NodeId(pub(crate) u32);
+
+impl NodeId {
+    const NONE: NodeId = NodeId(u32::MAX);
+
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What an expression is: a constant, or a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Atom {
+    Constant(Number),
+    Node(NodeId),
+}
+
+impl Atom {
+    pub(crate) const ZERO: Atom = Atom::Constant(Number::ZERO);
+    pub(crate) const ONE: Atom = Atom::Constant(Number::ONE);
+
+    pub(crate) fn is_zero(self) -> bool {
+        matches!(self, Atom::Constant(c) if c.is_zero())
+    }
+}
+
+/// A range of one of the operand pools.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slice {
+    start: u32,
+    len: u32,
+}
+
+impl Slice {
+    pub(crate) fn range(self) -> std::ops::Range<usize> {
+        self.start as usize..(self.start + self.len) as usize
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Node {
+    /// Only as an argument of a call.
+    Constant(Number),
+    /// Index into the names.
+    Symbol(u32),
+    Sum {
+        constant: Number,
+        terms: Slice,
+    },
+    Product {
+        factors: Slice,
+    },
+    Call {
+        function: Function,
+        args: [NodeId; 3],
+    },
+}
+
+/// A node that is asked for and perhaps not there yet.
+#[derive(Clone, Copy)]
+pub(crate) enum Candidate<'a> {
+    Constant(Number),
+    Symbol(&'a str),
+    Sum(Number, &'a [(NodeId, Number)]),
+    Product(&'a [(NodeId, i32)]),
+    Call(Function, [NodeId; 3]),
+}
+
+/// Whether nodes of equal value are merged, or only nodes that are written alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Folding {
+    /// Merge nodes whose fingerprints agree; see [`Graph`](crate::Graph).
+    #[default]
+    ByValue,
+    /// Merge only what is written alike.
+    Structural,
+}
+
+#[derive(Debug, Default)]
+pub(crate) struct Dag {
+    folding: Folding,
+    nodes: Vec<Node>,
+    fingerprints: Vec<Fingerprint>,
+    /// Operations of the node written out as a tree, saturating: decides which of two equal nodes is kept.
+    costs: Vec<u32>,
+    /// The node that stands for this one, if a cheaper one of the same value (up to sign) was found later.
+    successor: Vec<Option<(NodeId, Number)>>,
+    terms: Vec<(NodeId, Number)>,
+    factors: Vec<(NodeId, i32)>,
+    names: Vec<String>,
+    by_structure: HashTable<NodeId>,
+    by_value: HashTable<NodeId>,
+    /// Numerators of the quotients by zero met so far.
+    zero_divisions: Vec<Atom>,
+}
+
+fn hash_of(value: &impl Hash) -> u64 {
+    let mut hasher = FxHasher::default();
+    value.hash(&mut hasher);
+    hasher.finish()
+}
+
+impl Candidate<'_> {
+    fn hash(&self) -> u64 {
+        match self {
+            Candidate::Constant(c) => hash_of(&(0u8, c)),
+            Candidate::Symbol(name) => hash_of(&(1u8, name)),
+            Candidate::Sum(c, terms) => hash_of(&(2u8, c, terms)),
+            Candidate::Product(factors) => hash_of(&(3u8, factors)),
+            Candidate::Call(function, args) => hash_of(&(4u8, function, args)),
+        }
+    }
+}
+
+impl Dag {
+    pub(crate) fn new(folding: Folding) -> Dag {
+        Dag { folding, ..Dag::default() }
+    }
+
+    pub(crate) fn folding(&self) -> Folding {
+        self.folding
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub(crate) fn node(&self, id: NodeId) -> Node {
+        self.nodes[id.index()]
+    }
+
+    pub(crate) fn fingerprint(&self, id: NodeId) -> Fingerprint {
+        self.fingerprints[id.index()]
+    }
+
+    pub(crate) fn cost(&self, id: NodeId) -> u32 {
+        self.costs[id.index()]
+    }
+
+    pub(crate) fn terms(&self, slice: Slice) -> &[(NodeId, Number)] {
+        &self.terms[slice.range()]
+    }
+
+    pub(crate) fn factors(&self, slice: Slice) -> &[(NodeId, i32)] {
+        &self.factors[slice.range()]
+    }
+
+    pub(crate) fn symbol_name(&self, index: u32) -> &str {
+        &self.names[index as usize]
+    }
+
+    pub(crate) fn zero_divisions(&self) -> &[Atom] {
+        &self.zero_divisions
+    }
+
+    /// The arguments of a call.
+    pub(crate) fn args(function: Function, args: &[NodeId; 3]) -> &[NodeId] {
+        &args[..function.arity()]
+    }
+
+    /// Calls `visit` with each child of a node.
+    pub(crate) fn for_each_child(&self, id: NodeId, mut visit: impl FnMut(NodeId)) {
+        match self.node(id) {
+            Node::Constant(_) | Node::Symbol(_) => {}
+            Node::Sum { terms, .. } => self.terms(terms).iter().for_each(|&(n, _)| visit(n)),
+            Node::Product { factors } => self.factors(factors).iter().for_each(|&(n, _)| visit(n)),
+            Node::Call { function, args } => Dag::args(function, &args).iter().for_each(|&n| visit(n)),
+        }
+    }
+
+    /// The symbol of that name, made if it is new.
+    pub(crate) fn symbol(&mut self, name: &str) -> NodeId {
+        let candidate = Candidate::Symbol(name);
+        self.find(&candidate).unwrap_or_else(|| {
+            let fingerprint = Fingerprint::symbol(name);
+            self.push(&candidate, fingerprint)
+        })
+    }
+
+    /// c + Σ qᵢ nᵢ
+    pub(crate) fn sum(&mut self, mut constant: Number, terms: &[(NodeId, Number)]) -> Atom {
+        let mut gathered = Vec::with_capacity(terms.len() + 4);
+        for &(node, coefficient) in terms {
+            self.gather_terms(node, coefficient, &mut gathered, &mut constant);
+        }
+        if !constant.is_finite() || gathered.iter().any(|(_, q)| !q.is_finite()) {
+            return Atom::Constant(Number::UNDEFINED);
+        }
+        gathered.sort_unstable_by_key(|&(node, _)| node);
+        gathered.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 = kept.1 + next.1;
+            }
+            same
+        });
+        gathered.retain(|(_, q)| !q.is_zero());
+        match gathered.as_slice() {
+            [] => Atom::Constant(constant),
+            &[(node, q)] if constant.is_zero() => self.scaled(q, node),
+            _ => {
+                let content = content(constant, &gathered);
+                if content.is_one() {
+                    return self.admit(&Candidate::Sum(constant, &gathered));
+                }
+                let divisor = content.recip();
+                for (_, q) in &mut gathered {
+                    *q = *q * divisor;
+                }
+                let inner = self.admit(&Candidate::Sum(constant * divisor, &gathered));
+                self.scale(content, inner)
+            }
+        }
+    }
+
+    fn gather_terms(&self, node: NodeId, q: Number, out: &mut Vec<(NodeId, Number)>, constant: &mut Number) {
+        let (node, sign) = self.representative(node);
+        let q = q * sign;
+        match self.node(node) {
+            Node::Constant(c) => *constant = *constant + q * c,
+            Node::Sum { constant: c, terms } if terms.range().len() <= MERGED_TERMS => {
+                *constant = *constant + q * c;
+                for &(child, coefficient) in self.terms(terms) {
+                    self.gather_terms(child, q * coefficient, out, constant);
+                }
+            }
+            _ => out.push((node, q)),
+        }
+    }
+
+    /// q·n of a node that is not itself a scaled one.
+    fn scaled(&mut self, q: Number, node: NodeId) -> Atom {
+        if q.is_one() {
+            return Atom::Node(node);
+        }
+        let candidate = Candidate::Sum(Number::ZERO, &[(node, q)]);
+        if (-q).is_one() { self.intern(&candidate) } else { self.admit(&candidate) }
+    }
+
+    /// q·x
+    pub(crate) fn scale(&mut self, q: Number, x: Atom) -> Atom {
+        match x {
+            Atom::Constant(c) => Atom::Constant(c * q),
+            _ if q.is_zero() => Atom::ZERO,
+            _ if !q.is_finite() => Atom::Constant(Number::UNDEFINED),
+            Atom::Node(node) => {
+                let (node, q) = self.split_coefficient(node, q);
+                self.scaled(q, node)
+            }
+        }
+    }
+
+    /// Writes q·n as q'·n' with n' not a scaled node.
+    fn split_coefficient(&self, node: NodeId, q: Number) -> (NodeId, Number) {
+        let (node, sign) = self.representative(node);
+        match self.node(node) {
+            Node::Sum { constant, terms } if constant.is_zero() && terms.range().len() == 1 => {
+                let (child, coefficient) = self.terms(terms)[0];
+                self.split_coefficient(child, q * sign * coefficient)
+            }
+            _ => (node, q * sign),
+        }
+    }
+
+    /// q · Π nᵢ^eᵢ
+    pub(crate) fn product(&mut self, mut coefficient: Number, factors: &[(NodeId, i32)]) -> Atom {
+        let mut gathered = Vec::with_capacity(factors.len() + 4);
+        for &(node, exponent) in factors {
+            self.gather_factors(node, exponent, &mut gathered, &mut coefficient);
+        }
+        if !coefficient.is_finite() {
+            return Atom::Constant(Number::UNDEFINED);
+        }
+        if coefficient.is_zero() {
+            return Atom::ZERO;
+        }
+        let square_parts = self.collect_exponents(&mut gathered);
+        if square_parts {
+            let flat = gathered.clone(); // a radicand may be a product or scaled: gather once more
+            return self.product(coefficient, &flat);
+        }
+        match gathered.as_slice() {
+            [] => Atom::Constant(coefficient),
+            &[(node, 1)] => self.scaled(coefficient, node),
+            _ if gathered.iter().any(|(_, e)| e.abs() > MAX_EXPONENT) => {
+                let powers: Vec<Atom> = gathered.iter().map(|&(node, e)| self.large_power(node, e)).collect();
+                self.product_of(coefficient, &powers)
+            }
+            _ => {
+                let monomial = self.admit(&Candidate::Product(&gathered));
+                self.scale(coefficient, monomial)
+            }
+        }
+    }
+
+    fn gather_factors(&self, node: NodeId, e: i32, out: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) {
+        let (node, q) = self.split_coefficient(node, Number::ONE);
+        *coefficient = *coefficient * q.powi(e);
+        match self.node(node) {
+            Node::Constant(c) => *coefficient = *coefficient * c.powi(e),
+            Node::Product { factors } if factors.range().len() <= MERGED_FACTORS => {
+                for &(child, exponent) in self.factors(factors) {
+                    self.gather_factors(child, exponent.saturating_mul(e), out, coefficient);
+                }
+            }
+            _ => out.push((node, e)),
+        }
+    }
+
+    /// Adds exponents of equal factors and takes (√e)² to e and |e|² to e²; answers whether it took any such.
+    fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>) -> bool {
+        factors.sort_unstable_by_key(|&(node, _)| node);
+        factors.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 = kept.1.saturating_add(next.1);
+            }
+            same
+        });
+        factors.retain(|&(_, e)| e != 0);
+        let mut took = false;
+        for i in 0..factors.len() {
+            let (node, e) = factors[i];
+            if e.abs() < 2 {
+                continue;
+            }
+            let Node::Call { function, args } = self.node(node) else { continue };
+            match function {
+                Function::Sqrt => {
+                    factors[i].1 = e % 2;
+                    factors.push((args[0], e / 2));
+                    took = true;
+                }
+                Function::Abs if e % 2 == 0 => {
+                    factors[i] = (args[0], e);
+                    took = true;
+                }
+                _ => {}
+            }
+        }
+        factors.retain(|&(_, e)| e != 0);
+        took
+    }
+
+    fn large_power(&mut self, node: NodeId, exponent: i32) -> Atom {
+        if exponent.abs() <= MAX_EXPONENT {
+            return self.product(Number::ONE, &[(node, exponent)]);
+        }
+        self.call_unfolded(Function::Pow, &[Atom::Node(node), Atom::Constant(Number::integer(exponent))])
+    }
+
+    /// q · Π xᵢ
+    pub(crate) fn product_of(&mut self, coefficient: Number, atoms: &[Atom]) -> Atom {
+        let mut q = coefficient;
+        let mut factors = Vec::with_capacity(atoms.len());
+        for &atom in atoms {
+            match atom {
+                Atom::Constant(c) => q = q * c,
+                Atom::Node(node) => factors.push((node, 1)),
+            }
+        }
+        self.product(q, &factors)
+    }
+
+    /// Σ qᵢ xᵢ
+    pub(crate) fn sum_of(&mut self, atoms: &[(Atom, Number)]) -> Atom {
+        let mut constant = Number::ZERO;
+        let mut terms = Vec::with_capacity(atoms.len());
+        for &(atom, q) in atoms {
+            match atom {
+                Atom::Constant(c) => constant = constant + q * c,
+                Atom::Node(node) => terms.push((node, q)),
+            }
+        }
+        self.sum(constant, &terms)
+    }
+
+    /// x^e
+    pub(crate) fn powi(&mut self, x: Atom, exponent: i32) -> Atom {
+        match x {
+            Atom::Constant(c) => Atom::Constant(c.powi(exponent)),
+            Atom::Node(node) => self.product(Number::ONE, &[(node, exponent)]),
+        }
+    }
+
+    /// x/y; a divisor that is identically zero is remembered, and the quotient undefined.
+    pub(crate) fn divide(&mut self, x: Atom, y: Atom) -> Atom {
+        if y.is_zero() {
+            self.zero_divisions.push(x);
+            return Atom::Constant(Number::UNDEFINED);
+        }
+        let reciprocal = self.powi(y, -1);
+        self.product_of(Number::ONE, &[x, reciprocal])
+    }
+
+    /// f(x…)
+    pub(crate) fn call(&mut self, function: Function, args: &[Atom]) -> Atom {
+        if args.iter().any(|a| matches!(a, Atom::Constant(c) if !c.is_finite())) {
+            return Atom::Constant(Number::UNDEFINED);
+        }
+        if let Some(value) = folded_call(function, args) {
+            return Atom::Constant(value);
+        }
+        if let (Atom::Node(node), parity @ (Parity::Even | Parity::Odd)) = (args[0], function.parity()) {
+            let (inner, q) = self.split_coefficient(node, Number::ONE);
+            if q.is_negative() {
+                let positive = self.scale(-q, Atom::Node(inner));
+                let value = self.call(function, &[positive]);
+                return if parity == Parity::Odd { self.scale(Number::MINUS_ONE, value) } else { value };
+            }
+        }
+        match (function, args) {
+            (Function::Sqrt, &[Atom::Node(node)]) => {
+                let (inner, q) = self.split_coefficient(node, Number::ONE);
+                if let Some(root) = q.exact_sqrt().filter(|_| !q.is_one()) {
+                    let rest = self.call_unfolded(Function::Sqrt, &[Atom::Node(inner)]);
+                    return self.scale(root, rest);
+                }
+                self.call_unfolded(function, args)
+            }
+            (Function::Min | Function::Max, &[a, b]) if a == b => a,
+            (Function::Step, &[_, a, b]) if a == b => a,
+            (Function::Step, &[Atom::Constant(x), a, b]) => {
+                if x.is_negative() {
+                    b
+                } else {
+                    a
+                }
+            }
+            (Function::Pow, &[x, Atom::Constant(y)]) => self.constant_power(x, y),
+            _ => self.call_unfolded(function, args),
+        }
+    }
+
+    /// x^y: integer powers are products, half-integer ones powers of a square root.
+    fn constant_power(&mut self, x: Atom, y: Number) -> Atom {
+        let small = |q: Number| q.as_integer().filter(|e| e.abs() <= MAX_EXPONENT);
+        if let Some(e) = small(y) {
+            return self.powi(x, e);
+        }
+        if let Some(e) = small(y * Number::integer(2)) {
+            let root = self.call(Function::Sqrt, &[x]);
+            return self.powi(root, e);
+        }
+        self.call_unfolded(Function::Pow, &[x, Atom::Constant(y)])
+    }
+
+    fn call_unfolded(&mut self, function: Function, args: &[Atom]) -> Atom {
+        let mut ids = [NodeId::NONE; 3];
+        for (id, &arg) in ids.iter_mut().zip(args) {
+            *id = self.argument(arg);
+        }
+        if matches!(function, Function::Min | Function::Max) && ids[0] > ids[1] {
+            ids.swap(0, 1);
+        }
+        self.admit(&Candidate::Call(function, ids))
+    }
+
+    fn argument(&mut self, atom: Atom) -> NodeId {
+        match atom {
+            Atom::Constant(c) => {
+                let candidate = Candidate::Constant(c);
+                self.find(&candidate).unwrap_or_else(|| self.push(&candidate, Fingerprint::constant(c)))
+            }
+            Atom::Node(node) => match self.representative(node) {
+                (node, sign) if sign.is_one() => node,
+                (node, sign) => match self.scaled(sign, node) {
+                    Atom::Node(scaled) => scaled,
+                    Atom::Constant(_) => node,
+                },
+            },
+        }
+    }
+
+    /// The cheapest node known to have this node's value up to the sign that is returned with it.
+    fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
+        let mut sign = Number::ONE;
+        while let Some((next, s)) = self.successor[node.index()] {
+            (node, sign) = (next, sign * s);
+        }
+        (node, sign)
+    }
+
+    /// Interns a candidate; by value too where that is switched on: constants are recognised and the cheapest of
+    /// the nodes of equal value up to sign is answered.
+    fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
+        if self.folding == Folding::Structural {
+            return self.intern(candidate);
+        }
+        if let Some(known) = self.find(candidate) {
+            let (node, sign) = self.representative(known);
+            return self.signed(node, sign);
+        }
+        let fingerprint = self.fingerprint_of(candidate);
+        if let Some((p, q)) = fingerprint.small_rational() {
+            return Atom::Constant(Number::ratio(p, q));
+        }
+        let key = fingerprint.up_to_sign();
+        let hash = hash_of(&key);
+        let Some(&equal) = self.by_value.find(hash, |&id| self.fingerprint(id).up_to_sign() == key) else {
+            let id = self.push(candidate, fingerprint);
+            self.by_value.insert_unique(hash, id, |id| hash_of(&self.fingerprints[id.index()].up_to_sign()));
+            return Atom::Node(id);
+        };
+        let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
+        if self.cost_of(candidate) >= self.cost(equal) {
+            return self.signed(equal, sign);
+        }
+        let id = self.push(candidate, fingerprint);
+        self.successor[equal.index()] = Some((id, sign));
+        if let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
+            *slot = id;
+        }
+        Atom::Node(id)
+    }
+
+    /// ±n; a negative is interned as it is, without asking for its value again.
+    fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
+        if sign.is_one() {
+            return Atom::Node(node);
+        }
+        match self.split_coefficient(node, sign) {
+            (child, q) if q.is_one() => Atom::Node(child),
+            (child, q) => self.intern(&Candidate::Sum(Number::ZERO, &[(child, q)])),
+        }
+    }
+
+    /// Interns a candidate by its structure alone.
+    fn intern(&mut self, candidate: &Candidate<'_>) -> Atom {
+        let id = self.find(candidate).unwrap_or_else(|| {
+            let fingerprint = self.fingerprint_of(candidate);
+            self.push(candidate, fingerprint)
+        });
+        Atom::Node(id)
+    }
+
+    fn find(&self, candidate: &Candidate<'_>) -> Option<NodeId> {
+        self.by_structure.find(candidate.hash(), |&id| self.is(id, candidate)).copied()
+    }
+
+    fn is(&self, id: NodeId, candidate: &Candidate<'_>) -> bool {
+        match (self.node(id), candidate) {
+            (Node::Constant(a), Candidate::Constant(b)) => a == *b,
+            (Node::Symbol(index), Candidate::Symbol(name)) => self.symbol_name(index) == *name,
+            (Node::Sum { constant, terms }, Candidate::Sum(c, t)) => {
+                constant == *c && self.terms(terms) == *t
+            }
+            (Node::Product { factors }, Candidate::Product(f)) => self.factors(factors) == *f,
+            (Node::Call { function, args }, Candidate::Call(f, a)) => function == *f && args == *a,
+            _ => false,
+        }
+    }
+
+    fn push(&mut self, candidate: &Candidate<'_>, fingerprint: Fingerprint) -> NodeId {
+        let cost = self.cost_of(candidate);
+        let node = match *candidate {
+            Candidate::Constant(c) => Node::Constant(c),
+            Candidate::Symbol(name) => {
+                self.names.push(name.to_owned());
+                Node::Symbol(self.names.len() as u32 - 1)
+            }
+            Candidate::Sum(constant, terms) => {
+                let start = self.terms.len() as u32;
+                self.terms.extend_from_slice(terms);
+                Node::Sum { constant, terms: Slice { start, len: terms.len() as u32 } }
+            }
+            Candidate::Product(factors) => {
+                let start = self.factors.len() as u32;
+                self.factors.extend_from_slice(factors);
+                Node::Product { factors: Slice { start, len: factors.len() as u32 } }
+            }
+            Candidate::Call(function, args) => Node::Call { function, args },
+        };
+        let id = NodeId(self.nodes.len() as u32);
+        self.nodes.push(node);
+        self.fingerprints.push(fingerprint);
+        self.costs.push(cost);
+        self.successor.push(None);
+        let hash = candidate.hash();
+        let Dag { by_structure, nodes, names, terms: term_pool, factors: factor_pool, .. } = self;
+        by_structure.insert_unique(hash, id, |&other| {
+            match nodes[other.index()] {
+                Node::Constant(c) => Candidate::Constant(c),
+                Node::Symbol(index) => Candidate::Symbol(&names[index as usize]),
+                Node::Sum { constant, terms } => Candidate::Sum(constant, &term_pool[terms.range()]),
+                Node::Product { factors } => Candidate::Product(&factor_pool[factors.range()]),
+                Node::Call { function, args } => Candidate::Call(function, args),
+            }
+            .hash()
+        });
+        id
+    }
+
+    fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
+        let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
+        match candidate {
+            Candidate::Constant(_) | Candidate::Symbol(_) => 0,
+            Candidate::Sum(_, terms) => sum(&mut terms
+                .iter()
+                .map(|&(n, q)| self.cost(n).saturating_add(if q.abs().is_one() { 1 } else { 2 }))),
+            Candidate::Product(factors) => sum(&mut factors.iter().map(|&(n, e)| {
+                let multiplications = 32 - e.unsigned_abs().leading_zeros();
+                self.cost(n).saturating_add(multiplications + if e < 0 { 3 } else { 0 })
+            })),
+            Candidate::Call(function, args) => {
+                sum(&mut Dag::args(*function, args).iter().map(|&n| self.cost(n))).saturating_add(10)
+            }
+        }
+    }
+}
+
+/// The greatest common content of a linear combination, with the sign of its first term; a sum with coefficients
+/// that are not rational only gives up its sign.
+fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
+    let sign = if terms[0].1.is_negative() { Number::MINUS_ONE } else { Number::ONE };
+    let mut content = terms[0].1.abs();
+    let others = terms[1..].iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
+    for q in others {
+        match content.content(q) {
+            Some(common) => content = common,
+            None => return sign,
+        }
+    }
+    if matches!(content, Number::Real(_)) { sign } else { content * sign }
+}
+
+/// The value of a call with constant arguments, if it is finite.
+fn folded_call(function: Function, args: &[Atom]) -> Option<Number> {
+    let mut values = [0.0; 3];
+    for (value, arg) in values.iter_mut().zip(args) {
+        let Atom::Constant(c) = arg else { return None };
+        *value = c.to_f64();
+    }
+    if let (Function::Sqrt, Atom::Constant(c)) = (function, args[0])
+        && let Some(root) = c.exact_sqrt()
+    {
+        return Some(root);
+    }
+    let value = function.eval(&values[..function.arity()]);
+    value.is_finite().then(|| Number::from(value))
+}

@@ -1,0 +1,237 @@
+//! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
+
+use rustc_hash::FxHashMap;
+
+use crate::cone::{Assignment, Cone};
+use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::function::Function;
+use crate::number::Number;
+
+impl Dag {
+    /// ∂`output`/∂`symbol` for each of `symbols`, by one reverse sweep.
+    pub(crate) fn gradient(&mut self, output: Atom, symbols: &[NodeId]) -> Vec<Atom> {
+        let cone = Cone::below(self, [output]);
+        let active = cone.depending_on(self, symbols);
+        let mut adjoints: FxHashMap<NodeId, Vec<(Atom, Number)>> = FxHashMap::default();
+        if let Atom::Node(root) = output {
+            adjoints.insert(root, vec![(Atom::ONE, Number::ONE)]);
+        }
+        let mut gradient = FxHashMap::default();
+        for &node in cone.order.iter().rev() {
+            if !active.contains(&node) {
+                continue;
+            }
+            let Some(contributions) = adjoints.remove(&node) else { continue };
+            let adjoint = self.sum_of(&contributions);
+            if let Node::Symbol(_) = self.node(node) {
+                gradient.insert(node, adjoint);
+                continue;
+            }
+            if adjoint.is_zero() {
+                continue;
+            }
+            self.for_each_partial(node, |dag, child, partial, q| {
+                if active.contains(&child) {
+                    let product = dag.product_of(Number::ONE, &[adjoint, partial]);
+                    adjoints.entry(child).or_default().push((product, q));
+                }
+            });
+        }
+        symbols.iter().map(|symbol| gradient.get(symbol).copied().unwrap_or(Atom::ZERO)).collect()
+    }
+
+    /// The derivatives of `outputs` when each symbol of `seeds` changes at the rate given with it.
+    pub(crate) fn directional(&mut self, outputs: &[Atom], seeds: &[(NodeId, Atom)]) -> Vec<Atom> {
+        let cone = Cone::below(self, outputs.iter().copied());
+        let moving: Vec<NodeId> = seeds.iter().map(|&(symbol, _)| symbol).collect();
+        let active = cone.depending_on(self, &moving);
+        let mut rates = Assignment::from_pairs(seeds);
+        for &node in &cone.order {
+            if !active.contains(&node) || rates.contains(node) {
+                continue;
+            }
+            let mut contributions = Vec::new();
+            self.for_each_partial(node, |dag, child, partial, q| {
+                if let Some(rate) = rates.get(child)
+                    && !rate.is_zero()
+                {
+                    contributions.push((dag.product_of(Number::ONE, &[partial, rate]), q));
+                }
+            });
+            let rate = self.sum_of(&contributions);
+            rates.set(node, rate);
+        }
+        let rate_of = |atom| match atom {
+            Atom::Constant(_) => Atom::ZERO,
+            Atom::Node(node) => rates.get(node).unwrap_or(Atom::ZERO),
+        };
+        outputs.iter().map(|&output| rate_of(output)).collect()
+    }
+
+    /// Calls `visit(dag, child, p, q)` for each child of `node`, where q·p is the partial derivative by that child.
+    fn for_each_partial(&mut self, node: NodeId, mut visit: impl FnMut(&mut Dag, NodeId, Atom, Number)) {
+        match self.node(node) {
+            Node::Constant(_) | Node::Symbol(_) => {}
+            Node::Sum { terms, .. } => {
+                for i in 0..self.terms(terms).len() {
+                    let (child, q) = self.terms(terms)[i];
+                    visit(self, child, Atom::ONE, q);
+                }
+            }
+            Node::Product { factors } => {
+                let factors = self.factors(factors).to_vec();
+                for (i, &(child, e)) in factors.iter().enumerate() {
+                    let mut rest = factors.clone();
+                    rest[i].1 -= 1;
+                    let partial = self.product(Number::ONE, &rest);
+                    visit(self, child, partial, Number::integer(e));
+                }
+            }
+            Node::Call { function, args } => {
+                let args: Vec<NodeId> = Dag::args(function, &args).to_vec();
+                for position in 0..args.len() {
+                    let partial = self.partial(function, &args, position, node);
+                    if !partial.is_zero() {
+                        visit(self, args[position], partial, Number::ONE);
+                    }
+                }
+            }
+        }
+    }
+
+    /// ∂f/∂(argument at `position`); `value` is the node of the call itself.
+    fn partial(&mut self, function: Function, args: &[NodeId], position: usize, value: NodeId) -> Atom {
+        let x = Atom::Node(args[0]);
+        let f = Atom::Node(value);
+        let one_minus_square = |dag: &mut Dag, u: Atom| {
+            let square = dag.powi(u, 2);
+            dag.sum_of(&[(Atom::ONE, Number::ONE), (square, Number::MINUS_ONE)])
+        };
+        match function {
+            Function::Sin => self.call(Function::Cos, &[x]),
+            Function::Cos => {
+                let sin = self.call(Function::Sin, &[x]);
+                self.scale(Number::MINUS_ONE, sin)
+            }
+            Function::Asin | Function::Acos => {
+                let radicand = one_minus_square(self, x);
+                let root = self.call(Function::Sqrt, &[radicand]);
+                let reciprocal = self.powi(root, -1);
+                self.scale(
+                    if function == Function::Asin { Number::ONE } else { Number::MINUS_ONE },
+                    reciprocal,
+                )
+            }
+            Function::Atan => {
+                let square = self.powi(x, 2);
+                let sum = self.sum_of(&[(Atom::ONE, Number::ONE), (square, Number::ONE)]);
+                self.powi(sum, -1)
+            }
+            Function::Atan2 => {
+                // d atan2(y, x) = (x dy − y dx)/(x² + y²)
+                let (y, x) = (Atom::Node(args[0]), Atom::Node(args[1]));
+                let squares = [self.powi(x, 2), self.powi(y, 2)];
+                let norm = self.sum_of(&squares.map(|s| (s, Number::ONE)));
+                let reciprocal = self.powi(norm, -1);
+                if position == 0 {
+                    self.product_of(Number::ONE, &[x, reciprocal])
+                } else {
+                    self.product_of(Number::MINUS_ONE, &[y, reciprocal])
+                }
+            }
+            Function::Sinh => self.call(Function::Cosh, &[x]),
+            Function::Cosh => self.call(Function::Sinh, &[x]),
+            Function::Tanh => one_minus_square(self, f),
+            Function::Exp => f,
+            Function::Log => self.powi(x, -1),
+            Function::Sqrt => {
+                let reciprocal = self.powi(f, -1);
+                self.scale(Number::ratio(1, 2), reciprocal)
+            }
+            Function::Abs => self.call(Function::Sign, &[x]),
+            Function::Sign => Atom::ZERO,
+            Function::Min | Function::Max => {
+                // The smaller argument alone counts for min, the larger for max; the first one at a tie.
+                let (this, other) = (args[position], args[1 - position]);
+                let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
+                if position == 0 {
+                    let lead = self.sum(Number::ZERO, &[(other, q), (this, -q)]);
+                    self.call(Function::Step, &[lead, Atom::ONE, Atom::ZERO])
+                } else {
+                    let lead = self.sum(Number::ZERO, &[(this, q), (other, -q)]);
+                    self.call(Function::Step, &[lead, Atom::ZERO, Atom::ONE])
+                }
+            }
+            Function::Step => match position {
+                0 => Atom::ZERO, // the jump itself has no derivative
+                1 => self.call(Function::Step, &[x, Atom::ONE, Atom::ZERO]),
+                _ => self.call(Function::Step, &[x, Atom::ZERO, Atom::ONE]),
+            },
+            Function::Pow => {
+                let y = Atom::Node(args[1]);
+                if position == 0 {
+                    let exponent = self.sum_of(&[(y, Number::ONE), (Atom::ONE, Number::MINUS_ONE)]);
+                    let exponent = self.constant_of(exponent);
+                    let power = self.call(Function::Pow, &[x, exponent]);
+                    self.product_of(Number::ONE, &[y, power])
+                } else {
+                    let log = self.call(Function::Log, &[x]);
+                    self.product_of(Number::ONE, &[log, f])
+                }
+            }
+        }
+    }
+
+    /// The constant that a node of a constant stands for.
+    fn constant_of(&self, atom: Atom) -> Atom {
+        match atom {
+            Atom::Node(id) => match self.node(id) {
+                Node::Constant(c) => Atom::Constant(c),
+                _ => atom,
+            },
+            Atom::Constant(_) => atom,
+        }
+    }
+
+    /// `outputs` with symbols (or other nodes) replaced, rebuilt bottom-up.
+    pub(crate) fn substitute(&mut self, outputs: &[Atom], replacements: &[(NodeId, Atom)]) -> Vec<Atom> {
+        let cone = Cone::below(self, outputs.iter().copied());
+        let replaced: Vec<NodeId> = replacements.iter().map(|&(node, _)| node).collect();
+        let active = cone.depending_on(self, &replaced);
+        let mut values = Assignment::from_pairs(replacements);
+        for &node in &cone.order {
+            if !active.contains(&node) || values.contains(node) {
+                continue;
+            }
+            let value = match self.node(node) {
+                Node::Constant(_) | Node::Symbol(_) => Atom::Node(node),
+                Node::Sum { constant, terms } => {
+                    let mut sum: Vec<(Atom, Number)> =
+                        self.terms(terms).iter().map(|&(child, q)| (values.node(child), q)).collect();
+                    sum.push((Atom::Constant(constant), Number::ONE));
+                    self.sum_of(&sum)
+                }
+                Node::Product { factors } => {
+                    let factors = self.factors(factors).to_vec();
+                    let powers: Vec<Atom> = factors
+                        .iter()
+                        .map(|&(child, e)| match values.node(child) {
+                            zero if zero.is_zero() && e < 0 => self.divide(Atom::ONE, zero),
+                            value => self.powi(value, e),
+                        })
+                        .collect();
+                    self.product_of(Number::ONE, &powers)
+                }
+                Node::Call { function, args } => {
+                    let args: Vec<Atom> = Dag::args(function, &args)
+                        .iter()
+                        .map(|&child| self.constant_of(values.node(child)))
+                        .collect();
+                    self.call(function, &args)
+                }
+            };
+            values.set(node, value);
+        }
+        outputs.iter().map(|&output| values.atom(output)).collect()
+    }
+}

@@ -1,0 +1,35 @@
+//! What can go wrong with expressions.
+
+/// An error of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ExprError {
+    /// A quotient whose divisor is zero whatever the values of the symbols.
+    #[error("division by zero: `{dividend}` is divided by an expression that is identically zero")]
+    DivisionByZero {
+        /// Text of the dividend.
+        dividend: String,
+    },
+    /// A symbol that is neither an input of the program nor given a value.
+    #[error("the symbol `{symbol}` has no value")]
+    UnboundSymbol {
+        /// Its name.
+        symbol: String,
+    },
+    /// An expression whose value is not a finite number.
+    #[error("`{expression}` is {value}{}", at(*t, state))]
+    NotFinite {
+        /// Text of the innermost expression that is not finite.
+        expression: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Time of the evaluation.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+}
+
+fn at(t: f64, state: &[(String, f64)]) -> String {
+    let state: String = state.iter().map(|(name, value)| format!(", {name} = {value}")).collect();
+    format!(" at t = {t}{state}")
+}

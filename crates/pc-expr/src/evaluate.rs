@@ -1,0 +1,72 @@
+//! Evaluation of the graph itself over any scalar: the reference that programs and derivatives are tested against.
+
+use std::ops::{Add, Mul, Neg};
+
+use rustc_hash::FxHashMap;
+
+use crate::cone::Cone;
+use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::error::ExprError;
+use crate::function::Function;
+
+/// A number that expressions can be evaluated over: `f64`, or a dual number.
+pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+    /// The constant.
+    fn from_f64(value: f64) -> Self;
+    /// x^exponent
+    #[must_use]
+    fn powi(self, exponent: i32) -> Self;
+    /// The function at `args`, as many as its arity.
+    fn call(function: Function, args: &[Self]) -> Self;
+}
+
+impl Scalar for f64 {
+    fn from_f64(value: f64) -> f64 {
+        value
+    }
+    fn powi(self, exponent: i32) -> f64 {
+        f64::powi(self, exponent)
+    }
+    fn call(function: Function, args: &[f64]) -> f64 {
+        function.eval(args)
+    }
+}
+
+pub(crate) fn evaluate<S: Scalar>(
+    dag: &Dag,
+    outputs: &[Atom],
+    symbols: &[(NodeId, S)],
+) -> Result<Vec<S>, ExprError> {
+    let cone = Cone::below(dag, outputs.iter().copied());
+    let mut values: FxHashMap<NodeId, S> = symbols.iter().copied().collect();
+    for &id in &cone.order {
+        let value = match dag.node(id) {
+            Node::Constant(c) => S::from_f64(c.to_f64()),
+            Node::Symbol(_) if values.contains_key(&id) => continue,
+            Node::Symbol(index) => {
+                return Err(ExprError::UnboundSymbol { symbol: dag.symbol_name(index).to_owned() });
+            }
+            Node::Sum { constant, terms } => {
+                dag.terms(terms).iter().fold(S::from_f64(constant.to_f64()), |sum, (child, q)| {
+                    sum + S::from_f64(q.to_f64()) * values[child]
+                })
+            }
+            Node::Product { factors } => dag
+                .factors(factors)
+                .iter()
+                .fold(S::from_f64(1.0), |product, (child, e)| product * values[child].powi(*e)),
+            Node::Call { function, args } => {
+                let args: Vec<S> = Dag::args(function, &args).iter().map(|child| values[child]).collect();
+                S::call(function, &args)
+            }
+        };
+        values.insert(id, value);
+    }
+    Ok(outputs
+        .iter()
+        .map(|output| match output {
+            Atom::Constant(c) => S::from_f64(c.to_f64()),
+            Atom::Node(id) => values[id],
+        })
+        .collect())
+}

@@ -1,0 +1,370 @@
+//! The handle that formulas are written with.
+
+use std::fmt;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use crate::dag::{Atom, Node, NodeId};
+use crate::function::Function;
+use crate::graph::Graph;
+use crate::number::Number;
+use crate::print::Style;
+
+/// A constant, or a node of a [`Graph`]: `Copy`, with the arithmetic operators and elementary functions.
+///
+/// Two expressions compare equal when they are the same node, that is, with folding by value, when they are equal
+/// as functions as far as the graph can tell.
+///
+/// # Panics
+/// Combining expressions of two graphs is a programming error and panics.
+#[derive(Clone, Copy)]
+pub struct Expr<'g> {
+    graph: Option<&'g Graph>,
+    atom: Atom,
+}
+
+impl<'g> Expr<'g> {
+    /// 0
+    pub const ZERO: Expr<'g> = Expr { graph: None, atom: Atom::ZERO };
+    /// 1
+    pub const ONE: Expr<'g> = Expr { graph: None, atom: Atom::ONE };
+
+    pub(crate) fn new(graph: &'g Graph, atom: Atom) -> Expr<'g> {
+        Expr { graph: Some(graph), atom }
+    }
+
+    /// The exact rational `num / den`.
+    pub fn ratio(num: i64, den: i64) -> Expr<'g> {
+        Number::ratio(num, den).into()
+    }
+
+    /// The constant, if this is one.
+    pub fn constant(self) -> Option<Number> {
+        match self.atom {
+            Atom::Constant(c) => Some(c),
+            Atom::Node(_) => None,
+        }
+    }
+
+    /// Whether this is 0, or known to be.
+    pub fn is_zero(self) -> bool {
+        self.atom.is_zero()
+    }
+
+    /// Whether this is undefined, because of a division by zero.
+    pub fn is_undefined(self) -> bool {
+        matches!(self.atom, Atom::Constant(c) if !c.is_finite())
+    }
+
+    /// The name, if this is a symbol.
+    pub fn symbol_name(self) -> Option<String> {
+        let (Some(graph), Atom::Node(id)) = (self.graph, self.atom) else { return None };
+        graph.with(|dag| match dag.node(id) {
+            Node::Symbol(index) => Some(dag.symbol_name(index).to_owned()),
+            _ => None,
+        })
+    }
+
+    /// ∂self/∂`symbol`.
+    ///
+    /// # Panics
+    /// If `symbol` is not a symbol.
+    #[must_use]
+    pub fn derivative(self, symbol: Expr<'g>) -> Expr<'g> {
+        match self.graph {
+            Some(graph) if matches!(self.atom, Atom::Node(_)) => {
+                graph.directional(&[self], &[(symbol, Expr::ONE)])[0]
+            }
+            _ => Expr::ZERO,
+        }
+    }
+
+    /// Whether the value changes with `symbol`: its derivative is not identically zero.
+    pub fn depends_on(self, symbol: Expr<'g>) -> bool {
+        !self.derivative(symbol).is_zero()
+    }
+
+    /// Number of operations when written out as a tree (saturating), functions counting ten.
+    pub fn tree_cost(self) -> u32 {
+        match (self.graph, self.atom) {
+            (Some(graph), Atom::Node(id)) => graph.with(|dag| dag.cost(id)),
+            _ => 0,
+        }
+    }
+
+    /// The text in another style than [`Display`](fmt::Display)'s.
+    pub fn display(self, style: Style) -> String {
+        crate::print::print(self, style)
+    }
+
+    pub(crate) fn graph(self) -> Option<&'g Graph> {
+        self.graph
+    }
+
+    pub(crate) fn atom(self) -> Atom {
+        self.atom
+    }
+
+    pub(crate) fn atom_in(self, graph: &Graph) -> Atom {
+        if let (Some(own), Atom::Node(_)) = (self.graph, self.atom) {
+            assert!(std::ptr::eq(own, graph), "expressions of two graphs were combined");
+        }
+        self.atom
+    }
+
+    pub(crate) fn symbol_in(self, graph: &Graph) -> NodeId {
+        let Atom::Node(id) = self.atom_in(graph) else { panic!("expected a symbol, found a constant") };
+        let is_symbol = graph.with(|dag| matches!(dag.node(id), Node::Symbol(_)));
+        assert!(is_symbol, "expected a symbol, found `{self}`");
+        id
+    }
+
+    fn unary(
+        self,
+        f: impl FnOnce(&mut crate::dag::Dag, Atom) -> Atom,
+        constant: impl FnOnce(Number) -> Option<Number>,
+    ) -> Expr<'g> {
+        if let Atom::Constant(c) = self.atom
+            && let Some(value) = constant(c)
+        {
+            return Expr { graph: self.graph, atom: Atom::Constant(value) };
+        }
+        match self.graph {
+            Some(graph) => graph.build(|dag| f(dag, self.atom)),
+            None => Expr { graph: None, atom: Atom::Constant(Number::UNDEFINED) },
+        }
+    }
+
+    fn binary(self, other: Expr<'g>, f: impl FnOnce(&mut crate::dag::Dag, Atom, Atom) -> Atom) -> Expr<'g> {
+        match self.graph.or(other.graph) {
+            Some(graph) => {
+                let (x, y) = (self.atom_in(graph), other.atom_in(graph));
+                graph.build(|dag| f(dag, x, y))
+            }
+            None => {
+                // Two constants that belong to no graph: any graph gives the same number, if there is one.
+                let atom = f(&mut crate::dag::Dag::new(crate::Folding::Structural), self.atom, other.atom);
+                let constant = if let Atom::Constant(c) = atom { c } else { Number::UNDEFINED };
+                Expr { graph: None, atom: Atom::Constant(constant) }
+            }
+        }
+    }
+
+    fn call(self, function: Function) -> Expr<'g> {
+        self.unary(
+            |dag, x| dag.call(function, &[x]),
+            |c| {
+                let value = function.eval(&[c.to_f64()]);
+                match function {
+                    Function::Sqrt => c.exact_sqrt().or(value.is_finite().then(|| value.into())),
+                    _ => value.is_finite().then(|| value.into()),
+                }
+            },
+        )
+    }
+
+    /// self^`exponent`
+    #[must_use]
+    pub fn powi(self, exponent: i32) -> Expr<'g> {
+        if exponent < 0 {
+            return Expr::ONE / self.powi(exponent.saturating_neg());
+        }
+        self.unary(|dag, x| dag.powi(x, exponent), |c| Some(c.powi(exponent)))
+    }
+
+    /// self^`exponent`; a constant exponent that is an integer or half-integer gives powers of x or √x.
+    #[must_use]
+    pub fn pow(self, exponent: impl Into<Expr<'g>>) -> Expr<'g> {
+        let exponent = exponent.into();
+        if let Some(e) = exponent.constant().and_then(Number::as_integer) {
+            return self.powi(e);
+        }
+        self.binary(exponent, |dag, x, y| dag.call(Function::Pow, &[x, y]))
+    }
+
+    /// The angle of the point (`x`, self).
+    #[must_use]
+    pub fn atan2(self, x: impl Into<Expr<'g>>) -> Expr<'g> {
+        self.binary(x.into(), |dag, y, x| dag.call(Function::Atan2, &[y, x]))
+    }
+
+    /// The smaller of the two.
+    #[must_use]
+    pub fn min(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
+        self.binary(other.into(), |dag, x, y| dag.call(Function::Min, &[x, y]))
+    }
+
+    /// The larger of the two.
+    #[must_use]
+    pub fn max(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
+        self.binary(other.into(), |dag, x, y| dag.call(Function::Max, &[x, y]))
+    }
+
+    /// `at_or_above` where self ≥ 0, else `below`.
+    #[must_use]
+    pub fn step(self, at_or_above: impl Into<Expr<'g>>, below: impl Into<Expr<'g>>) -> Expr<'g> {
+        let (a, b) = (at_or_above.into(), below.into());
+        match self.graph.or(a.graph).or(b.graph) {
+            Some(graph) => {
+                let atoms = [self, a, b].map(|x| x.atom_in(graph));
+                graph.build(|dag| dag.call(Function::Step, &atoms))
+            }
+            None if self.constant().is_some_and(|c| !c.is_negative()) => a,
+            None => b,
+        }
+    }
+
+    /// self²
+    #[must_use]
+    pub fn square(self) -> Expr<'g> {
+        self.powi(2)
+    }
+
+    /// tan x = sin x / cos x
+    #[must_use]
+    pub fn tan(self) -> Expr<'g> {
+        self.sin() / self.cos()
+    }
+
+    /// cot x = cos x / sin x
+    #[must_use]
+    pub fn cot(self) -> Expr<'g> {
+        self.cos() / self.sin()
+    }
+}
+
+macro_rules! functions {
+    ($($(#[$doc:meta])* $name:ident => $function:ident;)*) => {
+        impl<'g> Expr<'g> {
+            $($(#[$doc])* #[must_use] pub fn $name(self) -> Expr<'g> { self.call(Function::$function) })*
+        }
+    };
+}
+
+functions! {
+    /// Sine.
+    sin => Sin;
+    /// Cosine.
+    cos => Cos;
+    /// Arc sine.
+    asin => Asin;
+    /// Arc cosine.
+    acos => Acos;
+    /// Arc tangent.
+    atan => Atan;
+    /// Hyperbolic sine.
+    sinh => Sinh;
+    /// Hyperbolic cosine.
+    cosh => Cosh;
+    /// Hyperbolic tangent.
+    tanh => Tanh;
+    /// Exponential.
+    exp => Exp;
+    /// Natural logarithm.
+    log => Log;
+    /// Square root.
+    sqrt => Sqrt;
+    /// Absolute value.
+    abs => Abs;
+    /// −1, 0 or 1.
+    sign => Sign;
+}
+
+impl PartialEq for Expr<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self.graph, other.graph) {
+            (Some(a), Some(b)) if !std::ptr::eq(a, b) => self.constant().is_some() && self.atom == other.atom,
+            _ => self.atom == other.atom,
+        }
+    }
+}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl fmt::Display for Expr<'_> {
+    /// The text in the expression language.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.display(Style::Text))
+    }
+}
+
+impl From<Number> for Expr<'_> {
+    fn from(value: Number) -> Self {
+        Expr { graph: None, atom: Atom::Constant(value) }
+    }
+}
+
+impl From<f64> for Expr<'_> {
+    /// The constant; see [`Number::from`] for what the value of a decimal is.
+    fn from(value: f64) -> Self {
+        Number::from(value).into()
+    }
+}
+
+impl From<i32> for Expr<'_> {
+    fn from(value: i32) -> Self {
+        Number::integer(value).into()
+    }
+}
+
+impl<'g> Neg for Expr<'g> {
+    type Output = Expr<'g>;
+    fn neg(self) -> Expr<'g> {
+        self.unary(|dag, x| dag.scale(Number::MINUS_ONE, x), |c| Some(-c))
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $body:expr) => {
+        impl<'g, T: Into<Expr<'g>>> $trait<T> for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: T) -> Expr<'g> {
+                self.binary(other.into(), $body)
+            }
+        }
+        impl<'g> $trait<Expr<'g>> for f64 {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                Expr::from(self).$method(other)
+            }
+        }
+    };
+}
+
+operator!(Add, add, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::ONE)]));
+operator!(Sub, sub, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::MINUS_ONE)]));
+operator!(Mul, mul, |dag, x, y| dag.product_of(Number::ONE, &[x, y]));
+operator!(Div, div, |dag, x, y| dag.divide(x, y));
+
+impl<'g, T: Into<Expr<'g>>> AddAssign<T> for Expr<'g> {
+    fn add_assign(&mut self, other: T) {
+        *self = *self + other;
+    }
+}
+
+impl<'g, T: Into<Expr<'g>>> SubAssign<T> for Expr<'g> {
+    fn sub_assign(&mut self, other: T) {
+        *self = *self - other;
+    }
+}
+
+impl<'g, T: Into<Expr<'g>>> MulAssign<T> for Expr<'g> {
+    fn mul_assign(&mut self, other: T) {
+        *self = *self * other;
+    }
+}
+
+impl<'g> Sum for Expr<'g> {
+    /// One n-ary sum.
+    fn sum<I: Iterator<Item = Expr<'g>>>(terms: I) -> Expr<'g> {
+        let terms: Vec<Expr<'g>> = terms.collect();
+        match terms.iter().find_map(|x| x.graph) {
+            Some(graph) => graph.sum(terms),
+            None => terms.into_iter().fold(Expr::ZERO, |sum, x| sum + x),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Expression graph, derivatives, programs and kernels.
+//!
+//! Three representations, one line of flow: an [`Expr`] is what formulas are written with, a [`Graph`] interns its
+//! nodes and differentiates them, a [`Program`] is a tape of chosen outputs that a [`Kernel`] runs.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
+//!
+//! let graph = Graph::new();
+//! let [x, v, k] = graph.symbols(["x", "v", "k"]);
+//! let energy = (v * v + k * x * x) / 2.0;
+//! let gradient = graph.gradient(energy, &[x, v]);
+//! assert_eq!(gradient[0].to_string(), "x*k");
+//!
+//! let inputs = Inputs { time: None, state: vec![x, v], parameters: vec![k] };
+//! let program = Program::new(&graph, &inputs, &gradient)?;
+//! let mut kernel = Interpreter::new(Arc::new(program));
+//! let mut out = [0.0; 2];
+//! kernel.eval(0.0, &[1.0, 2.0], &[3.0], &mut out);
+//! assert_eq!(out, [3.0, 2.0]);
+//! # Ok::<(), pc_expr::ExprError>(())
+//! ```
+
+mod cone;
+mod dag;
+mod derivative;
+mod error;
+mod evaluate;
+mod expr;
+mod field;
+mod fingerprint;
+mod function;
+mod graph;
+mod kernel;
+mod number;
+pub mod parse;
+mod print;
+mod program;
+mod rank;
+mod vector_field;
+
+pub use dag::Folding;
+pub use error::ExprError;
+pub use evaluate::Scalar;
+pub use expr::Expr;
+pub use function::Function;
+pub use graph::Graph;
+pub use kernel::{Interpreter, Kernel};
+pub use number::Number;
+pub use print::Style;
+pub use program::{Inputs, Instruction, Program, Register};
+pub use vector_field::{Failure, VectorField};

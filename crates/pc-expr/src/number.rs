@@ -1,0 +1,322 @@
+//! Constants: exact rationals while they stay small, rounded reals beyond.
+
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+/// Largest numerator and denominator kept exactly: both, and so their quotient, are then correctly rounded in f64.
+const EXACT: i128 = 1 << 53;
+
+/// A constant of the graph.
+///
+/// An `f64` that is given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and
+/// like terms cancel exactly. Results that no small rational can hold are rounded to `f64`.
+#[derive(Clone, Copy, Debug)]
+pub enum Number {
+    /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
+    Rational {
+        /// Numerator, carrying the sign.
+        num: i64,
+        /// Denominator, positive.
+        den: i64,
+    },
+    /// Any other value, NaN (undefined) included.
+    Real(f64),
+}
+
+impl Number {
+    /// 0
+    pub const ZERO: Number = Number::integer(0);
+    /// 1
+    pub const ONE: Number = Number::integer(1);
+    /// −1
+    pub const MINUS_ONE: Number = Number::integer(-1);
+    /// The value of an undefined expression, such as a quotient by zero.
+    pub const UNDEFINED: Number = Number::Real(f64::NAN);
+
+    /// A small integer.
+    pub const fn integer(value: i32) -> Number {
+        Number::Rational { num: value as i64, den: 1 }
+    }
+
+    /// `num / den`, rounded if it is not a small rational; [`UNDEFINED`](Number::UNDEFINED) for `den = 0`.
+    pub fn ratio(num: i64, den: i64) -> Number {
+        Number::reduce(i128::from(num), i128::from(den))
+    }
+
+    fn reduce(num: i128, den: i128) -> Number {
+        if den == 0 {
+            return Number::UNDEFINED;
+        }
+        let divisor = gcd(num.unsigned_abs(), den.unsigned_abs()).cast_signed();
+        let (num, den) =
+            if den < 0 { (-num / divisor, -den / divisor) } else { (num / divisor, den / divisor) };
+        if num.abs() <= EXACT && den <= EXACT {
+            Number::Rational { num: num as i64, den: den as i64 }
+        } else {
+            Number::Real(num as f64 / den as f64)
+        }
+    }
+
+    /// The nearest `f64`.
+    pub fn to_f64(self) -> f64 {
+        match self {
+            Number::Rational { num, den } => num as f64 / den as f64,
+            Number::Real(value) => value,
+        }
+    }
+
+    /// Whether this is exactly 0.
+    pub fn is_zero(self) -> bool {
+        matches!(self, Number::Rational { num: 0, .. }) || matches!(self, Number::Real(0.0))
+    }
+
+    /// Whether this is exactly 1.
+    pub fn is_one(self) -> bool {
+        matches!(self, Number::Rational { num: 1, den: 1 })
+    }
+
+    /// Whether this is below 0.
+    pub fn is_negative(self) -> bool {
+        match self {
+            Number::Rational { num, .. } => num < 0,
+            Number::Real(value) => value < 0.0,
+        }
+    }
+
+    /// Whether this is a number at all: not NaN and not infinite.
+    pub fn is_finite(self) -> bool {
+        match self {
+            Number::Rational { .. } => true,
+            Number::Real(value) => value.is_finite(),
+        }
+    }
+
+    /// The value as an integer, if it is one that fits.
+    pub fn as_integer(self) -> Option<i32> {
+        match self {
+            Number::Rational { num, den: 1 } => i32::try_from(num).ok(),
+            _ => None,
+        }
+    }
+
+    /// |x|
+    #[must_use]
+    pub fn abs(self) -> Number {
+        if self.is_negative() { -self } else { self }
+    }
+
+    /// 1/x; [`UNDEFINED`](Number::UNDEFINED) for 0.
+    #[must_use]
+    pub fn recip(self) -> Number {
+        match self {
+            Number::Rational { num, den } => Number::ratio(den, num),
+            Number::Real(value) => Number::from(1.0 / value),
+        }
+    }
+
+    /// x^e
+    #[must_use]
+    pub fn powi(self, exponent: i32) -> Number {
+        let base = if exponent < 0 { self.recip() } else { self };
+        let mut result = Number::ONE;
+        let mut square = base;
+        let mut rest = exponent.unsigned_abs();
+        while rest > 0 {
+            if rest & 1 == 1 {
+                result = result * square;
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = square * square;
+            }
+        }
+        result
+    }
+
+    /// The rational square root, if there is one.
+    pub fn exact_sqrt(self) -> Option<Number> {
+        let Number::Rational { num, den } = self else { return None };
+        let root = |n: i64| {
+            let r = (n as f64).sqrt() as i64;
+            (n >= 0 && r * r == n).then_some(r)
+        };
+        Some(Number::ratio(root(num)?, root(den)?))
+    }
+
+    /// The greatest rational g such that both numbers are integer multiples of it; `None` for rounded reals.
+    pub(crate) fn content(self, other: Number) -> Option<Number> {
+        match (self, other) {
+            (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => {
+                let num = gcd(a.unsigned_abs().into(), c.unsigned_abs().into());
+                let common = gcd(b.unsigned_abs().into(), d.unsigned_abs().into());
+                let den = (b.unsigned_abs() as u128 / common) * d.unsigned_abs() as u128;
+                match Number::reduce(num.cast_signed(), den.cast_signed()) {
+                    Number::Real(_) => None,
+                    exact @ Number::Rational { .. } => Some(exact),
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+fn gcd(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a.max(1)
+}
+
+impl From<f64> for Number {
+    /// The shortest decimal that rounds to `value`, exactly, where it is a small rational.
+    fn from(value: f64) -> Number {
+        if !value.is_finite() {
+            return Number::Real(value);
+        }
+        if value.fract() == 0.0 && value.abs() <= EXACT as f64 {
+            return Number::Rational { num: value as i64, den: 1 };
+        }
+        decimal(value).unwrap_or(Number::Real(value))
+    }
+}
+
+/// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational.
+fn decimal(value: f64) -> Option<Number> {
+    let text = format!("{value:e}");
+    let (mantissa, exponent) = text.split_once('e')?;
+    let fraction_digits = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len() as i32);
+    let digits: i64 = mantissa.replace('.', "").parse().ok()?;
+    let power = fraction_digits - exponent.parse::<i32>().ok()?;
+    let den = 10i128.checked_pow(u32::try_from(power).ok()?)?;
+    match Number::reduce(digits.into(), den) {
+        exact @ Number::Rational { .. } => Some(exact),
+        Number::Real(_) => None,
+    }
+}
+
+impl From<i32> for Number {
+    fn from(value: i32) -> Number {
+        Number::integer(value)
+    }
+}
+
+impl std::ops::Neg for Number {
+    type Output = Number;
+    fn neg(self) -> Number {
+        match self {
+            Number::Rational { num, den } => Number::Rational { num: -num, den },
+            Number::Real(value) => Number::Real(-value),
+        }
+    }
+}
+
+impl std::ops::Add for Number {
+    type Output = Number;
+    fn add(self, other: Number) -> Number {
+        match (self, other) {
+            (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => {
+                let [a, b, c, d] = [a, b, c, d].map(i128::from);
+                Number::reduce(a * d + c * b, b * d)
+            }
+            _ => Number::from(self.to_f64() + other.to_f64()),
+        }
+    }
+}
+
+impl std::ops::Mul for Number {
+    type Output = Number;
+    fn mul(self, other: Number) -> Number {
+        match (self, other) {
+            (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => {
+                let [a, b, c, d] = [a, b, c, d].map(i128::from);
+                Number::reduce(a * c, b * d)
+            }
+            _ => Number::from(self.to_f64() * other.to_f64()),
+        }
+    }
+}
+
+impl PartialEq for Number {
+    /// Equality of representation: NaN equals itself, so that constants can be interned.
+    fn eq(&self, other: &Number) -> bool {
+        match (self, other) {
+            (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => a == c && b == d,
+            (Number::Real(a), Number::Real(b)) => a.to_bits() == b.to_bits(),
+            _ => false,
+        }
+    }
+}
+
+impl Eq for Number {}
+
+impl Hash for Number {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match self {
+            Number::Rational { num, den } => (num, den).hash(state),
+            Number::Real(value) => value.to_bits().hash(state),
+        }
+    }
+}
+
+impl fmt::Display for Number {
+    /// Small fractions as such (`-1/3`), other rationals as decimals where they terminate.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Number::Rational { num, den: 1 } => write!(f, "{num}"),
+            Number::Rational { num, den } if den <= 12 && den != 5 && den != 10 => write!(f, "{num}/{den}"),
+            Number::Rational { num, den } => {
+                let value = self.to_f64();
+                if Number::from(value) == *self { write!(f, "{value}") } else { write!(f, "{num}/{den}") }
+            }
+            Number::Real(value) => write!(f, "{value}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact() {
+        assert_eq!(Number::from(0.1) + Number::from(0.2), Number::from(0.3));
+        assert_eq!(Number::from(0.1), Number::ratio(1, 10));
+        assert_eq!(Number::from(-0.25), Number::ratio(-1, 4));
+        assert_eq!(Number::from(1e-3), Number::ratio(1, 1000));
+    }
+
+    #[test]
+    fn f64_round_trips_bit_for_bit() {
+        for value in
+            [0.1, -2.5, 1.0 / 3.0, std::f64::consts::PI, 1e300, 5e-324, 123_456.789, 9_007_199_254_740_993.0]
+        {
+            assert_eq!(Number::from(value).to_f64().to_bits(), value.to_bits(), "{value}");
+        }
+    }
+
+    #[test]
+    fn too_large_a_rational_is_rounded() {
+        let big = Number::ratio(1 << 40, 1);
+        assert_eq!(big * big, Number::Real(2f64.powi(80)));
+        assert_eq!(Number::ratio(1, 3) * Number::ratio(3, 1), Number::ONE);
+    }
+
+    #[test]
+    fn division_by_zero_is_undefined() {
+        assert!(!Number::ZERO.recip().is_finite());
+        assert_eq!(Number::ratio(1, 0), Number::UNDEFINED);
+    }
+
+    #[test]
+    fn content_is_the_rational_gcd() {
+        assert_eq!(Number::ratio(1, 2).content(Number::ratio(1, 3)), Some(Number::ratio(1, 6)));
+        assert_eq!(Number::integer(4).content(Number::integer(-6)), Some(Number::integer(2)));
+    }
+
+    #[test]
+    fn prints_fractions_and_decimals() {
+        let shown = [(1, 2), (-1, 3), (3, 10), (1, 7), (3, 1000), (22, 13)]
+            .map(|(a, b)| Number::ratio(a, b).to_string());
+        assert_eq!(shown, ["1/2", "-1/3", "0.3", "1/7", "0.003", "22/13"]);
+    }
+}

@@ -1,0 +1,366 @@
+//! Text of an expression → syntax tree with spans.
+//!
+//! ```text
+//! sum     = product { ("+" | "-") product }
+//! product = unary { ("*" | "/") unary }
+//! unary   = "-" unary | power
+//! power   = atom [ "^" unary ]                       right-associative, tighter than a minus on its left
+//! atom    = number | name | name "'" | function "(" sum { "," sum } ")" | "(" sum ")"
+//! ```
+//! Sums and products are flat lists, so that their length costs no stack; everything that nests is bounded by
+//! [`MAX_DEPTH`]. Names are not resolved here: `pi` and `t` are names like any other.
+//!
+//! ```
+//! use pc_expr::parse::{AstKind, parse};
+//! let tree = parse("m/2*x'^2")?;
+//! assert!(matches!(tree.kind, AstKind::Product(factors) if factors.len() == 3));
+//! assert_eq!(parse("2 x").unwrap_err().to_string(), "expected an operator before `x`");
+//! # Ok::<(), pc_expr::parse::ParseError>(())
+//! ```
+
+use winnow::LocatingSlice;
+use winnow::Parser as _;
+use winnow::ascii::{digit0, digit1};
+use winnow::combinator::{alt, eof, opt};
+use winnow::error::EmptyError;
+use winnow::token::{any, one_of, take_while};
+
+mod error;
+mod vocabulary;
+
+pub use error::{ParseError, ParseErrorKind};
+pub use vocabulary::{FUNCTIONS, Function, is_name, nearest};
+use vocabulary::{OTHER_NAMES, continues_name, starts_name};
+
+/// Greatest nesting of parentheses, calls, exponents and unary minuses in one expression.
+pub const MAX_DEPTH: usize = 200;
+
+/// Byte range in the text of one expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+/// An expression as written, with its place in the text; parentheses around it belong to the span.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ast {
+    /// Where it stands.
+    pub span: Span,
+    /// What it is.
+    pub kind: AstKind,
+}
+
+/// The kinds of expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AstKind {
+    /// `1.5e-3`; finite, and not negative when it comes from [`parse`].
+    Number(f64),
+    /// `x`
+    Name(String),
+    /// `x'`, the velocity of the coordinate named here without the prime.
+    Velocity(String),
+    /// `d(expr)`, the total time derivative along the motion.
+    TotalDerivative(Box<Ast>),
+    /// `a + b - c`, at least two terms.
+    Sum(Vec<(Sign, Ast)>),
+    /// `a*b/c`, at least two factors, the first one [`Factor::Times`].
+    Product(Vec<(Factor, Ast)>),
+    /// `-a`
+    Negate(Box<Ast>),
+    /// `a^b`
+    Power(Box<Ast>, Box<Ast>),
+    /// A function of [`FUNCTIONS`], the span of its name, and as many arguments as it takes.
+    Call(String, Span, Vec<Ast>),
+}
+
+/// Sign of a term of a sum; the first one has [`Sign::Plus`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+}
+
+/// Side of the fraction bar on which a factor of a product stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Factor {
+    /// `*`
+    Times,
+    /// `/`
+    Over,
+}
+
+/// The syntax tree of one expression.
+///
+/// # Errors
+/// The first thing in the text that is not part of an expression, with its span.
+pub fn parse(text: &str) -> Result<Ast, ParseError> {
+    let mut parser = Parser {
+        text,
+        input: LocatingSlice::new(text),
+        token: Token::End,
+        span: Span { start: 0, end: 0 },
+        last: Span { start: 0, end: 0 },
+        depth: 0,
+    };
+    parser.advance();
+    if parser.token == Token::End {
+        return parser.fail(ParseErrorKind::Empty);
+    }
+    let tree = parser.sum()?;
+    match parser.token {
+        Token::End => Ok(tree),
+        Token::Symbol(')') => parser.fail(ParseErrorKind::Unmatched),
+        _ => parser.fail_after_operand(),
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Token<'i> {
+    Number(&'i str),
+    Name(&'i str),
+    Velocity(&'i str),
+    Symbol(char),
+    Unknown(char),
+    End,
+}
+
+type Input<'i> = LocatingSlice<&'i str>;
+type Lexed<T> = winnow::Result<T, EmptyError>;
+
+fn token<'i>(input: &mut Input<'i>) -> Lexed<(Token<'i>, std::ops::Range<usize>)> {
+    take_while(0.., [' ', '\t', '\r', '\n']).parse_next(input)?;
+    alt((
+        number.map(Token::Number),
+        (name, opt('\'')).map(|(name, prime)| match prime {
+            Some(_) => Token::Velocity(name),
+            None => Token::Name(name),
+        }),
+        one_of(['+', '-', '*', '/', '^', '(', ')', ',']).map(Token::Symbol),
+        any.map(Token::Unknown),
+        eof.value(Token::End),
+    ))
+    .with_span()
+    .parse_next(input)
+}
+
+fn number<'i>(input: &mut Input<'i>) -> Lexed<&'i str> {
+    let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
+    (mantissa, opt(exponent)).take().parse_next(input)
+}
+
+fn name<'i>(input: &mut Input<'i>) -> Lexed<&'i str> {
+    (one_of(starts_name), take_while(0.., continues_name)).take().parse_next(input)
+}
+
+struct Parser<'i> {
+    text: &'i str,
+    input: Input<'i>,
+    /// The next token and its place.
+    token: Token<'i>,
+    span: Span,
+    /// Place of the token before it.
+    last: Span,
+    depth: usize,
+}
+
+impl<'i> Parser<'i> {
+    fn advance(&mut self) {
+        self.last = self.span;
+        let end = self.text.len();
+        let (token, place) = token(&mut self.input).unwrap_or((Token::End, end..end));
+        self.token = token;
+        self.span = Span { start: place.start, end: place.end };
+    }
+
+    fn fail<T>(&self, kind: ParseErrorKind) -> Result<T, ParseError> {
+        Err(ParseError { span: self.span, kind })
+    }
+
+    /// The error for a token that cannot follow an operand.
+    fn fail_after_operand<T>(&self) -> Result<T, ParseError> {
+        match self.token {
+            Token::Unknown(character) => self.fail(ParseErrorKind::UnexpectedCharacter(character)),
+            Token::Symbol(',') => self.fail(ParseErrorKind::StrayComma),
+            _ => {
+                let left = match excerpt(self.text, self.last) {
+                    close if close == ")" => "(…)".into(),
+                    left => left,
+                };
+                let found = excerpt(self.text, self.span);
+                let right = if found == "(" { "(…)" } else { &found };
+                let product = format!("{left}*{right}");
+                self.fail(ParseErrorKind::ExpectedOperator { found, product })
+            }
+        }
+    }
+
+    fn sum(&mut self) -> Result<Ast, ParseError> {
+        let first = self.product()?;
+        let mut terms = Vec::new();
+        while let Token::Symbol(symbol @ ('+' | '-')) = self.token {
+            self.advance();
+            let sign = if symbol == '+' { Sign::Plus } else { Sign::Minus };
+            terms.push((sign, self.product()?));
+        }
+        Ok(chain(first, Sign::Plus, terms, AstKind::Sum))
+    }
+
+    fn product(&mut self) -> Result<Ast, ParseError> {
+        let first = self.unary()?;
+        let mut factors = Vec::new();
+        while let Token::Symbol(symbol @ ('*' | '/')) = self.token {
+            self.advance();
+            let factor = if symbol == '*' { Factor::Times } else { Factor::Over };
+            factors.push((factor, self.unary()?));
+        }
+        Ok(chain(first, Factor::Times, factors, AstKind::Product))
+    }
+
+    fn unary(&mut self) -> Result<Ast, ParseError> {
+        if self.token != Token::Symbol('-') {
+            return self.power();
+        }
+        let start = self.span.start;
+        let operand = self.nested(Self::unary)?;
+        Ok(Ast { span: Span { start, end: operand.span.end }, kind: AstKind::Negate(Box::new(operand)) })
+    }
+
+    fn power(&mut self) -> Result<Ast, ParseError> {
+        let base = self.atom()?;
+        if self.token != Token::Symbol('^') {
+            return Ok(base);
+        }
+        let exponent = self.nested(Self::unary)?;
+        let span = Span { start: base.span.start, end: exponent.span.end };
+        Ok(Ast { span, kind: AstKind::Power(Box::new(base), Box::new(exponent)) })
+    }
+
+    fn atom(&mut self) -> Result<Ast, ParseError> {
+        let span = self.span;
+        let kind = match self.token {
+            Token::Number(digits) => match digits.parse::<f64>() {
+                Ok(value) if value.is_finite() => AstKind::Number(value),
+                _ => return self.fail(ParseErrorKind::NumberOutOfRange),
+            },
+            Token::Velocity(name) => AstKind::Velocity(name.into()),
+            Token::Name(name) => {
+                self.advance();
+                return self.name_or_call(name, span);
+            }
+            Token::Symbol('(') => return self.parenthesis(),
+            Token::Unknown(character) => return self.fail(ParseErrorKind::UnexpectedCharacter(character)),
+            Token::Symbol(symbol) => {
+                let power = symbol == '*' && excerpt(self.text, self.last) == "*";
+                return self.fail(ParseErrorKind::ExpectedExpression { found: format!("`{symbol}`"), power });
+            }
+            Token::End => {
+                let found = "the end of the expression".into();
+                return self.fail(ParseErrorKind::ExpectedExpression { found, power: false });
+            }
+        };
+        self.advance();
+        Ok(Ast { span, kind })
+    }
+
+    fn parenthesis(&mut self) -> Result<Ast, ParseError> {
+        let open = self.span;
+        let inner = self.nested(Self::sum)?;
+        let end = self.close(open)?;
+        Ok(Ast { span: Span { start: open.start, end }, kind: inner.kind })
+    }
+
+    /// Steps over the `)` that belongs to the parenthesis at `open` and returns where it ends.
+    fn close(&mut self, open: Span) -> Result<usize, ParseError> {
+        match self.token {
+            Token::Symbol(')') => {
+                let end = self.span.end;
+                self.advance();
+                Ok(end)
+            }
+            Token::End => Err(ParseError { span: open, kind: ParseErrorKind::Unclosed }),
+            _ => self.fail_after_operand(),
+        }
+    }
+
+    /// What a name just stepped over stands for: a call when a parenthesis follows.
+    fn name_or_call(&mut self, name: &str, place: Span) -> Result<Ast, ParseError> {
+        let function = FUNCTIONS.iter().find(|function| function.name == name);
+        let open = self.span;
+        match (function, self.token) {
+            (Some(function), Token::Symbol('(')) => {
+                let mut arguments = self.nested(Self::arguments)?;
+                let span = Span { start: place.start, end: self.close(open)? };
+                let found = arguments.len();
+                if found != function.arguments {
+                    let kind = ParseErrorKind::ArgumentCount { function: *function, found };
+                    return Err(ParseError { span, kind });
+                }
+                let kind = match (name, arguments.pop()) {
+                    ("d", Some(argument)) => AstKind::TotalDerivative(Box::new(argument)),
+                    (_, last) => {
+                        arguments.extend(last);
+                        AstKind::Call(name.into(), place, arguments)
+                    }
+                };
+                Ok(Ast { span, kind })
+            }
+            (Some(function), _) => {
+                Err(ParseError { span: place, kind: ParseErrorKind::NotCalled(*function) })
+            }
+            (None, Token::Symbol('(')) => {
+                let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
+                let nearest = other.or_else(|| nearest(name, FUNCTIONS.iter().map(|function| function.name)));
+                let name = excerpt(self.text, place);
+                Err(ParseError { span: place, kind: ParseErrorKind::UnknownFunction { name, nearest } })
+            }
+            (None, _) => Ok(Ast { span: place, kind: AstKind::Name(name.into()) }),
+        }
+    }
+
+    fn arguments(&mut self) -> Result<Vec<Ast>, ParseError> {
+        if self.token == Token::Symbol(')') {
+            return Ok(Vec::new());
+        }
+        let mut arguments = vec![self.sum()?];
+        while self.token == Token::Symbol(',') {
+            self.advance();
+            arguments.push(self.sum()?);
+        }
+        Ok(arguments)
+    }
+
+    /// Steps over the token that opens a level and parses what is inside.
+    fn nested<T>(&mut self, inside: fn(&mut Self) -> Result<T, ParseError>) -> Result<T, ParseError> {
+        if self.depth == MAX_DEPTH {
+            return self.fail(ParseErrorKind::TooDeep);
+        }
+        self.advance();
+        self.depth += 1;
+        let result = inside(self);
+        self.depth -= 1;
+        result
+    }
+}
+
+/// `first` alone, or the list that it begins.
+fn chain<S>(first: Ast, sign: S, rest: Vec<(S, Ast)>, kind: fn(Vec<(S, Ast)>) -> AstKind) -> Ast {
+    let Some((_, last)) = rest.last() else { return first };
+    let span = Span { start: first.span.start, end: last.span.end };
+    let list = std::iter::once((sign, first)).chain(rest).collect();
+    Ast { span, kind: kind(list) }
+}
+
+/// The text at `span`, cut to a length that fits a message.
+fn excerpt(text: &str, span: Span) -> String {
+    let whole = text.get(span.start..span.end).unwrap_or_default();
+    match whole.char_indices().nth(40) {
+        Some((cut, _)) => format!("{}…", &whole[..cut]),
+        None => whole.into(),
+    }
+}

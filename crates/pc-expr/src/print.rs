@@ -1,0 +1,215 @@
+//! Expressions as text.
+
+use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::expr::Expr;
+use crate::number::Number;
+
+/// How an expression is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// The expression language, which the parser reads back.
+    Text,
+}
+
+/// Sub-expressions nested deeper than this, or longer than `LONG` when written out, are abbreviated to `…`.
+const DEEP: usize = 60;
+const LONG: u32 = 20_000;
+
+/// How tightly a piece of text binds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Power,
+    Atom,
+}
+
+struct Piece {
+    text: String,
+    binding: Binding,
+}
+
+impl Piece {
+    fn atom(text: impl Into<String>) -> Piece {
+        Piece { text: text.into(), binding: Binding::Atom }
+    }
+
+    fn at_least(self, binding: Binding) -> String {
+        if self.binding >= binding { self.text } else { format!("({})", self.text) }
+    }
+}
+
+pub(crate) fn print(expr: Expr<'_>, style: Style) -> String {
+    let Style::Text = style;
+    match (expr.graph(), expr.atom()) {
+        (_, Atom::Constant(c)) => number(c).text,
+        (None, Atom::Node(_)) => "?".to_owned(),
+        (Some(graph), Atom::Node(id)) => graph.with(|dag| piece(dag, id, 0).text),
+    }
+}
+
+fn number(c: Number) -> Piece {
+    let text = if c == Number::UNDEFINED { "undefined".to_owned() } else { c.to_string() };
+    let binding = if text.starts_with('-') {
+        Binding::Sum
+    } else if text.contains('/') {
+        Binding::Product
+    } else {
+        Binding::Atom
+    };
+    Piece { text, binding }
+}
+
+fn piece(dag: &Dag, id: NodeId, depth: usize) -> Piece {
+    if depth > DEEP || (depth > 0 && dag.cost(id) > LONG) {
+        return Piece::atom("…");
+    }
+    match dag.node(id) {
+        Node::Constant(c) => number(c),
+        Node::Symbol(index) => Piece::atom(dag.symbol_name(index)),
+        Node::Call { function, args } => {
+            let args: Vec<String> =
+                Dag::args(function, &args).iter().map(|&arg| piece(dag, arg, depth + 1).text).collect();
+            match function {
+                crate::Function::Pow => {
+                    let power = format!("({})^({})", args[0], args[1]);
+                    Piece { text: power, binding: Binding::Power }
+                }
+                _ => Piece::atom(format!("{}({})", function.name(), args.join(", "))),
+            }
+        }
+        Node::Product { .. } => monomial(dag, Number::ONE, id, depth),
+        Node::Sum { constant, terms } => {
+            let mut signed = Vec::new();
+            signed_terms(dag, Number::ONE, constant, dag.terms(terms), depth, &mut signed);
+            join(signed)
+        }
+    }
+}
+
+/// The terms of q·(c + Σ…), each with its sign taken out; a scaled sum in brackets stays one term.
+fn signed_terms(
+    dag: &Dag,
+    q: Number,
+    constant: Number,
+    terms: &[(NodeId, Number)],
+    depth: usize,
+    out: &mut Vec<(bool, Piece)>,
+) {
+    let mut terms: Vec<(NodeId, Number)> = terms.to_vec();
+    terms.sort_by_cached_key(|&(node, _)| order_key(dag, node));
+    for (node, coefficient) in terms {
+        let coefficient = coefficient * q;
+        match dag.node(node) {
+            // −(a − b) is b − a
+            Node::Sum { constant, terms } if (-coefficient).is_one() && depth <= DEEP => {
+                signed_terms(dag, Number::MINUS_ONE, constant, dag.terms(terms), depth + 1, out);
+            }
+            _ => out.push((coefficient.is_negative(), monomial(dag, coefficient.abs(), node, depth))),
+        }
+    }
+    let constant = constant * q;
+    if !constant.is_zero() {
+        out.push((constant.is_negative(), number(constant.abs())));
+    }
+}
+
+fn join(mut signed: Vec<(bool, Piece)>) -> Piece {
+    if let Some(first_positive) = signed.iter().position(|(negative, _)| !negative) {
+        signed[..=first_positive].rotate_right(1);
+    }
+    let alone = signed.len() == 1;
+    let mut text = String::new();
+    let mut binding = Binding::Sum;
+    for (i, (negative, piece)) in signed.into_iter().enumerate() {
+        if alone && !negative {
+            binding = piece.binding;
+        }
+        match (i, negative) {
+            (0, false) => {}
+            (0, true) => text.push('-'),
+            (_, false) => text.push_str(" + "),
+            (_, true) => text.push_str(" - "),
+        }
+        text.push_str(&if alone && !negative { piece.text } else { piece.at_least(Binding::Product) });
+    }
+    Piece { text, binding }
+}
+
+/// q·n as a product of factors over a product of divisors.
+fn monomial(dag: &Dag, q: Number, node: NodeId, depth: usize) -> Piece {
+    let single = [(node, 1)];
+    let mut factors = match dag.node(node) {
+        Node::Product { factors } => dag.factors(factors).to_vec(),
+        _ => single.to_vec(),
+    };
+    factors.sort_by_cached_key(|&(factor, _)| factor_key(dag, factor));
+    let power = |factor: NodeId, e: i32| {
+        let base = piece(dag, factor, depth + 1);
+        if e == 1 {
+            base
+        } else {
+            Piece { text: format!("{}^{e}", base.at_least(Binding::Atom)), binding: Binding::Power }
+        }
+    };
+    let collect = |sign: i32| -> Vec<Piece> {
+        factors
+            .iter()
+            .filter(|(_, e)| e.signum() == sign)
+            .map(|&(factor, e)| power(factor, e.abs()))
+            .collect()
+    };
+    let (mut above, below) = (collect(1), collect(-1));
+    if !q.is_one() || above.is_empty() {
+        above.insert(0, number(q));
+    }
+    if above.len() == 1 && below.is_empty() {
+        return above.remove(0);
+    }
+    let product = |pieces: Vec<Piece>| {
+        pieces.into_iter().map(|p| p.at_least(Binding::Product)).collect::<Vec<String>>().join("*")
+    };
+    let mut text = product(above);
+    match below.len() {
+        0 => {}
+        1 => {
+            text.push('/');
+            text.extend(below.into_iter().map(|p| p.at_least(Binding::Power)));
+        }
+        _ => text.push_str(&format!("/({})", product(below))),
+    }
+    Piece { text, binding: Binding::Product }
+}
+
+/// Symbols in the order of their making, then calls, then sums.
+fn factor_key(dag: &Dag, id: NodeId) -> (u8, u32) {
+    match dag.node(id) {
+        Node::Constant(_) => (0, 0),
+        Node::Symbol(index) => (1, index),
+        Node::Call { .. } => (2, id.0),
+        Node::Product { .. } => (3, id.0),
+        Node::Sum { .. } => (4, id.0),
+    }
+}
+
+/// Terms are ordered as their lists of factors are.
+fn order_key(dag: &Dag, id: NodeId) -> Vec<(u8, u32, i32)> {
+    match dag.node(id) {
+        Node::Product { factors } => {
+            let mut key: Vec<(u8, u32, i32)> = dag
+                .factors(factors)
+                .iter()
+                .map(|&(factor, e)| {
+                    let (class, index) = factor_key(dag, factor);
+                    (class, index, -e)
+                })
+                .collect();
+            key.sort_unstable();
+            key
+        }
+        _ => {
+            let (class, index) = factor_key(dag, id);
+            vec![(class, index, -1)]
+        }
+    }
+}
