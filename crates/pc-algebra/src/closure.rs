@@ -1,0 +1,215 @@
+//! Finding and checking the structure coefficients of a frame (6), and its closure.
+
+use nalgebra::{DMatrix, DVector};
+use pc_expr::{Expr, Number};
+
+use crate::error::AlgebraError;
+use crate::frame::Frame;
+use crate::inverse::inverse;
+use crate::matrix::Matrix;
+use crate::sample::Neighbourhood;
+use crate::structure::StructureCoefficients;
+
+/// Residuals of closure below this, relative to the commutator, are rounding: a wrong bracket is off by order one.
+const ROUNDING: f64 = 1e-9;
+/// Points at which an identity that the graph cannot decide is tried numerically.
+const TRIALS: usize = 8;
+
+impl<'g> Frame<'g> {
+    /// The structure coefficients of the frame (6), found from b and b_0 alone.
+    ///
+    /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r, X_s]. Where
+    /// rank b < k that would lose the part of c along ker b, so constant coefficients are looked for that hold at
+    /// many points at once. Either way the result must reproduce every commutator.
+    ///
+    /// `near` says where the expressions of the frame are regular.
+    ///
+    /// # Errors
+    /// [`AlgebraError::NotClosed`] and [`AlgebraError::RankDeficient`], both naming the pair (r, s);
+    /// [`AlgebraError::AlgebraNeeded`] if there are operators but no coordinates.
+    pub fn structure_coefficients(
+        &self,
+        near: &Neighbourhood<'g>,
+    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        let k = self.operators();
+        let rank = self.rank();
+        if rank == 0 && k > 0 {
+            return Err(AlgebraError::AlgebraNeeded);
+        }
+        if rank < k {
+            return self.constant_coefficients(rank, near);
+        }
+        let mut left_inverse = None;
+        StructureCoefficients::from_pairs(k, |r, s| {
+            let commutator = self.commutator(r, s);
+            if commutator.iter().all(|x| x.is_zero()) {
+                return Ok(vec![Expr::ZERO; k]);
+            }
+            let solve = left_inverse.get_or_insert_with(|| self.left_inverse());
+            let c: Vec<Expr<'g>> = (0..k)
+                .map(|m| self.graph().dot(solve.row(m).iter().copied(), commutator.iter().copied()))
+                .collect();
+            match self.residual(&commutator, &c, near) {
+                residual if residual > ROUNDING => Err(AlgebraError::NotClosed { pair: (r, s), residual }),
+                _ => Ok(c),
+            }
+        })
+    }
+
+    /// Checks given structure coefficients against the commutators of the frame.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Contradiction`] naming the pair; [`AlgebraError::Dimension`].
+    pub fn check(
+        &self,
+        structure: &StructureCoefficients<'g>,
+        near: &Neighbourhood<'g>,
+    ) -> Result<(), AlgebraError> {
+        let k = self.operators();
+        if structure.operators() != k {
+            return Err(AlgebraError::Dimension { algebra: structure.operators(), operators: k });
+        }
+        for (r, s) in pairs(k) {
+            let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
+            let residual = self.residual(&self.commutator(r, s), &c, near);
+            if residual > ROUNDING {
+                return Err(AlgebraError::Contradiction { pair: (r, s), residual });
+            }
+        }
+        Ok(())
+    }
+
+    /// The largest residual of [X_r, X_s] = c_rs^m X_m relative to 1 + |[X_r, X_s]|, over all pairs.
+    pub fn closure_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
+        let k = self.operators();
+        pairs(k)
+            .map(|(r, s)| {
+                let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
+                self.residual(&self.commutator(r, s), &c, near)
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators 0..k,
+    /// with the triple it belongs to.
+    pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
+        let k = self.operators();
+        let mut worst = 0.0f64;
+        for r in 0..=k {
+            for s in r + 1..=k {
+                for u in s + 1..=k {
+                    let cycles = [(r, s, u), (s, u, r), (u, r, s)];
+                    let defects: Vec<Expr<'g>> = (1..=k)
+                        .map(|m| {
+                            self.graph().sum(cycles.iter().map(|&(r, s, u)| {
+                                let transport = self.apply(u, &[structure.get(r, s, m)])[0];
+                                let nested = self
+                                    .graph()
+                                    .sum((1..=k).map(|p| structure.get(r, s, p) * structure.get(p, u, m)));
+                                nested - transport
+                            }))
+                        })
+                        .collect();
+                    worst = worst.max(self.largest(&defects, near));
+                }
+            }
+        }
+        worst
+    }
+
+    /// (bᵀb)⁻¹bᵀ, or b⁻¹ where b is square.
+    fn left_inverse(&self) -> Matrix<Expr<'g>> {
+        let (graph, b, k) = (self.graph(), self.b(), self.operators());
+        let gram_or_b = if b.rows() == k {
+            b.clone()
+        } else {
+            Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), b.column(j)))
+        };
+        let undefined = || Matrix::from_fn(k, k, |_, _| Expr::from(Number::UNDEFINED));
+        let inverted = inverse(graph, &gram_or_b).unwrap_or_else(undefined); // rank k excludes this
+        if b.rows() == k {
+            return inverted;
+        }
+        Matrix::from_fn(k, b.rows(), |m, i| {
+            graph.dot(inverted.row(m).iter().copied(), b.row(i).iter().copied())
+        })
+    }
+
+    /// Largest |[X_r, X_s] − c^m X_m| relative to 1 + |[X_r, X_s]|.
+    fn residual(&self, commutator: &[Expr<'g>], c: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
+        let graph = self.graph();
+        let differences: Vec<Expr<'g>> = commutator
+            .iter()
+            .enumerate()
+            .map(|(i, &x)| x - graph.dot(self.b().row(i).iter().copied(), c.iter().copied()))
+            .collect();
+        if differences.iter().all(|x| x.is_zero()) {
+            return 0.0;
+        }
+        let both: Vec<Expr<'g>> = differences.iter().chain(commutator).copied().collect();
+        let size = |values: &[f64]| values.iter().fold(0.0f64, |size, v| size.max(v.abs()));
+        let samples = near.samples(graph, &both, TRIALS);
+        if samples.is_empty() {
+            return f64::INFINITY;
+        }
+        let n = commutator.len();
+        samples.iter().map(|values| size(&values[..n]) / (1.0 + size(&values[n..]))).fold(0.0, f64::max)
+    }
+
+    fn largest(&self, expressions: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
+        if expressions.iter().all(|x| x.is_zero()) {
+            return 0.0;
+        }
+        let samples = near.samples(self.graph(), expressions, TRIALS);
+        samples.iter().flatten().fold(0.0, |worst, v| worst.max(v.abs()))
+    }
+
+    /// Constant c with b c_rs = [X_r, X_s]: one linear system over many points, rounded to rationals and then
+    /// proved exactly.
+    fn constant_coefficients(
+        &self,
+        rank: usize,
+        near: &Neighbourhood<'g>,
+    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        let k = self.operators();
+        StructureCoefficients::from_pairs(k, |r, s| {
+            let commutator = self.commutator(r, s);
+            let refusal = AlgebraError::RankDeficient { rank, operators: k, pair: (r, s) };
+            if commutator.iter().all(|x| x.is_zero()) {
+                return Ok(vec![Expr::ZERO; k]);
+            }
+            let c = self.fit_constants(&commutator, near).ok_or_else(|| refusal.clone())?;
+            if self.residual(&commutator, &c, near) > ROUNDING { Err(refusal) } else { Ok(c) }
+        })
+    }
+
+    fn fit_constants(&self, commutator: &[Expr<'g>], near: &Neighbourhood<'g>) -> Option<Vec<Expr<'g>>> {
+        let (n, k) = (self.b().rows(), self.operators());
+        let entries: Vec<Expr<'g>> = self.b().entries().iter().chain(commutator).copied().collect();
+        let samples = near.samples(self.graph(), &entries, 4 * (k + 1));
+        let rows = samples.len() * n;
+        let matrix = DMatrix::from_fn(rows, k, |row, m| samples[row / n][row % n * k + m]);
+        let right = DVector::from_fn(rows, |row, _| samples[row / n][n * k + row % n]);
+        let svd = matrix.svd(true, true);
+        let largest = svd.singular_values.iter().copied().fold(0.0, f64::max);
+        if svd.rank(1e-10 * largest) < k {
+            return None; // dependent over the constants too: c is not unique
+        }
+        let solution = svd.solve(&right, 0.0).ok()?;
+        solution.iter().map(|&value| nearest_rational(value).map(Expr::from)).collect()
+    }
+}
+
+/// The pairs r < s of 0..=k.
+fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..=k).flat_map(move |r| (r + 1..=k).map(move |s| (r, s)))
+}
+
+/// The rational with a denominator up to 64 that equals `value` to ten digits, if there is one.
+fn nearest_rational(value: f64) -> Option<Number> {
+    (1..=64i64).find_map(|den| {
+        let num = (value * den as f64).round();
+        ((num / den as f64 - value).abs() < 1e-10 * (1.0 + value.abs()))
+            .then(|| Number::ratio(num as i64, den))
+    })
+}

@@ -1,0 +1,186 @@
+//! Frames of operators: ẋ = b η + b_0 (3), X_s = b_is ∂/∂x_i (4).
+
+use pc_expr::{Expr, Graph};
+
+use crate::error::AlgebraError;
+use crate::inverse::inverse;
+use crate::matrix::Matrix;
+
+/// A frame of k operators on a space of n coordinates and time.
+///
+/// X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i and X_s f = b_is ∂f/∂x_i for s = 1..k; b is n × k, b_0 has length n, both may depend
+/// on t and x.
+#[derive(Clone, Debug)]
+pub struct Frame<'g> {
+    graph: &'g Graph,
+    time: Expr<'g>,
+    coordinates: Vec<Expr<'g>>,
+    b: Matrix<Expr<'g>>,
+    b0: Vec<Expr<'g>>,
+}
+
+impl<'g> Frame<'g> {
+    /// The frame with matrix b (n × k) and drift b_0 (length n).
+    ///
+    /// # Errors
+    /// [`AlgebraError::Shape`].
+    pub fn new(
+        graph: &'g Graph,
+        time: Expr<'g>,
+        coordinates: Vec<Expr<'g>>,
+        b: Matrix<Expr<'g>>,
+        b0: Vec<Expr<'g>>,
+    ) -> Result<Frame<'g>, AlgebraError> {
+        let n = coordinates.len();
+        shape("the matrix b", b.rows(), n)?;
+        shape("the drift b_0", b0.len(), n)?;
+        Ok(Frame { graph, time, coordinates, b, b0 })
+    }
+
+    /// The frame of ẋ = `velocities`, expressions affine in the symbols `eta` (3).
+    ///
+    /// # Errors
+    /// [`AlgebraError::Shape`]; [`AlgebraError::NotAffine`] naming the coordinate.
+    pub fn from_velocities(
+        graph: &'g Graph,
+        time: Expr<'g>,
+        coordinates: Vec<Expr<'g>>,
+        eta: &[Expr<'g>],
+        velocities: &[Expr<'g>],
+    ) -> Result<Frame<'g>, AlgebraError> {
+        shape("the list of velocities", velocities.len(), coordinates.len())?;
+        let (b, b0) = affine_parts(graph, eta, velocities).map_err(|row| AlgebraError::NotAffine {
+            coordinate: coordinates[row].to_string(),
+            velocity: velocities[row].to_string(),
+        })?;
+        Frame::new(graph, time, coordinates, b, b0)
+    }
+
+    /// The frame of quasi-velocities η = `definitions`, n expressions affine in the symbols `velocities` of ẋ (2):
+    /// η = a ẋ + a_0, b = a⁻¹, b_0 = −b a_0.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Shape`], [`AlgebraError::DefinitionNotAffine`], [`AlgebraError::SingularDefinitions`].
+    pub fn from_definitions(
+        graph: &'g Graph,
+        time: Expr<'g>,
+        coordinates: Vec<Expr<'g>>,
+        velocities: &[Expr<'g>],
+        definitions: &[Expr<'g>],
+    ) -> Result<Frame<'g>, AlgebraError> {
+        let n = coordinates.len();
+        shape("the list of velocity symbols", velocities.len(), n)?;
+        shape("the list of definitions", definitions.len(), n)?;
+        let (a, a0) = affine_parts(graph, velocities, definitions).map_err(|row| {
+            AlgebraError::DefinitionNotAffine { row: row + 1, definition: definitions[row].to_string() }
+        })?;
+        let b = inverse(graph, &a).ok_or(AlgebraError::SingularDefinitions)?;
+        let b0 = (0..n).map(|i| -graph.dot(b.row(i).iter().copied(), a0.iter().copied())).collect();
+        Frame::new(graph, time, coordinates, b, b0)
+    }
+
+    /// The coordinate frame η = ẋ, X_s = ∂/∂x_s.
+    pub fn coordinate(graph: &'g Graph, time: Expr<'g>, coordinates: Vec<Expr<'g>>) -> Frame<'g> {
+        let n = coordinates.len();
+        let b = Matrix::from_fn(n, n, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
+        Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n] }
+    }
+
+    /// The graph of all its expressions.
+    pub fn graph(&self) -> &'g Graph {
+        self.graph
+    }
+
+    /// The symbol of time.
+    pub fn time(&self) -> Expr<'g> {
+        self.time
+    }
+
+    /// The symbols x_1..x_n.
+    pub fn coordinates(&self) -> &[Expr<'g>] {
+        &self.coordinates
+    }
+
+    /// Number k of operators, time not counted.
+    pub fn operators(&self) -> usize {
+        self.b.columns()
+    }
+
+    /// The matrix b, n × k.
+    pub fn b(&self) -> &Matrix<Expr<'g>> {
+        &self.b
+    }
+
+    /// The drift b_0, length n.
+    pub fn b0(&self) -> &[Expr<'g>] {
+        &self.b0
+    }
+
+    /// ẋ = b η + b_0 (3); `eta` has length k.
+    pub fn velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        (0..self.coordinates.len())
+            .map(|i| {
+                let moving = self.b.row(i).iter().zip(eta).map(|(&b, &eta)| b * eta);
+                self.graph.sum(moving.chain([self.b0[i]]))
+            })
+            .collect()
+    }
+
+    /// X_s f for each f of `functions`, s = 0..k (4): the rates of change when ẋ_i = b_is (and ṫ = 1 for s = 0).
+    pub fn apply(&self, s: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let rates: Vec<(Expr<'g>, Expr<'g>)> = if s == 0 {
+            let drift = self.coordinates.iter().copied().zip(self.b0.iter().copied());
+            drift.chain([(self.time, Expr::ONE)]).collect()
+        } else {
+            self.coordinates.iter().copied().zip(self.b.column(s - 1)).collect()
+        };
+        self.graph.directional(functions, &rates)
+    }
+
+    /// X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
+    pub fn contract(&self, gradient: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        (0..self.operators()).map(|s| self.graph.dot(self.b.column(s), gradient.iter().copied())).collect()
+    }
+
+    /// The components [X_r, X_s]^i = X_r(b_is) − X_s(b_ir), i = 1..n, with r, s = 0..k and b_i0 the drift.
+    pub fn commutator(&self, r: usize, s: usize) -> Vec<Expr<'g>> {
+        let forth = self.apply(r, &self.operator(s));
+        let back = self.apply(s, &self.operator(r));
+        forth.into_iter().zip(back).map(|(f, b)| f - b).collect()
+    }
+
+    fn operator(&self, s: usize) -> Vec<Expr<'g>> {
+        if s == 0 { self.b0.clone() } else { self.b.column(s - 1).collect() }
+    }
+
+    /// Rank of b at almost all points.
+    pub fn rank(&self) -> usize {
+        self.graph.generic_rank(&self.b.to_rows())
+    }
+}
+
+fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AlgebraError> {
+    if found == expected { Ok(()) } else { Err(AlgebraError::Shape { what, found, expected }) }
+}
+
+/// Coefficients and constant part of expressions affine in `symbols`; otherwise the index of the first that is not.
+fn affine_parts<'g>(
+    graph: &'g Graph,
+    symbols: &[Expr<'g>],
+    expressions: &[Expr<'g>],
+) -> Result<(Matrix<Expr<'g>>, Vec<Expr<'g>>), usize> {
+    let rows: Vec<Vec<Expr<'g>>> = expressions.iter().map(|&e| graph.gradient(e, symbols)).collect();
+    for (row, coefficients) in rows.iter().enumerate() {
+        if coefficients.iter().any(|&c| symbols.iter().any(|&s| c.depends_on(s))) {
+            return Err(row);
+        }
+    }
+    let zero: Vec<_> = symbols.iter().map(|&s| (s, Expr::ZERO)).collect();
+    // A coefficient written with a quotient of the symbols may hide its independence of them only at zero.
+    let constants = graph.substitute(expressions, &zero);
+    let flat: Vec<Expr<'g>> = rows.concat();
+    let flat = graph.substitute(&flat, &zero);
+    let columns = symbols.len();
+    let matrix = Matrix::from_fn(rows.len(), columns, |i, j| flat[i * columns + j]);
+    Ok((matrix, constants))
+}

@@ -1,0 +1,115 @@
+//! Lie algebras given by structure constants.
+
+use pc_expr::Number;
+
+use crate::error::AlgebraError;
+
+/// A Lie algebra with basis X_1..X_k and exact structure constants: [X_r, X_s] = c_rs^m X_m (5).
+#[derive(Clone, Debug, PartialEq)]
+pub struct LieAlgebra {
+    dim: usize,
+    /// c_rs^m at (r·k + s)·k + m, from 0.
+    constants: Vec<Number>,
+}
+
+impl LieAlgebra {
+    /// The algebra with `c(r, s, m)` = c_rs^m; indices from 0 to `dim` − 1.
+    ///
+    /// # Errors
+    /// [`AlgebraError::NotSkew`] and [`AlgebraError::Jacobi`], naming the indices (from 1).
+    pub fn new(dim: usize, c: impl Fn(usize, usize, usize) -> Number) -> Result<LieAlgebra, AlgebraError> {
+        let algebra = LieAlgebra::from_constants(dim, c);
+        algebra.check_antisymmetry()?;
+        algebra.check_jacobi()?;
+        Ok(algebra)
+    }
+
+    /// The algebra with constants that are known to be those of one.
+    pub(crate) fn from_constants(dim: usize, c: impl Fn(usize, usize, usize) -> Number) -> LieAlgebra {
+        LieAlgebra { dim, constants: indices(dim).map(|(r, s, m)| c(r, s, m)).collect() }
+    }
+
+    /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), from 0; those of the
+    /// pairs (s, r) follow, and pairs that are not listed commute.
+    ///
+    /// # Errors
+    /// As [`new`](LieAlgebra::new), if the list contradicts itself.
+    pub fn from_brackets(
+        dim: usize,
+        brackets: &[(usize, usize, usize, Number)],
+    ) -> Result<LieAlgebra, AlgebraError> {
+        let listed = |r, s, m| {
+            brackets.iter().filter(|b| (b.0, b.1, b.2) == (r, s, m)).fold(Number::ZERO, |sum, b| sum + b.3)
+        };
+        let is_listed = |r, s| brackets.iter().any(|b| (b.0, b.1) == (r, s));
+        LieAlgebra::new(dim, |r, s, m| if is_listed(r, s) { listed(r, s, m) } else { -listed(s, r, m) })
+    }
+
+    /// The commutative algebra of the given dimension.
+    pub fn commutative(dim: usize) -> LieAlgebra {
+        LieAlgebra::from_constants(dim, |_, _, _| Number::ZERO)
+    }
+
+    /// Dimension k.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// c_rs^m, indices from 0.
+    pub fn constant(&self, r: usize, s: usize, m: usize) -> Number {
+        self.constants[(r * self.dim + s) * self.dim + m]
+    }
+
+    /// The bracket of two vectors, [u, v]^m = c_rs^m u_r v_s; all have length [`dim`](LieAlgebra::dim).
+    pub fn bracket(&self, u: &[f64], v: &[f64]) -> Vec<f64> {
+        let k = self.dim;
+        (0..k)
+            .map(|m| {
+                (0..k)
+                    .flat_map(|r| (0..k).map(move |s| (r, s)))
+                    .map(|(r, s)| self.constant(r, s, m).to_f64() * u[r] * v[s])
+                    .sum()
+            })
+            .collect()
+    }
+
+    fn check_antisymmetry(&self) -> Result<(), AlgebraError> {
+        let k = self.dim;
+        for (r, s, m) in indices(k) {
+            let (value, transposed) = (self.constant(r, s, m), self.constant(s, r, m));
+            if value != -transposed {
+                let [value, transposed] = [value, transposed].map(|c| c.to_string());
+                return Err(AlgebraError::NotSkew { r: r + 1, s: s + 1, m: m + 1, value, transposed });
+            }
+        }
+        Ok(())
+    }
+
+    /// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0
+    fn check_jacobi(&self) -> Result<(), AlgebraError> {
+        let k = self.dim;
+        let c = |r, s, m| self.constant(r, s, m);
+        for (r, s, u) in indices(k).filter(|&(r, s, u)| r < s && s < u) {
+            for m in 0..k {
+                let defect = (0..k).fold(Number::ZERO, |sum, p| {
+                    sum + c(r, s, p) * c(p, u, m) + c(s, u, p) * c(p, r, m) + c(u, r, p) * c(p, s, m)
+                });
+                let size = (0..k).fold(1.0f64, |size, p| size.max(c(r, s, p).to_f64().abs()));
+                // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
+                if defect.to_f64().abs() > 1e-12 * size * size {
+                    let defect = defect.to_string();
+                    return Err(AlgebraError::Jacobi {
+                        triple: (r + 1, s + 1, u + 1),
+                        component: m + 1,
+                        defect,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn indices(k: usize) -> impl Iterator<Item = (usize, usize, usize)> {
+    (0..k).flat_map(move |r| (0..k).flat_map(move |s| (0..k).map(move |m| (r, s, m))))
+}

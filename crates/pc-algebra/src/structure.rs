@@ -1,0 +1,119 @@
+//! Structure coefficients of a frame.
+
+use pc_expr::{Expr, Graph, Number};
+
+use crate::lie_algebra::LieAlgebra;
+
+/// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 = 0.
+#[derive(Clone, Debug)]
+pub struct StructureCoefficients<'g> {
+    operators: usize,
+    /// c_rs^m for r < s, at (r·(k+1) + s)·k + (m − 1).
+    upper: Vec<Expr<'g>>,
+}
+
+impl<'g> StructureCoefficients<'g> {
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for r < s, r from 0.
+    pub(crate) fn from_pairs<E>(
+        operators: usize,
+        mut c: impl FnMut(usize, usize) -> Result<Vec<Expr<'g>>, E>,
+    ) -> Result<StructureCoefficients<'g>, E> {
+        let mut upper = Vec::with_capacity((operators + 1) * (operators + 1) * operators);
+        for r in 0..=operators {
+            for s in 0..=operators {
+                if r < s {
+                    upper.extend(c(r, s)?);
+                } else {
+                    upper.extend((0..operators).map(|_| Expr::ZERO));
+                }
+            }
+        }
+        Ok(StructureCoefficients { operators, upper })
+    }
+
+    /// Number k of operators, time not counted.
+    pub fn operators(&self) -> usize {
+        self.operators
+    }
+
+    /// c_rs^m with r, s in 0..=k and m in 1..=k.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn get(&self, r: usize, s: usize, m: usize) -> Expr<'g> {
+        let k = self.operators;
+        let at = |r: usize, s: usize| self.upper[(r * (k + 1) + s) * k + m - 1];
+        match r.cmp(&s) {
+            std::cmp::Ordering::Less => at(r, s),
+            std::cmp::Ordering::Equal => Expr::ZERO,
+            std::cmp::Ordering::Greater => -at(s, r),
+        }
+    }
+
+    /// The coefficients that are not 0, as (r, s, m, c_rs^m) with r < s.
+    pub fn nonzero(&self) -> impl Iterator<Item = (usize, usize, usize, Expr<'g>)> + '_ {
+        let k = self.operators;
+        (0..=k)
+            .flat_map(move |r| (r + 1..=k).flat_map(move |s| (1..=k).map(move |m| (r, s, m))))
+            .map(|(r, s, m)| (r, s, m, self.get(r, s, m)))
+            .filter(|(.., c)| !c.is_zero())
+    }
+
+    /// Whether all are constants: then the X_s form a Lie algebra.
+    pub fn are_constant(&self) -> bool {
+        self.upper.iter().all(|c| c.constant().is_some())
+    }
+
+    /// The algebra of X_1..X_k, if its coefficients are constant.
+    pub fn lie_algebra(&self) -> Option<LieAlgebra> {
+        let k = self.operators;
+        let mut constants = Vec::with_capacity(k * k * k);
+        for r in 1..=k {
+            for s in 1..=k {
+                for m in 1..=k {
+                    constants.push(self.get(r, s, m).constant()?);
+                }
+            }
+        }
+        Some(LieAlgebra::from_constants(k, |r, s, m| constants[(r * k + s) * k + m]))
+    }
+
+    /// v_s = (c_rs^m η_r + c_0s^m) p_m for s = 1..k, the terms that brackets give the equations (9).
+    ///
+    /// `eta` and `p` have length k.
+    pub fn gyroscopic(&self, graph: &'g Graph, eta: &[Expr<'g>], p: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let k = self.operators;
+        let mut terms: Vec<Vec<Expr<'g>>> = vec![Vec::new(); k];
+        for (r, s, m, c) in self.nonzero() {
+            let momentum = p[m - 1];
+            if r == 0 {
+                terms[s - 1].push(c * momentum);
+            } else {
+                terms[s - 1].push(c * eta[r - 1] * momentum);
+                terms[r - 1].push(-(c * eta[s - 1] * momentum)); // c_sr = −c_rs
+            }
+        }
+        terms.into_iter().map(|v| graph.sum(v)).collect()
+    }
+}
+
+impl LieAlgebra {
+    /// The structure coefficients of a stationary frame with this algebra (all c_0s = 0).
+    pub fn structure_coefficients<'g>(&self) -> StructureCoefficients<'g> {
+        self.with_time(|_, _| Number::ZERO)
+    }
+
+    /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
+    pub fn with_time<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
+        let k = self.dim();
+        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, std::convert::Infallible> {
+            Ok((0..k)
+                .map(|m| if r == 0 { drift(s - 1, m) } else { self.constant(r - 1, s - 1, m) }.into())
+                .collect())
+        };
+        match StructureCoefficients::from_pairs(k, pair) {
+            Ok(structure) => structure,
+            Err(never) => match never {},
+        }
+    }
+}
