@@ -1,0 +1,39 @@
+//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion.
+//!
+//!   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s   (9)
+//!
+//! Conventions are those of [`pc_algebra`]: ẋ = b η + b_0 (3), [X_r, X_s] = c_rs^m X_m (5), L = T + U with U minus
+//! the potential energy. Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994).
+//!
+//! ```
+//! use pc_mech::{Graph, LieAlgebra, System};
+//!
+//! // The heavy top in Poisson's variables: γ the vertical in body axes, ω the body angular velocity.
+//! let graph = Graph::new();
+//! let [a, c, mgl] = graph.symbols(["A", "C", "mgl"]);
+//! let top = System::builder(&graph)
+//!     .parameter(a, 1.0).parameter(c, 0.5).parameter(mgl, 1.0)
+//!     .coordinates(["γ1", "γ2", "γ3"])
+//!     .quasi_velocities(["ω1", "ω2", "ω3"])
+//!     .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
+//!     .algebra(&LieAlgebra::so3())
+//!     .lagrangian(|_, g, w| (a*(w[0].square() + w[1].square()) + c*w[2].square())/2.0 - mgl*g[2])
+//!     .build()?;
+//! let equations = top.poincare()?;
+//! assert_eq!(equations.right_hand_side()[2], 0.0.into());
+//! let motion = equations.compile()?; // a `VectorField`, to be given to any integrator
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+
+mod error;
+mod ldl;
+mod motion;
+mod poincare;
+mod system;
+
+pub use error::MechError;
+pub use motion::Motion;
+pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
+pub use pc_expr::{Expr, ExprError, Folding, Graph, Number, VectorField};
+pub use poincare::Equations;
+pub use system::{System, SystemBuilder};

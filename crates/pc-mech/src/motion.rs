@@ -1,0 +1,188 @@
+//! Compiled equations of motion: a vector field with its Jacobian, and the quantities watched along it.
+
+use std::sync::Arc;
+
+use pc_expr::{Expr, ExprError, Failure, Inputs, Interpreter, Kernel, Program, VectorField};
+
+use crate::error::MechError;
+use crate::ldl::Ldl;
+use crate::poincare::Equations;
+
+/// A pivot this small against the largest diagonal entry of M is rounding.
+const VANISHING_PIVOT: f64 = 1e-14;
+
+/// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
+pub struct Motion {
+    /// n coordinates, then k quasi-velocities.
+    names: Vec<String>,
+    coordinates: usize,
+    parameters: Vec<f64>,
+    /// Outputs: ẋ, η̇, the pivots D of M, the diagonal of M.
+    rhs: Interpreter,
+    jacobian: Interpreter,
+    observables: Interpreter,
+    observable_names: Vec<String>,
+    outputs: Vec<f64>,
+}
+
+impl<'g> Equations<'g> {
+    /// Compiles the equations, their Jacobian and the observables; the energy is the last of these.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
+    pub fn compile(&self) -> Result<Motion, MechError> {
+        let system = &self.system;
+        let graph = system.graph();
+        let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
+        let state: Vec<Expr<'g>> = x.iter().chain(eta).copied().collect();
+        let inputs = Inputs {
+            time: Some(system.frame.time()),
+            state: state.clone(),
+            parameters: system.parameters.iter().map(|&(symbol, _)| symbol).collect(),
+        };
+        let compile = |outputs: &[Expr<'g>]| -> Result<Interpreter, ExprError> {
+            Ok(Interpreter::new(Arc::new(Program::new(graph, &inputs, outputs)?)))
+        };
+        let ldl = Ldl::of(graph, &self.mass);
+        let accelerations = ldl.solve(&self.right);
+        let mut outputs = self.velocities.clone();
+        outputs.extend(&accelerations);
+        outputs.extend(ldl.pivots());
+        outputs.extend((0..eta.len()).map(|s| self.mass[(s, s)]));
+
+        let observed = system.observables.iter().map(|&(_, value)| value).chain([self.energy]);
+        let observed: Vec<Expr<'g>> = observed.collect();
+        let names = system.observables.iter().map(|(name, _)| name.clone());
+
+        let rhs = compile(&outputs)?;
+        Ok(Motion {
+            names: state.iter().map(Expr::to_string).collect(),
+            coordinates: x.len(),
+            parameters: system.parameters.iter().map(|&(_, value)| value).collect(),
+            outputs: vec![0.0; rhs.program().outputs_len()],
+            rhs,
+            jacobian: compile(&self.jacobian(&ldl, &accelerations))?,
+            observables: compile(&observed)?,
+            observable_names: names.chain(["energy".to_owned()]).collect(),
+        })
+    }
+
+    /// ∂(ẋ, η̇)/∂(x, η), column after column. No inverse is differentiated: with F = r − M a at fixed a = η̇,
+    /// ∂η̇/∂y = M⁻¹ ∂F/∂y.
+    fn jacobian(&self, ldl: &Ldl<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let graph = self.system.graph();
+        let eta = &self.system.quasi_velocities;
+        let state: Vec<Expr<'g>> = self.system.frame.coordinates().iter().chain(eta).copied().collect();
+        let fixed: Vec<Expr<'g>> = eta.iter().map(|eta| graph.symbol(&format!("{eta}'"))).collect();
+        let balance: Vec<Expr<'g>> = (0..eta.len())
+            .map(|s| self.right[s] - graph.dot(self.mass.row(s).iter().copied(), fixed.iter().copied()))
+            .collect();
+        let rows: Vec<Expr<'g>> = self.velocities.iter().chain(&balance).copied().collect();
+        let values: Vec<_> = fixed.into_iter().zip(accelerations.iter().copied()).collect();
+        let mut columns = Vec::with_capacity(rows.len() * state.len());
+        for &y in &state {
+            let column = graph.directional(&rows, &[(y, Expr::ONE)]);
+            let (velocity, balance) = column.split_at(self.velocities.len());
+            columns.extend(velocity);
+            columns.extend(ldl.solve(&graph.substitute(balance, &values)));
+        }
+        columns
+    }
+}
+
+impl Motion {
+    /// Names of the components of the state: coordinates, then quasi-velocities.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Number n of coordinates, which come first in the state.
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// The values of the parameters, in the order of declaration.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The values of the parameters, to be changed.
+    pub fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.parameters
+    }
+
+    /// Names of the observables; the last is `energy`.
+    pub fn observable_names(&self) -> &[String] {
+        &self.observable_names
+    }
+
+    /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names).
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state.
+    pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        let mut values = vec![0.0; self.observable_names.len()];
+        self.observables.eval(t, y, &self.parameters, &mut values);
+        values
+    }
+
+    /// Operations of one evaluation of the right-hand side.
+    pub fn operations(&self) -> usize {
+        self.rhs.program().operations()
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let (motion, factors) = self.outputs.split_at(self.names.len());
+        let (pivots, diagonal) = factors.split_at(factors.len() / 2);
+        let scale = diagonal.iter().fold(0.0f64, |scale, m| scale.max(m.abs()));
+        if let Some(s) = pivots.iter().position(|d| d.abs() <= VANISHING_PIVOT * scale) {
+            return Err(Failure::recoverable(MechError::SingularMassMatrix {
+                quasi_velocity: self.names[self.coordinates + s].clone(),
+                pivot: pivots[s],
+                t,
+                state: self.names.iter().cloned().zip(y.iter().copied()).collect(),
+            }));
+        }
+        if motion.iter().all(|v| v.is_finite()) {
+            return Ok(());
+        }
+        let culprit = self.rhs.diagnose(t, y, &self.parameters);
+        match culprit {
+            Some(error) => Err(Failure::recoverable(MechError::from(error))),
+            None => Ok(()),
+        }
+    }
+}
+
+impl VectorField for Motion {
+    fn dim(&self) -> usize {
+        self.names.len()
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.rhs.eval(t, y, &self.parameters, &mut self.outputs);
+        self.check(t, y)?;
+        ydot.copy_from_slice(&self.outputs[..y.len()]);
+        Ok(())
+    }
+
+    fn has_jacobian(&self) -> bool {
+        true
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.jacobian.eval(t, y, &self.parameters, jacobian);
+        if jacobian.iter().all(|v| v.is_finite()) {
+            return Ok(());
+        }
+        match self.jacobian.diagnose(t, y, &self.parameters) {
+            Some(error) => Err(Failure::recoverable(MechError::from(error))),
+            None => Ok(()),
+        }
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
+    }
+}

@@ -1,0 +1,268 @@
+//! A mechanical system: frame, Lagrangian, forces, and what is watched of its motion.
+
+use pc_algebra::{AlgebraError, Frame, LieAlgebra, Neighbourhood, StructureCoefficients};
+use pc_expr::{Expr, Graph};
+
+use crate::error::MechError;
+
+/// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
+///
+/// Built with [`System::builder`]. The library is unit-agnostic: any consistent units will do.
+#[derive(Clone, Debug)]
+pub struct System<'g> {
+    pub(crate) frame: Frame<'g>,
+    pub(crate) structure: StructureCoefficients<'g>,
+    pub(crate) quasi_velocities: Vec<Expr<'g>>,
+    pub(crate) parameters: Vec<(Expr<'g>, f64)>,
+    pub(crate) lagrangian: Expr<'g>,
+    pub(crate) forces: Vec<Expr<'g>>,
+    pub(crate) observables: Vec<(String, Expr<'g>)>,
+}
+
+impl<'g> System<'g> {
+    /// Starts the description of a system whose expressions live in `graph`.
+    pub fn builder(graph: &'g Graph) -> SystemBuilder<'g> {
+        SystemBuilder::new(graph)
+    }
+
+    /// The graph of all its expressions.
+    pub fn graph(&self) -> &'g Graph {
+        self.frame.graph()
+    }
+
+    /// The frame X_0..X_k.
+    pub fn frame(&self) -> &Frame<'g> {
+        &self.frame
+    }
+
+    /// The structure coefficients c_rs^m.
+    pub fn structure(&self) -> &StructureCoefficients<'g> {
+        &self.structure
+    }
+
+    /// The symbols η_1..η_k.
+    pub fn quasi_velocities(&self) -> &[Expr<'g>] {
+        &self.quasi_velocities
+    }
+
+    /// The parameters with their values.
+    pub fn parameters(&self) -> &[(Expr<'g>, f64)] {
+        &self.parameters
+    }
+
+    /// L(t, x, η) = T + U.
+    pub fn lagrangian(&self) -> Expr<'g> {
+        self.lagrangian
+    }
+
+    /// The generalised forces Q_1..Q_k.
+    pub fn forces(&self) -> &[Expr<'g>] {
+        &self.forces
+    }
+
+    /// The functions of (t, x, η) that are watched along a motion, with their names.
+    pub fn observables(&self) -> &[(String, Expr<'g>)] {
+        &self.observables
+    }
+
+    /// The momenta ∂L/∂η_s.
+    pub fn momenta(&self) -> Vec<Expr<'g>> {
+        self.graph().gradient(self.lagrangian, &self.quasi_velocities)
+    }
+
+    /// The energy η_s ∂L/∂η_s − L.
+    pub fn energy(&self) -> Expr<'g> {
+        self.graph().dot(self.momenta(), self.quasi_velocities.iter().copied()) - self.lagrangian
+    }
+}
+
+/// How a system is described; every closure receives (t, x, η).
+///
+/// Coordinates and quasi-velocities are named before the closures that use them.
+#[derive(Clone, Debug)]
+pub struct SystemBuilder<'g> {
+    graph: &'g Graph,
+    time: Expr<'g>,
+    coordinates: Vec<Expr<'g>>,
+    quasi_velocities: Option<Vec<Expr<'g>>>,
+    kinematics: Kinematics<'g>,
+    structure: Option<StructureCoefficients<'g>>,
+    near: Neighbourhood<'g>,
+    parameters: Vec<(Expr<'g>, f64)>,
+    lagrangian: Option<Expr<'g>>,
+    forces: Option<Vec<Expr<'g>>>,
+    observables: Vec<(String, Expr<'g>)>,
+}
+
+#[derive(Clone, Debug)]
+enum Kinematics<'g> {
+    /// η = ẋ
+    Coordinate,
+    /// ẋ, affine in η (3)
+    Velocities(Vec<Expr<'g>>),
+    /// A frame made elsewhere.
+    Frame(Frame<'g>),
+}
+
+impl<'g> SystemBuilder<'g> {
+    fn new(graph: &'g Graph) -> SystemBuilder<'g> {
+        SystemBuilder {
+            graph,
+            time: graph.symbol("t"),
+            coordinates: Vec::new(),
+            quasi_velocities: None,
+            kinematics: Kinematics::Coordinate,
+            structure: None,
+            near: Neighbourhood::default(),
+            parameters: Vec::new(),
+            lagrangian: None,
+            forces: None,
+            observables: Vec::new(),
+        }
+    }
+
+    /// Declares a symbol to be a parameter, with its value: a run-time input of everything compiled.
+    #[must_use]
+    pub fn parameter(mut self, symbol: Expr<'g>, value: f64) -> Self {
+        self.parameters.push((symbol, value));
+        self
+    }
+
+    /// Names the coordinates x_1..x_n; none for equations on an algebra alone.
+    #[must_use]
+    pub fn coordinates<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.coordinates = names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect();
+        self
+    }
+
+    /// Names the quasi-velocities η_1..η_k; without it they are the velocities, `x'` for the coordinate `x`.
+    #[must_use]
+    pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.quasi_velocities =
+            Some(names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect());
+        self
+    }
+
+    /// Gives the velocities ẋ_1..ẋ_n, affine in η (3); without it ẋ = η.
+    #[must_use]
+    pub fn kinematics<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        velocities: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
+    ) -> Self {
+        let velocities = velocities(self.time, &self.coordinates, &self.eta()).into_iter().collect();
+        self.kinematics = Kinematics::Velocities(velocities);
+        self
+    }
+
+    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph.
+    #[must_use]
+    pub fn frame(mut self, frame: Frame<'g>) -> Self {
+        self.kinematics = Kinematics::Frame(frame);
+        self
+    }
+
+    /// Gives the brackets [X_r, X_s] = c_rs^m X_m of a stationary frame: needed where b does not determine them
+    /// (rank b < k, or no coordinates), checked against the frame everywhere else.
+    #[must_use]
+    pub fn algebra(self, algebra: &LieAlgebra) -> Self {
+        self.structure(algebra.structure_coefficients())
+    }
+
+    /// Gives all structure coefficients, c_0s^m included.
+    #[must_use]
+    pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
+        self.structure = Some(structure);
+        self
+    }
+
+    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an
+    /// identity can only be tried numerically.
+    #[must_use]
+    pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
+        self.near.centre.extend(values);
+        self
+    }
+
+    /// Gives L(t, x, η) = T + U, with U minus the potential energy.
+    #[must_use]
+    pub fn lagrangian(mut self, l: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
+        self.lagrangian = Some(l(self.time, &self.coordinates, &self.eta()));
+        self
+    }
+
+    /// Gives the generalised forces Q_1..Q_k (8): the power of the forces is Q_s η_s.
+    #[must_use]
+    pub fn forces<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        q: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
+    ) -> Self {
+        self.forces = Some(q(self.time, &self.coordinates, &self.eta()).into_iter().collect());
+        self
+    }
+
+    /// Adds a function of (t, x, η) to be watched along a motion.
+    #[must_use]
+    pub fn observable(
+        mut self,
+        name: impl Into<String>,
+        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        let value = f(self.time, &self.coordinates, &self.eta());
+        self.observables.push((name.into(), value));
+        self
+    }
+
+    fn eta(&self) -> Vec<Expr<'g>> {
+        self.quasi_velocities
+            .clone()
+            .unwrap_or_else(|| self.coordinates.iter().map(|x| self.graph.symbol(&format!("{x}'"))).collect())
+    }
+
+    /// The system, its frame closed and its structure coefficients known.
+    ///
+    /// # Errors
+    /// Any [`MechError`]; of the frame above all [`AlgebraError`].
+    pub fn build(self) -> Result<System<'g>, MechError> {
+        let eta = self.eta();
+        let k = eta.len();
+        let frame = match self.kinematics {
+            Kinematics::Coordinate => Frame::coordinate(self.graph, self.time, self.coordinates),
+            Kinematics::Velocities(velocities) => {
+                Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
+            }
+            Kinematics::Frame(frame) => frame,
+        };
+        if frame.operators() != k {
+            return Err(MechError::Shape {
+                what: "the list of quasi-velocities",
+                found: k,
+                expected: frame.operators(),
+            });
+        }
+        let mut near = self.near;
+        near.centre.extend(self.parameters.iter().copied());
+        let structure = match self.structure {
+            None if frame.coordinates().is_empty() && k > 0 => return Err(AlgebraError::AlgebraNeeded.into()),
+            None => frame.structure_coefficients(&near)?,
+            Some(given) => {
+                frame.check(&given, &near)?;
+                given
+            }
+        };
+        let lagrangian = self.lagrangian.ok_or(MechError::NoLagrangian)?;
+        let forces = self.forces.unwrap_or_else(|| vec![Expr::ZERO; k]);
+        if forces.len() != k {
+            return Err(MechError::Shape { what: "the list of forces", found: forces.len(), expected: k });
+        }
+        self.graph.check()?;
+        Ok(System {
+            frame,
+            structure,
+            quasi_velocities: eta,
+            parameters: self.parameters,
+            lagrangian,
+            forces,
+            observables: self.observables,
+        })
+    }
+}
