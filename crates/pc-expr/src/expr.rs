@@ -4,7 +4,7 @@ use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::dag::{Atom, Node, NodeId};
+use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::function::Function;
 use crate::graph::Graph;
 use crate::number::Number;
@@ -121,7 +121,7 @@ impl<'g> Expr<'g> {
 
     fn unary(
         self,
-        f: impl FnOnce(&mut crate::dag::Dag, Atom) -> Atom,
+        f: impl FnOnce(&mut Dag, Atom) -> Atom,
         constant: impl FnOnce(Number) -> Option<Number>,
     ) -> Expr<'g> {
         if let Atom::Constant(c) = self.atom
@@ -135,7 +135,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    fn binary(self, other: Expr<'g>, f: impl FnOnce(&mut crate::dag::Dag, Atom, Atom) -> Atom) -> Expr<'g> {
+    fn binary(self, other: Expr<'g>, f: impl FnOnce(&mut Dag, Atom, Atom) -> Atom) -> Expr<'g> {
         match self.graph.or(other.graph) {
             Some(graph) => {
                 let (x, y) = (self.atom_in(graph), other.atom_in(graph));
@@ -143,7 +143,7 @@ impl<'g> Expr<'g> {
             }
             None => {
                 // Two constants that belong to no graph: any graph gives the same number, if there is one.
-                let atom = f(&mut crate::dag::Dag::new(crate::Folding::Structural), self.atom, other.atom);
+                let atom = f(&mut Dag::new(crate::Folding::Structural), self.atom, other.atom);
                 let constant = if let Atom::Constant(c) = atom { c } else { Number::UNDEFINED };
                 Expr { graph: None, atom: Atom::Constant(constant) }
             }
@@ -338,7 +338,7 @@ macro_rules! operator {
 operator!(Add, add, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::ONE)]));
 operator!(Sub, sub, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::MINUS_ONE)]));
 operator!(Mul, mul, |dag, x, y| dag.product_of(Number::ONE, &[x, y]));
-operator!(Div, div, |dag, x, y| dag.divide(x, y));
+operator!(Div, div, Dag::divide);
 
 impl<'g, T: Into<Expr<'g>>> AddAssign<T> for Expr<'g> {
     fn add_assign(&mut self, other: T) {

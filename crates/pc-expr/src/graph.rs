@@ -77,6 +77,11 @@ impl Graph {
         self.len() == 0
     }
 
+    /// Number of divisions so far by an expression that is identically zero.
+    pub fn zero_divisions(&self) -> usize {
+        self.with(|dag| dag.zero_divisions().len())
+    }
+
     /// The first division by an expression that is identically zero, if there was one.
     ///
     /// # Errors

@@ -108,15 +108,7 @@ pub fn parse(text: &str) -> Result<Ast, ParseError> {
         depth: 0,
     };
     parser.advance();
-    if parser.token == Token::End {
-        return parser.fail(ParseErrorKind::Empty);
-    }
-    let tree = parser.sum()?;
-    match parser.token {
-        Token::End => Ok(tree),
-        Token::Symbol(')') => parser.fail(ParseErrorKind::Unmatched),
-        _ => parser.fail_after_operand(),
-    }
+    parser.whole().map(|tree| *tree).map_err(|error| *error)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,6 +150,9 @@ fn name<'i>(input: &mut Input<'i>) -> Lexed<&'i str> {
     (one_of(starts_name), take_while(0.., continues_name)).take().parse_next(input)
 }
 
+/// Results inside the parser, boxed so that nesting costs little stack.
+type Parsed<T = Box<Ast>> = Result<T, Box<ParseError>>;
+
 struct Parser<'i> {
     text: &'i str,
     input: Input<'i>,
@@ -178,12 +173,24 @@ impl<'i> Parser<'i> {
         self.span = Span { start: place.start, end: place.end };
     }
 
-    fn fail<T>(&self, kind: ParseErrorKind) -> Result<T, ParseError> {
-        Err(ParseError { span: self.span, kind })
+    fn fail<T>(&self, kind: ParseErrorKind) -> Parsed<T> {
+        Err(Box::new(ParseError { span: self.span, kind }))
+    }
+
+    fn whole(&mut self) -> Parsed {
+        if self.token == Token::End {
+            return self.fail(ParseErrorKind::Empty);
+        }
+        let tree = self.sum()?;
+        match self.token {
+            Token::End => Ok(tree),
+            Token::Symbol(')') => self.fail(ParseErrorKind::Unmatched),
+            _ => self.fail_after_operand(),
+        }
     }
 
     /// The error for a token that cannot follow an operand.
-    fn fail_after_operand<T>(&self) -> Result<T, ParseError> {
+    fn fail_after_operand<T>(&self) -> Parsed<T> {
         match self.token {
             Token::Unknown(character) => self.fail(ParseErrorKind::UnexpectedCharacter(character)),
             Token::Symbol(',') => self.fail(ParseErrorKind::StrayComma),
@@ -200,64 +207,70 @@ impl<'i> Parser<'i> {
         }
     }
 
-    fn sum(&mut self) -> Result<Ast, ParseError> {
+    fn sum(&mut self) -> Parsed {
         let first = self.product()?;
         let mut terms = Vec::new();
         while let Token::Symbol(symbol @ ('+' | '-')) = self.token {
             self.advance();
             let sign = if symbol == '+' { Sign::Plus } else { Sign::Minus };
-            terms.push((sign, self.product()?));
+            terms.push((sign, *self.product()?));
         }
         Ok(chain(first, Sign::Plus, terms, AstKind::Sum))
     }
 
-    fn product(&mut self) -> Result<Ast, ParseError> {
+    fn product(&mut self) -> Parsed {
         let first = self.unary()?;
         let mut factors = Vec::new();
         while let Token::Symbol(symbol @ ('*' | '/')) = self.token {
             self.advance();
             let factor = if symbol == '*' { Factor::Times } else { Factor::Over };
-            factors.push((factor, self.unary()?));
+            factors.push((factor, *self.unary()?));
         }
         Ok(chain(first, Factor::Times, factors, AstKind::Product))
     }
 
-    fn unary(&mut self) -> Result<Ast, ParseError> {
+    fn unary(&mut self) -> Parsed {
         if self.token != Token::Symbol('-') {
             return self.power();
         }
         let start = self.span.start;
         let operand = self.nested(Self::unary)?;
-        Ok(Ast { span: Span { start, end: operand.span.end }, kind: AstKind::Negate(Box::new(operand)) })
+        let span = Span { start, end: operand.span.end };
+        Ok(Box::new(Ast { span, kind: AstKind::Negate(operand) }))
     }
 
-    fn power(&mut self) -> Result<Ast, ParseError> {
+    fn power(&mut self) -> Parsed {
         let base = self.atom()?;
         if self.token != Token::Symbol('^') {
             return Ok(base);
         }
         let exponent = self.nested(Self::unary)?;
         let span = Span { start: base.span.start, end: exponent.span.end };
-        Ok(Ast { span, kind: AstKind::Power(Box::new(base), Box::new(exponent)) })
+        Ok(Box::new(Ast { span, kind: AstKind::Power(base, exponent) }))
     }
 
-    fn atom(&mut self) -> Result<Ast, ParseError> {
+    fn atom(&mut self) -> Parsed {
+        match self.token {
+            Token::Symbol('(') => self.parenthesis(),
+            Token::Name(_) => self.name_or_call(),
+            _ => self.leaf(),
+        }
+    }
+
+    fn leaf(&mut self) -> Parsed {
         let span = self.span;
         let kind = match self.token {
             Token::Number(digits) => match digits.parse::<f64>() {
                 Ok(value) if value.is_finite() => AstKind::Number(value),
                 _ => return self.fail(ParseErrorKind::NumberOutOfRange),
             },
+            Token::Name(name) => AstKind::Name(name.into()),
             Token::Velocity(name) => AstKind::Velocity(name.into()),
-            Token::Name(name) => {
-                self.advance();
-                return self.name_or_call(name, span);
-            }
-            Token::Symbol('(') => return self.parenthesis(),
             Token::Unknown(character) => return self.fail(ParseErrorKind::UnexpectedCharacter(character)),
             Token::Symbol(symbol) => {
                 let power = symbol == '*' && excerpt(self.text, self.last) == "*";
-                return self.fail(ParseErrorKind::ExpectedExpression { found: format!("`{symbol}`"), power });
+                let found = format!("`{symbol}`");
+                return self.fail(ParseErrorKind::ExpectedExpression { found, power });
             }
             Token::End => {
                 let found = "the end of the expression".into();
@@ -265,78 +278,77 @@ impl<'i> Parser<'i> {
             }
         };
         self.advance();
-        Ok(Ast { span, kind })
+        Ok(Box::new(Ast { span, kind }))
     }
 
-    fn parenthesis(&mut self) -> Result<Ast, ParseError> {
+    fn parenthesis(&mut self) -> Parsed {
         let open = self.span;
-        let inner = self.nested(Self::sum)?;
-        let end = self.close(open)?;
-        Ok(Ast { span: Span { start: open.start, end }, kind: inner.kind })
+        let mut inner = self.nested(Self::sum)?;
+        inner.span = Span { start: open.start, end: self.close(open)? };
+        Ok(inner)
     }
 
     /// Steps over the `)` that belongs to the parenthesis at `open` and returns where it ends.
-    fn close(&mut self, open: Span) -> Result<usize, ParseError> {
+    fn close(&mut self, open: Span) -> Parsed<usize> {
         match self.token {
             Token::Symbol(')') => {
                 let end = self.span.end;
                 self.advance();
                 Ok(end)
             }
-            Token::End => Err(ParseError { span: open, kind: ParseErrorKind::Unclosed }),
+            Token::End => Err(Box::new(ParseError { span: open, kind: ParseErrorKind::Unclosed })),
             _ => self.fail_after_operand(),
         }
     }
 
-    /// What a name just stepped over stands for: a call when a parenthesis follows.
-    fn name_or_call(&mut self, name: &str, place: Span) -> Result<Ast, ParseError> {
-        let function = FUNCTIONS.iter().find(|function| function.name == name);
-        let open = self.span;
+    /// A name, or a call when a parenthesis follows.
+    fn name_or_call(&mut self) -> Parsed {
+        let name = self.leaf()?;
+        let AstKind::Name(text) = &name.kind else { return Ok(name) };
+        let function = FUNCTIONS.iter().find(|function| function.name == text);
         match (function, self.token) {
-            (Some(function), Token::Symbol('(')) => {
-                let mut arguments = self.nested(Self::arguments)?;
-                let span = Span { start: place.start, end: self.close(open)? };
-                let found = arguments.len();
-                if found != function.arguments {
-                    let kind = ParseErrorKind::ArgumentCount { function: *function, found };
-                    return Err(ParseError { span, kind });
-                }
-                let kind = match (name, arguments.pop()) {
-                    ("d", Some(argument)) => AstKind::TotalDerivative(Box::new(argument)),
-                    (_, last) => {
-                        arguments.extend(last);
-                        AstKind::Call(name.into(), place, arguments)
-                    }
-                };
-                Ok(Ast { span, kind })
-            }
+            (Some(function), Token::Symbol('(')) => self.call(function, name.span),
             (Some(function), _) => {
-                Err(ParseError { span: place, kind: ParseErrorKind::NotCalled(*function) })
+                Err(Box::new(ParseError { span: name.span, kind: ParseErrorKind::NotCalled(*function) }))
             }
-            (None, Token::Symbol('(')) => {
-                let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
-                let nearest = other.or_else(|| nearest(name, FUNCTIONS.iter().map(|function| function.name)));
-                let name = excerpt(self.text, place);
-                Err(ParseError { span: place, kind: ParseErrorKind::UnknownFunction { name, nearest } })
-            }
-            (None, _) => Ok(Ast { span: place, kind: AstKind::Name(name.into()) }),
+            (None, Token::Symbol('(')) => Err(Box::new(unknown_function(text, name.span))),
+            (None, _) => Ok(name),
         }
     }
 
-    fn arguments(&mut self) -> Result<Vec<Ast>, ParseError> {
+    fn call(&mut self, function: &Function, place: Span) -> Parsed {
+        let open = self.span;
+        let mut arguments = self.nested(Self::arguments)?;
+        let span = Span { start: place.start, end: self.close(open)? };
+        let found = arguments.len();
+        if found != function.arguments {
+            let kind = ParseErrorKind::ArgumentCount { function: *function, found };
+            return Err(Box::new(ParseError { span, kind }));
+        }
+        let kind = match (function.name, arguments.pop()) {
+            ("d", Some(argument)) => AstKind::TotalDerivative(Box::new(argument)),
+            (_, last) => {
+                arguments.extend(last);
+                AstKind::Call(function.name.into(), place, arguments)
+            }
+        };
+        Ok(Box::new(Ast { span, kind }))
+    }
+
+    fn arguments(&mut self) -> Parsed<Vec<Ast>> {
         if self.token == Token::Symbol(')') {
             return Ok(Vec::new());
         }
-        let mut arguments = vec![self.sum()?];
+        let mut arguments = vec![*self.sum()?];
         while self.token == Token::Symbol(',') {
             self.advance();
-            arguments.push(self.sum()?);
+            arguments.push(*self.sum()?);
         }
         Ok(arguments)
     }
 
     /// Steps over the token that opens a level and parses what is inside.
-    fn nested<T>(&mut self, inside: fn(&mut Self) -> Result<T, ParseError>) -> Result<T, ParseError> {
+    fn nested<T>(&mut self, inside: fn(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.depth == MAX_DEPTH {
             return self.fail(ParseErrorKind::TooDeep);
         }
@@ -349,11 +361,19 @@ impl<'i> Parser<'i> {
 }
 
 /// `first` alone, or the list that it begins.
-fn chain<S>(first: Ast, sign: S, rest: Vec<(S, Ast)>, kind: fn(Vec<(S, Ast)>) -> AstKind) -> Ast {
+fn chain<S>(first: Box<Ast>, sign: S, rest: Vec<(S, Ast)>, kind: fn(Vec<(S, Ast)>) -> AstKind) -> Box<Ast> {
     let Some((_, last)) = rest.last() else { return first };
     let span = Span { start: first.span.start, end: last.span.end };
-    let list = std::iter::once((sign, first)).chain(rest).collect();
-    Ast { span, kind: kind(list) }
+    let list = std::iter::once((sign, *first)).chain(rest).collect();
+    Box::new(Ast { span, kind: kind(list) })
+}
+
+/// The error for a call of something that is not a function.
+fn unknown_function(name: &str, span: Span) -> ParseError {
+    let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
+    let nearest = other.or_else(|| nearest(name, FUNCTIONS.iter().map(|function| function.name)));
+    let name = excerpt(name, Span { start: 0, end: name.len() });
+    ParseError { span, kind: ParseErrorKind::UnknownFunction { name, nearest } }
 }
 
 /// The text at `span`, cut to a length that fits a message.

@@ -1,6 +1,7 @@
 //! What every integrator takes: ẏ = f(t, y).
 
 use std::error::Error;
+use std::fmt;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
@@ -36,23 +37,54 @@ pub trait VectorField {
     }
 }
 
+impl<F: VectorField + ?Sized> VectorField for &mut F {
+    fn dim(&self) -> usize {
+        (**self).dim()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        (**self).rhs(t, y, ydot)
+    }
+    fn has_jacobian(&self) -> bool {
+        (**self).has_jacobian()
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        (**self).jacobian(t, y, jacobian)
+    }
+    fn component_name(&self, i: usize) -> String {
+        (**self).component_name(i)
+    }
+}
+
 /// Why a function of (t, y) could not be evaluated, and whether a nearby state may succeed.
-#[derive(Debug, thiserror::Error)]
-#[error("{source}")]
+///
+/// It speaks as its cause does.
+#[derive(Debug)]
 pub struct Failure {
     recoverable: bool,
-    source: Box<dyn Error + Send + Sync>,
+    cause: Box<dyn Error + Send + Sync>,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.cause.fmt(f)
+    }
+}
+
+impl Error for Failure {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.cause.source()
+    }
 }
 
 impl Failure {
     /// A failure that a smaller step may avoid, such as a state outside the domain of a function.
-    pub fn recoverable(source: impl Error + Send + Sync + 'static) -> Self {
-        Failure { recoverable: true, source: Box::new(source) }
+    pub fn recoverable(cause: impl Error + Send + Sync + 'static) -> Self {
+        Failure { recoverable: true, cause: Box::new(cause) }
     }
 
     /// A failure that ends the integration.
-    pub fn fatal(source: impl Error + Send + Sync + 'static) -> Self {
-        Failure { recoverable: false, source: Box::new(source) }
+    pub fn fatal(cause: impl Error + Send + Sync + 'static) -> Self {
+        Failure { recoverable: false, cause: Box::new(cause) }
     }
 
     /// Whether a smaller step may avoid the failure.
@@ -62,7 +94,7 @@ impl Failure {
 
     /// What went wrong.
     pub fn cause(&self) -> &(dyn Error + Send + Sync + 'static) {
-        self.source.as_ref()
+        self.cause.as_ref()
     }
 }
 

@@ -22,11 +22,12 @@ pub struct Motion {
     jacobian: Interpreter,
     observables: Interpreter,
     observable_names: Vec<String>,
+    conserved: usize,
     outputs: Vec<f64>,
 }
 
 impl<'g> Equations<'g> {
-    /// Compiles the equations, their Jacobian and the observables; the energy is the last of these.
+    /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
@@ -50,9 +51,12 @@ impl<'g> Equations<'g> {
         outputs.extend(ldl.pivots());
         outputs.extend((0..eta.len()).map(|s| self.mass[(s, s)]));
 
-        let observed = system.observables.iter().map(|&(_, value)| value).chain([self.energy]);
-        let observed: Vec<Expr<'g>> = observed.collect();
-        let names = system.observables.iter().map(|(name, _)| name.clone());
+        let energy = ("energy".to_owned(), self.energy);
+        let observed: Vec<(String, Expr<'g>)> =
+            system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect();
+        let (observable_names, observed): (Vec<String>, Vec<Expr<'g>>) = observed.into_iter().unzip();
+        let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
+        let observed = graph.substitute(&observed, &rates);
 
         let rhs = compile(&outputs)?;
         Ok(Motion {
@@ -63,7 +67,8 @@ impl<'g> Equations<'g> {
             rhs,
             jacobian: compile(&self.jacobian(&ldl, &accelerations))?,
             observables: compile(&observed)?,
-            observable_names: names.chain(["energy".to_owned()]).collect(),
+            observable_names,
+            conserved: system.integrals.len() + 1,
         })
     }
 
@@ -73,7 +78,7 @@ impl<'g> Equations<'g> {
         let graph = self.system.graph();
         let eta = &self.system.quasi_velocities;
         let state: Vec<Expr<'g>> = self.system.frame.coordinates().iter().chain(eta).copied().collect();
-        let fixed: Vec<Expr<'g>> = eta.iter().map(|eta| graph.symbol(&format!("{eta}'"))).collect();
+        let fixed = self.system.accelerations();
         let balance: Vec<Expr<'g>> = (0..eta.len())
             .map(|s| self.right[s] - graph.dot(self.mass.row(s).iter().copied(), fixed.iter().copied()))
             .collect();
@@ -111,9 +116,14 @@ impl Motion {
         &mut self.parameters
     }
 
-    /// Names of the observables; the last is `energy`.
+    /// Names of the observables: the integrals, `energy`, the outputs.
     pub fn observable_names(&self) -> &[String] {
         &self.observable_names
+    }
+
+    /// Number of observables, the first ones, that the motion should keep constant: the integrals and the energy.
+    pub fn conserved_len(&self) -> usize {
+        self.conserved
     }
 
     /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names).

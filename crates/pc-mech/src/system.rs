@@ -16,7 +16,8 @@ pub struct System<'g> {
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
     pub(crate) lagrangian: Expr<'g>,
     pub(crate) forces: Vec<Expr<'g>>,
-    pub(crate) observables: Vec<(String, Expr<'g>)>,
+    pub(crate) integrals: Vec<(String, Expr<'g>)>,
+    pub(crate) outputs: Vec<(String, Expr<'g>)>,
 }
 
 impl<'g> System<'g> {
@@ -60,9 +61,19 @@ impl<'g> System<'g> {
         &self.forces
     }
 
+    /// The functions of (t, x, η) that a motion should keep constant, with their names.
+    pub fn integrals(&self) -> &[(String, Expr<'g>)] {
+        &self.integrals
+    }
+
     /// The functions of (t, x, η) that are watched along a motion, with their names.
-    pub fn observables(&self) -> &[(String, Expr<'g>)] {
-        &self.observables
+    pub fn outputs(&self) -> &[(String, Expr<'g>)] {
+        &self.outputs
+    }
+
+    /// The symbols of η̇: integrals and outputs may contain them.
+    pub fn accelerations(&self) -> Vec<Expr<'g>> {
+        self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
     }
 
     /// The momenta ∂L/∂η_s.
@@ -91,7 +102,8 @@ pub struct SystemBuilder<'g> {
     parameters: Vec<(Expr<'g>, f64)>,
     lagrangian: Option<Expr<'g>>,
     forces: Option<Vec<Expr<'g>>>,
-    observables: Vec<(String, Expr<'g>)>,
+    integrals: Vec<(String, Expr<'g>)>,
+    outputs: Vec<(String, Expr<'g>)>,
 }
 
 #[derive(Clone, Debug)]
@@ -117,7 +129,8 @@ impl<'g> SystemBuilder<'g> {
             parameters: Vec::new(),
             lagrangian: None,
             forces: None,
-            observables: Vec::new(),
+            integrals: Vec::new(),
+            outputs: Vec::new(),
         }
     }
 
@@ -200,15 +213,27 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds a function of (t, x, η) to be watched along a motion.
+    /// Adds a function of (t, x, η) that the motion should keep constant: its drift is worth knowing.
     #[must_use]
-    pub fn observable(
+    pub fn integral(
         mut self,
         name: impl Into<String>,
         f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
     ) -> Self {
         let value = f(self.time, &self.coordinates, &self.eta());
-        self.observables.push((name.into(), value));
+        self.integrals.push((name.into(), value));
+        self
+    }
+
+    /// Adds a function of (t, x, η) to be computed along the motion.
+    #[must_use]
+    pub fn output(
+        mut self,
+        name: impl Into<String>,
+        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        let value = f(self.time, &self.coordinates, &self.eta());
+        self.outputs.push((name.into(), value));
         self
     }
 
@@ -262,7 +287,8 @@ impl<'g> SystemBuilder<'g> {
             parameters: self.parameters,
             lagrangian,
             forces,
-            observables: self.observables,
+            integrals: self.integrals,
+            outputs: self.outputs,
         })
     }
 }

@@ -1,0 +1,1 @@
+//! C interface to the Poincaré-Chetaev equations

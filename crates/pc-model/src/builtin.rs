@@ -1,0 +1,51 @@
+//! The models that come with the library.
+
+use crate::document::Document;
+use crate::error::ModelError;
+use crate::source::Source;
+
+/// A model that comes with the library.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Its name, which works wherever a model file does.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+macro_rules! models {
+    ($($name:literal),* $(,)?) => {
+        &[$(Builtin { name: $name, text: include_str!(concat!("../models/", $name, ".toml")) }),*]
+    };
+}
+
+/// All models that come with the library.
+pub const BUILTIN: &[Builtin] = models![
+    "heavy-top-lagrange",
+    "heavy-top-kovalevskaya",
+    "heavy-top-goryachev-chaplygin",
+    "heavy-top-euler",
+    "heavy-top-euler-symmetric",
+    "heavy-top-quaternion",
+    "euler-top",
+    "charged-particle",
+    "charged-particle-induction",
+    "damped-oscillator",
+    "damped-oscillator-scaled-frame",
+    "relativistic-particle",
+];
+
+impl Builtin {
+    /// The model of that name.
+    pub fn named(name: &str) -> Option<&'static Builtin> {
+        BUILTIN.iter().find(|model| model.name == name)
+    }
+
+    /// Its document.
+    ///
+    /// # Errors
+    /// [`ModelError`]; the tests show that there is none.
+    pub fn document(&self) -> Result<Document, ModelError> {
+        Document::parse(Source::new(format!("{}.toml", self.name), self.text))
+    }
+}

@@ -1,0 +1,61 @@
+//! What must hold between the sections: one meaning for a name, something that moves, an energy.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use super::{Document, Name};
+use crate::error::{ErrorKind, ModelError, Role};
+
+/// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.
+pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
+    if !document.bodies.is_empty() {
+        return Ok(());
+    }
+    match &document.lagrangian {
+        None => Err(document.source.error(&document.end(), ErrorKind::NoLagrangian)),
+        Some(given) if given.kinetic.is_none() && given.lagrangian.is_none() => {
+            let example = "kinetic = \"…\"";
+            Err(document.source.error(&given.place, ErrorKind::Missing { key: "kinetic", example }))
+        }
+        Some(_) => Ok(()),
+    }
+}
+
+/// Something must move: a coordinate, or a quasi-velocity.
+pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
+    if document.coordinates.is_empty() && document.quasi_velocities.is_empty() {
+        return Err(document.source.error(&document.end(), ErrorKind::NothingMoves));
+    }
+    Ok(())
+}
+
+/// A name stands for one thing only.
+pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
+    let parameters = document.parameters.iter().map(|parameter| (&parameter.name, Role::Parameter));
+    let quasi = document.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
+    let mut names: Vec<(&Name, Role)> = parameters.chain(quasi).collect();
+    for (entries, role) in [
+        (&document.definitions, Role::Definition),
+        (&document.coordinates, Role::Coordinate),
+        (&document.integrals, Role::Integral),
+        (&document.outputs, Role::Output),
+    ] {
+        names.extend(entries.iter().map(|entry| (&entry.name, role)));
+    }
+    names.sort_by_key(|(name, _)| name.place.span.start);
+    let mut seen = HashMap::new();
+    for (name, role) in names {
+        match seen.entry(name.text.as_str()) {
+            Entry::Vacant(vacant) => {
+                vacant.insert((name, role));
+            }
+            Entry::Occupied(occupied) => {
+                let (first, role) = *occupied.get();
+                let line = document.source.position(first.place.span.start).line;
+                let kind = ErrorKind::NameTaken { name: name.text.clone(), first: role, line };
+                return Err(document.source.error(&name.place, kind));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,306 @@
+//! What can be wrong with the meaning of a model whose text is well formed.
+
+use pc_expr::parse::nearest;
+
+use crate::error::Category;
+
+/// A fault of the meaning; quasi-velocities stand for their operators.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A name that is declared nowhere.
+    #[error("the name `{name}` is not declared")]
+    UnknownName {
+        /// The name.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// A name that is declared further below.
+    #[error("`{name}` is used before it is defined")]
+    UsedBeforeDefined {
+        /// The name.
+        name: String,
+    },
+    /// The velocity, kinematics or start velocity of something that is not a coordinate.
+    #[error("`{name}` is not a coordinate, so `{name}'` means nothing")]
+    NotACoordinate {
+        /// The name.
+        name: String,
+        /// The coordinates there are.
+        coordinates: Vec<String>,
+    },
+    /// A force on something that does not move.
+    #[error("`{name}` is neither a quasi-velocity nor a coordinate")]
+    NothingToPush {
+        /// The name.
+        name: String,
+        /// The names that can be given a force.
+        known: Vec<String>,
+    },
+    /// A name that means nothing at this place.
+    #[error("`{name}` cannot be used in {place}")]
+    NotHere {
+        /// The name as written.
+        name: String,
+        /// The place, in words.
+        place: &'static str,
+        /// What can be used.
+        allowed: &'static str,
+    },
+    /// d() of something that contains velocities, where accelerations mean nothing.
+    #[error("`d()` of velocities gives accelerations, which cannot be used in {place}")]
+    Acceleration {
+        /// The place, in words.
+        place: &'static str,
+    },
+    /// A quotient by zero.
+    #[error("`{text}` divides by zero")]
+    DivisionByZero {
+        /// The quotient as written.
+        text: String,
+    },
+    /// A definition that is not affine in the velocities, or kinematics that are not affine in the quasi-velocities.
+    #[error("`{text}` is not affine in the {variables}")]
+    NotAffine {
+        /// The expression as written.
+        text: String,
+        /// `velocities` or `quasi-velocities`.
+        variables: &'static str,
+    },
+    /// A coordinate without kinematics, where others have them.
+    #[error("[kinematics] does not say what `{coordinate}'` is")]
+    KinematicsMissing {
+        /// The coordinate.
+        coordinate: String,
+    },
+    /// A quasi-velocity whose meaning is not given.
+    #[error("nothing says what the quasi-velocity `{name}` is")]
+    Undefined {
+        /// The quasi-velocity.
+        name: String,
+    },
+    /// Kinematics given in two ways.
+    #[error("the quasi-velocity `{name}` is defined by `is`, and [kinematics] is given too")]
+    TwoKinematics {
+        /// The quasi-velocity.
+        name: String,
+    },
+    /// A number of definitions that is not the number of coordinates.
+    #[error("{definitions} definitions of quasi-velocities cannot be solved for {coordinates} velocities")]
+    DefinitionCount {
+        /// Number of definitions.
+        definitions: usize,
+        /// Number of coordinates.
+        coordinates: usize,
+    },
+    /// Definitions that are dependent.
+    #[error("the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere")]
+    DependentDefinitions,
+    /// A catalogue name that does not exist.
+    #[error("there is no algebra named `{name}`")]
+    UnknownAlgebra {
+        /// The name.
+        name: String,
+        /// The names there are.
+        known: Vec<&'static str>,
+    },
+    /// An algebra whose dimension is not the number of quasi-velocities.
+    #[error("the algebra `{name}` has dimension {dimension}, but there are {operators} quasi-velocities")]
+    AlgebraDimension {
+        /// The name.
+        name: String,
+        /// Its dimension.
+        dimension: usize,
+        /// Number of quasi-velocities.
+        operators: usize,
+    },
+    /// A bracket that is not a constant linear combination of quasi-velocities.
+    #[error("`{text}` is not a constant linear combination of quasi-velocities")]
+    BracketNotLinear {
+        /// The value as written.
+        text: String,
+    },
+    /// Two brackets of one pair that are not opposite.
+    #[error("the brackets \"{left},{right}\" and \"{right},{left}\" are not opposite")]
+    BracketsNotSkew {
+        /// First name of the later one.
+        left: String,
+        /// Second name of the later one.
+        right: String,
+    },
+    /// Brackets that violate the Jacobi identity.
+    #[error("the brackets of {}, {} and {} violate the Jacobi identity by {defect} along {component}", triple[0], triple[1], triple[2])]
+    Jacobi {
+        /// The quasi-velocities.
+        triple: [String; 3],
+        /// The quasi-velocity along which the defect was found.
+        component: String,
+        /// Its size.
+        defect: String,
+    },
+    /// Equations without coordinates and without an algebra.
+    #[error("without coordinates the brackets of the quasi-velocities are not determined")]
+    AlgebraNeeded,
+    /// A frame that does not determine its brackets.
+    #[error(
+        "the frame has rank {rank} with {operators} quasi-velocities and does not determine their brackets: \
+         [{}, {}] is no constant combination of them", pair[0], pair[1]
+    )]
+    RankDeficient {
+        /// Rank of b.
+        rank: usize,
+        /// Number of quasi-velocities.
+        operators: usize,
+        /// The pair.
+        pair: [String; 2],
+    },
+    /// A bracket that leaves the span of the frame.
+    #[error(
+        "the frame is not closed: [{}, {}] is no combination of the frame (relative residual {residual:.1e})",
+        pair[0], pair[1]
+    )]
+    NotClosed {
+        /// The pair.
+        pair: [String; 2],
+        /// Relative residual.
+        residual: f64,
+    },
+    /// Brackets that are not those of the frame.
+    #[error(
+        "the bracket of {} and {} given in [algebra] contradicts the kinematics (relative residual {residual:.1e})",
+        pair[0], pair[1]
+    )]
+    Contradiction {
+        /// The pair.
+        pair: [String; 2],
+        /// Relative residual.
+        residual: f64,
+    },
+    /// A singular mass matrix.
+    #[error(
+        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank {rank} of {size}, so {} not \
+         determined", undetermined_text(undetermined)
+    )]
+    Degenerate {
+        /// Rank.
+        rank: usize,
+        /// Size.
+        size: usize,
+        /// The quasi-velocities without an equation.
+        undetermined: Vec<String>,
+    },
+    /// A value that is not a number at the start.
+    #[error("`{text}` is {value} at the start{}", at(state))]
+    NotFinite {
+        /// The expression as written.
+        text: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Names and values of the start state.
+        state: Vec<(String, f64)>,
+    },
+    /// Equations that cannot be evaluated at the start though what is written can.
+    #[error("the equations of motion cannot be evaluated at the start: {cause}")]
+    SingularStart {
+        /// Why.
+        cause: String,
+    },
+    /// Anything else that the derivation refuses.
+    #[error("{message}")]
+    Derivation {
+        /// Why.
+        message: String,
+    },
+}
+
+fn at(state: &[(String, f64)]) -> String {
+    let values: Vec<String> = state.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    if values.is_empty() { String::new() } else { format!(" ({})", values.join(", ")) }
+}
+
+fn undetermined_text(names: &[String]) -> String {
+    let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
+    rates.join(", ") + if rates.len() == 1 { " is" } else { " are" }
+}
+
+impl Fault {
+    /// Whether the text or the model is to blame.
+    pub fn category(&self) -> Category {
+        match self {
+            Fault::DefinitionCount { .. }
+            | Fault::DependentDefinitions
+            | Fault::Jacobi { .. }
+            | Fault::AlgebraNeeded
+            | Fault::RankDeficient { .. }
+            | Fault::NotClosed { .. }
+            | Fault::Contradiction { .. }
+            | Fault::Degenerate { .. }
+            | Fault::NotFinite { .. }
+            | Fault::SingularStart { .. }
+            | Fault::Derivation { .. } => Category::Inconsistent,
+            _ => Category::Text,
+        }
+    }
+
+    /// What would be right.
+    pub fn help(&self) -> String {
+        match self {
+            Fault::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
+            Fault::UsedBeforeDefined { .. } => "definitions are evaluated in order; move it up".into(),
+            Fault::NotACoordinate { name, coordinates } => {
+                suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
+            }
+            Fault::NothingToPush { name, known } => {
+                suggest(name, known, &format!("a force can act on {}", listed(known)))
+            }
+            Fault::NotHere { allowed, .. } => format!("use {allowed} only"),
+            Fault::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
+            Fault::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
+            Fault::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
+            Fault::KinematicsMissing { coordinate } => {
+                format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")
+            }
+            Fault::Undefined { name } => {
+                format!("give [kinematics] for every coordinate, or define `{name} = {{ is = \"…\", start = 0.0 }}`")
+            }
+            Fault::TwoKinematics { .. } => "keep either [kinematics] or the `is`".into(),
+            Fault::DefinitionCount { .. } | Fault::DependentDefinitions => {
+                "give as many independent definitions (and constraints) as there are coordinates".into()
+            }
+            Fault::UnknownAlgebra { known, .. } => {
+                format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
+            }
+            Fault::AlgebraDimension { .. } => {
+                "an algebra has one operator for each quasi-velocity; leave [algebra] out if the frame determines it"
+                    .into()
+            }
+            Fault::BracketNotLinear { .. } => "write for example \"w3\", \"-2*w1 + w2\" or \"0\"".into(),
+            Fault::BracketsNotSkew { .. } => "[X, Y] = -[Y, X]; give one of the two".into(),
+            Fault::Jacobi { .. } => "no frame of operators has these brackets; check their signs".into(),
+            Fault::AlgebraNeeded | Fault::RankDeficient { .. } => {
+                "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`".into()
+            }
+            Fault::NotClosed { .. } => {
+                "the kinematics stand for constraints that are not integrable; give them in [constraints]".into()
+            }
+            Fault::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
+            Fault::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            Fault::NotFinite { .. } | Fault::SingularStart { .. } => {
+                "start where the coordinates and functions are regular".into()
+            }
+            Fault::Derivation { .. } => "check the model".into(),
+        }
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+fn suggest(name: &str, known: &[String], otherwise: &str) -> String {
+    match nearest(name, known.iter().map(String::as_str)) {
+        Some(word) => format!("did you mean `{word}`? {otherwise}"),
+        None => otherwise.to_owned(),
+    }
+}

@@ -1,0 +1,35 @@
+//! The text model: TOML to a mechanical system, with spans in every error.
+//!
+//! ```
+//! use pc_mech::Graph;
+//! use pc_model::{Document, Model, Source};
+//!
+//! let text = r#"
+//! [coordinates]
+//! x = 1.0
+//! [lagrangian]
+//! kinetic = "x'^2/2"
+//! potential = "2*x^2"
+//! "#;
+//! let model = Model::new(Document::parse(Source::new("oscillator.toml", text))?);
+//! let graph = Graph::new();
+//! let assembly = model.assemble(&graph)?;
+//! let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
+//! assert_eq!(equations.right_hand_side()[0].to_string(), "-4*x");
+//! # Ok::<(), pc_model::ModelError>(())
+//! ```
+
+mod builtin;
+pub mod document;
+pub mod error;
+mod fault;
+mod model;
+mod scope;
+pub mod source;
+
+pub use builtin::{BUILTIN, Builtin};
+pub use document::Document;
+pub use error::{Category, Diagnostic, ErrorKind, ModelError};
+pub use fault::Fault;
+pub use model::{Assembly, Model, UnknownParameter};
+pub use source::Source;

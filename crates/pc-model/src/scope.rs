@@ -1,0 +1,319 @@
+//! Names and expressions of a model, resolved to expressions of a graph.
+
+use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
+use pc_expr::{Expr, Graph};
+
+use crate::document::{Document, Expression, NamedExpression};
+use crate::error::{ErrorKind, ModelError};
+use crate::fault::Fault;
+use crate::source::Place;
+
+/// What an expression may contain, by the place where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// A start value: parameters, and definitions made of them.
+    Start,
+    /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
+    Definition,
+    /// Kinematics: coordinates, t, and quasi-velocities.
+    Kinematics,
+    /// The energy or a force: everything but accelerations.
+    Dynamics,
+    /// Integrals and outputs: everything.
+    Observation,
+}
+
+impl Stage {
+    fn place(self) -> &'static str {
+        match self {
+            Stage::Start => "a start value",
+            Stage::Definition => "the definition of a quasi-velocity",
+            Stage::Kinematics => "[kinematics]",
+            Stage::Dynamics => "the Lagrangian or a force",
+            Stage::Observation => "an integral or output",
+        }
+    }
+
+    fn allowed(self) -> &'static str {
+        match self {
+            Stage::Start => "numbers, parameters and definitions made of them",
+            Stage::Definition => "parameters, coordinates, velocities x' and t",
+            Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
+            Stage::Dynamics | Stage::Observation => "declared names",
+        }
+    }
+}
+
+/// A part of the model as written, and the expression it became: what is looked through when something is not a
+/// number.
+pub(crate) struct Written<'g> {
+    pub(crate) value: Expr<'g>,
+    pub(crate) place: Place,
+    pub(crate) text: String,
+}
+
+/// The declared names of a model as symbols of a graph.
+pub(crate) struct Scope<'g, 'd> {
+    graph: &'g Graph,
+    document: &'d Document,
+    time: Expr<'g>,
+    /// Definitions that were used already: each is resolved once for a stage.
+    definitions: Vec<(usize, Stage, Expr<'g>)>,
+    /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
+    pub(crate) written: Vec<Written<'g>>,
+}
+
+impl<'g, 'd> Scope<'g, 'd> {
+    /// Makes the symbols: parameters first, since print-outs order factors by the making of their symbols.
+    pub(crate) fn new(graph: &'g Graph, document: &'d Document) -> Scope<'g, 'd> {
+        let names = document.parameters.iter().map(|p| &p.name.text);
+        let coordinates = document.coordinates.iter().map(|c| &c.name.text);
+        let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
+        for name in names.chain(coordinates).chain(quasi_velocities) {
+            graph.symbol(name);
+        }
+        Scope { graph, document, time: graph.symbol("t"), definitions: Vec::new(), written: Vec::new() }
+    }
+
+    pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
+        self.document.coordinates.iter().map(|c| self.graph.symbol(&c.name.text)).collect()
+    }
+
+    pub(crate) fn velocity(&self, coordinate: &str) -> Expr<'g> {
+        self.graph.symbol(&format!("{coordinate}'"))
+    }
+
+    pub(crate) fn velocities(&self) -> Vec<Expr<'g>> {
+        self.document.coordinates.iter().map(|c| self.velocity(&c.name.text)).collect()
+    }
+
+    pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
+        self.document.quasi_velocities.iter().map(|q| self.graph.symbol(&q.name.text)).collect()
+    }
+
+    /// The expression, its velocities as symbols x'.
+    pub(crate) fn resolve(&mut self, expression: &Expression, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        let before = self.graph.zero_divisions();
+        let value = self.ast(expression, &expression.ast, stage)?;
+        if self.graph.zero_divisions() > before {
+            return Err(self.error(expression, expression.ast.span, |text| Fault::DivisionByZero { text }));
+        }
+        self.note(expression, expression.ast.span, value);
+        Ok(value)
+    }
+
+    pub(crate) fn error(&self, expression: &Expression, span: Span, fault: impl FnOnce(String) -> Fault) -> ModelError {
+        let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
+        self.document.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
+    }
+
+    fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
+        let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
+        self.written.push(Written { value, place: expression.place(span), text });
+    }
+
+    fn ast(&mut self, expression: &Expression, ast: &Ast, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        match &ast.kind {
+            AstKind::Number(value) => Ok((*value).into()),
+            AstKind::Name(name) => self.name(expression, ast.span, name, stage),
+            AstKind::Velocity(name) => self.velocity_of(expression, ast.span, name, stage),
+            AstKind::TotalDerivative(inner) => self.total_derivative(expression, ast.span, inner, stage),
+            AstKind::Sum(terms) => {
+                let mut values = Vec::with_capacity(terms.len());
+                for (sign, term) in terms {
+                    let value = self.ast(expression, term, stage)?;
+                    values.push(if *sign == Sign::Minus { -value } else { value });
+                }
+                Ok(self.graph.sum(values))
+            }
+            AstKind::Product(factors) => self.product(expression, factors, stage),
+            AstKind::Negate(inner) => Ok(-self.ast(expression, inner, stage)?),
+            AstKind::Power(base, exponent) => {
+                let power = self.ast(expression, base, stage)?;
+                let power = power.pow(self.ast(expression, exponent, stage)?);
+                self.note(expression, ast.span, power);
+                Ok(power)
+            }
+            AstKind::Call(function, _, args) => {
+                let mut values = Vec::with_capacity(args.len());
+                for arg in args {
+                    values.push(self.ast(expression, arg, stage)?);
+                }
+                let before = self.graph.zero_divisions();
+                let value = call(function, &values, self.graph);
+                if self.graph.zero_divisions() > before {
+                    return Err(self.error(expression, ast.span, |text| Fault::DivisionByZero { text }));
+                }
+                self.note(expression, ast.span, value);
+                Ok(value)
+            }
+        }
+    }
+
+    fn product(
+        &mut self,
+        expression: &Expression,
+        factors: &[(Factor, Ast)],
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
+        let mut product = Expr::ONE;
+        let start = factors.first().map_or(0, |(_, first)| first.span.start);
+        for (factor, ast) in factors {
+            let value = self.ast(expression, ast, stage)?;
+            if *factor == Factor::Times {
+                product *= value;
+                continue;
+            }
+            let span = Span { start, end: ast.span.end };
+            if value.is_zero() {
+                return Err(self.error(expression, span, |text| Fault::DivisionByZero { text }));
+            }
+            product = product / value;
+            self.note(expression, span, product);
+        }
+        Ok(product)
+    }
+
+    fn name(&mut self, expression: &Expression, span: Span, name: &str, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        let document = self.document;
+        let refuse = |scope: &Self| {
+            let fault = |_| Fault::NotHere { name: name.to_owned(), place: stage.place(), allowed: stage.allowed() };
+            Err(scope.error(expression, span, fault))
+        };
+        if name == "pi" {
+            return Ok(std::f64::consts::PI.into());
+        }
+        if document.parameters.iter().any(|p| p.name.text == name) {
+            return Ok(self.graph.symbol(name));
+        }
+        if let Some(index) = document.definitions.iter().position(|d| d.name.text == name) {
+            if !self.is_defined_before(expression, index) {
+                let fault = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
+                return Err(self.error(expression, span, fault));
+            }
+            return self.definition(index, stage);
+        }
+        let is_coordinate = document.coordinates.iter().any(|c| c.name.text == name);
+        let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
+        match stage {
+            Stage::Start if name == "t" || is_coordinate || is_quasi_velocity => refuse(self),
+            Stage::Definition if is_quasi_velocity => refuse(self),
+            _ if name == "t" => Ok(self.time),
+            _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
+            _ => {
+                let fault = |_| Fault::UnknownName { name: name.to_owned(), known: self.known() };
+                Err(self.error(expression, span, fault))
+            }
+        }
+    }
+
+    fn definition(&mut self, index: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        if let Some(&(.., value)) = self.definitions.iter().find(|known| (known.0, known.1) == (index, stage)) {
+            return Ok(value);
+        }
+        let value = self.resolve(&self.document.definitions[index].expression, stage)?;
+        self.definitions.push((index, stage, value));
+        Ok(value)
+    }
+
+    /// Whether definition number `index` stands before `expression`, which may itself be a definition.
+    fn is_defined_before(&self, expression: &Expression, index: usize) -> bool {
+        let position = self.document.definitions.iter().position(|d| std::ptr::eq(&raw const d.expression, expression));
+        position.is_none_or(|own| index < own)
+    }
+
+    fn known(&self) -> Vec<String> {
+        let document = self.document;
+        let parameters = document.parameters.iter().map(|p| &p.name.text);
+        let definitions = document.definitions.iter().map(|d| &d.name.text);
+        let coordinates = document.coordinates.iter().map(|c| &c.name.text);
+        let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
+        parameters.chain(definitions).chain(coordinates).chain(quasi_velocities).cloned().collect()
+    }
+
+    fn velocity_of(
+        &mut self,
+        expression: &Expression,
+        span: Span,
+        name: &str,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
+        let coordinates = &self.document.coordinates;
+        if !coordinates.iter().any(|c| c.name.text == name) {
+            let fault = |_| Fault::NotACoordinate {
+                name: name.to_owned(),
+                coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
+            };
+            return Err(self.error(expression, span, fault));
+        }
+        match stage {
+            Stage::Start | Stage::Kinematics => Err(self.error(expression, span, |text| Fault::NotHere {
+                name: text,
+                place: stage.place(),
+                allowed: stage.allowed(),
+            })),
+            _ => Ok(self.velocity(name)),
+        }
+    }
+
+    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i, and accelerations where f contains velocities.
+    fn total_derivative(
+        &mut self,
+        expression: &Expression,
+        span: Span,
+        inner: &Ast,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
+        let refused = match stage {
+            Stage::Start | Stage::Kinematics => true,
+            Stage::Definition | Stage::Dynamics | Stage::Observation => false,
+        };
+        if refused {
+            let fault =
+                |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
+            return Err(self.error(expression, span, fault));
+        }
+        let value = self.ast(expression, inner, stage)?;
+        let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
+        let moves = |z: &Expr<'g>| value.depends_on(*z);
+        if stage != Stage::Observation && velocities.iter().chain(&eta).any(moves) {
+            return Err(self.error(expression, span, |_| Fault::Acceleration { place: stage.place() }));
+        }
+        let rate = |symbol: &Expr<'g>| (*symbol, self.graph.symbol(&format!("{symbol}'")));
+        let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
+        rates.extend(velocities.iter().map(rate));
+        rates.extend(eta.iter().map(rate));
+        rates.push((self.time, Expr::ONE));
+        Ok(self.graph.directional(&[value], &rates)[0])
+    }
+}
+
+fn call<'g>(function: &str, args: &[Expr<'g>], graph: &'g Graph) -> Expr<'g> {
+    match (function, args) {
+        ("sin", &[x]) => x.sin(),
+        ("cos", &[x]) => x.cos(),
+        ("tan", &[x]) => x.tan(),
+        ("cot", &[x]) => x.cot(),
+        ("asin", &[x]) => x.asin(),
+        ("acos", &[x]) => x.acos(),
+        ("atan", &[x]) => x.atan(),
+        ("sinh", &[x]) => x.sinh(),
+        ("cosh", &[x]) => x.cosh(),
+        ("tanh", &[x]) => x.tanh(),
+        ("exp", &[x]) => x.exp(),
+        ("log", &[x]) => x.log(),
+        ("sqrt", &[x]) => x.sqrt(),
+        ("abs", &[x]) => x.abs(),
+        ("sign", &[x]) => x.sign(),
+        ("atan2", &[y, x]) => y.atan2(x),
+        ("min", &[x, y]) => x.min(y),
+        ("max", &[x, y]) => x.max(y),
+        ("step", &[x, a, b]) => x.step(a, b),
+        _ => unreachable!("the parser knows the functions and their arguments: {function} of {graph:?}"),
+    }
+}
+
+/// The entry for `name` in a list of named expressions.
+pub(crate) fn entry<'d>(list: &'d [NamedExpression], name: &str) -> Option<&'d NamedExpression> {
+    list.iter().find(|item| item.name.text == name)
+}

@@ -1,0 +1,1 @@
+//! Nonholonomic constraints in quasi-velocities

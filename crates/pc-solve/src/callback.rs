@@ -1,0 +1,178 @@
+//! From CVODES' callbacks to a [`VectorField`], with failures, panics and numbers that are not finite.
+
+use std::any::Any;
+use std::ffi::{c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::NonNull;
+use std::slice;
+
+use pc_expr::{Failure, VectorField};
+use sundials_sys as sys;
+
+use crate::error::NonFinite;
+
+const SUCCESS: c_int = 0;
+const RECOVERABLE: c_int = 1;
+const FATAL: c_int = -1;
+
+/// What the callbacks read and write.
+pub(crate) struct Callbacks<F> {
+    pub(crate) field: F,
+    dim: usize,
+    /// The last failure since it was taken.
+    failure: Option<Failure>,
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+impl<F: VectorField> Callbacks<F> {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> c_int {
+        self.guard(|field| {
+            field.rhs(t, y, ydot)?;
+            match ydot.iter().position(|rate| !rate.is_finite()) {
+                None => Ok(()),
+                Some(i) => Err(Failure::recoverable(NonFinite::Rate {
+                    component: field.component_name(i),
+                    value: ydot[i],
+                    t,
+                })),
+            }
+        })
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> c_int {
+        let dim = self.dim;
+        self.guard(|field| {
+            field.jacobian(t, y, jacobian)?;
+            match jacobian.iter().position(|entry| !entry.is_finite()) {
+                None => Ok(()),
+                Some(k) => Err(Failure::recoverable(NonFinite::Jacobian {
+                    row: field.component_name(k % dim),
+                    column: field.component_name(k / dim),
+                    value: jacobian[k],
+                    t,
+                })),
+            }
+        })
+    }
+
+    /// Evaluates, keeps a failure or panic for the caller of CVODES, and answers as CVODES expects.
+    fn guard(&mut self, evaluate: impl FnOnce(&mut F) -> Result<(), Failure>) -> c_int {
+        if self.panic.is_some() {
+            return FATAL;
+        }
+        let field = &mut self.field;
+        // Unwind safe: the panic goes on in the caller as soon as CVODES has returned.
+        match catch_unwind(AssertUnwindSafe(|| evaluate(field))) {
+            Ok(Ok(())) => SUCCESS,
+            Ok(Err(failure)) => {
+                let answer = if failure.is_recoverable() { RECOVERABLE } else { FATAL };
+                self.failure = Some(failure);
+                answer
+            }
+            Err(panic) => {
+                self.panic = Some(panic);
+                FATAL
+            }
+        }
+    }
+}
+
+/// An owned [`Callbacks`] at an address that CVODES may keep.
+pub(crate) struct UserData<F>(NonNull<Callbacks<F>>);
+
+impl<F> UserData<F> {
+    pub(crate) fn new(field: F, dim: usize) -> Self {
+        let callbacks = Callbacks { field, dim, failure: None, panic: None };
+        UserData(NonNull::from(Box::leak(Box::new(callbacks))))
+    }
+
+    /// The address for `CVodeSetUserData`.
+    pub(crate) fn address(&self) -> *mut c_void {
+        self.0.as_ptr().cast()
+    }
+
+    pub(crate) fn field(&self) -> &F {
+        // SAFETY: owned and live; callbacks run only in calls that borrow the owner exclusively.
+        &unsafe { self.0.as_ref() }.field
+    }
+
+    pub(crate) fn into_field(self) -> F {
+        let callbacks = std::mem::ManuallyDrop::new(self).0;
+        // SAFETY: made by `Box::leak` in `new`, and `drop` will not run.
+        unsafe { Box::from_raw(callbacks.as_ptr()) }.field
+    }
+
+    pub(crate) fn take_failure(&mut self) -> Option<Failure> {
+        // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.failure.take()
+    }
+
+    pub(crate) fn take_panic(&mut self) -> Option<Box<dyn Any + Send>> {
+        // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.panic.take()
+    }
+}
+
+impl<F> Drop for UserData<F> {
+    fn drop(&mut self) {
+        // SAFETY: made by `Box::leak` in `new`, and owned.
+        drop(unsafe { Box::from_raw(self.0.as_ptr()) });
+    }
+}
+
+/// `CVRhsFn`.
+///
+/// # Safety
+/// Called by CVODES with the address of a [`UserData<F>`] and vectors of its dimension.
+pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
+    t: f64,
+    y: sys::N_Vector,
+    ydot: sys::N_Vector,
+    user_data: *mut c_void,
+) -> c_int {
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
+    // SAFETY: `y` and `ydot` are live serial vectors of length `dim`, distinct from each other.
+    let (y, ydot) = unsafe {
+        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
+        (y, nan_slice(sys::N_VGetArrayPointer(ydot), callbacks.dim))
+    };
+    callbacks.rhs(t, y, ydot)
+}
+
+/// `CVLsJacFn`.
+///
+/// # Safety
+/// As for [`rhs`]; `matrix` is dense and square.
+pub(crate) unsafe extern "C" fn jacobian<F: VectorField>(
+    t: f64,
+    y: sys::N_Vector,
+    _ydot: sys::N_Vector,
+    matrix: sys::SUNMatrix,
+    user_data: *mut c_void,
+    _tmp1: sys::N_Vector,
+    _tmp2: sys::N_Vector,
+    _tmp3: sys::N_Vector,
+) -> c_int {
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
+    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim, column-major and contiguous.
+    let (y, matrix) = unsafe {
+        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
+        (y, nan_slice(sys::SUNDenseMatrix_Data(matrix), callbacks.dim * callbacks.dim))
+    };
+    callbacks.jacobian(t, y, matrix)
+}
+
+/// `len` numbers at `data` as a slice, all set to NaN, so that an entry the field leaves unwritten is found.
+///
+/// # Safety
+/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be initialised.
+unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
+    for i in 0..len {
+        // SAFETY: within the room promised.
+        unsafe { data.add(i).write(f64::NAN) };
+    }
+    // SAFETY: initialised just now, and ours alone.
+    unsafe { slice::from_raw_parts_mut(data, len) }
+}

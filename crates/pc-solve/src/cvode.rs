@@ -1,0 +1,359 @@
+//! The integrator.
+
+mod setup;
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+
+use pc_expr::{Failure, VectorField};
+use sundials_sys as sys;
+
+use crate::callback::UserData;
+use crate::code::Code;
+use crate::context::Context;
+use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::handles::{LinearSolver, Matrix, Memory, NonlinearIteration, Vector};
+use crate::options::finite;
+use crate::statistics::Statistics;
+
+/// An integration of ẏ = f(t, y) by CVODES, owning the vector field.
+///
+/// It stands at a [`time`](Cvode::time) with a [`state`](Cvode::state). CVODES itself may be up to one internal step
+/// ahead; outputs in between are interpolated with the polynomial of the method, so that asking for more of them
+/// changes no step. The direction of time is that of the first step.
+///
+/// After an error the state is the last one reached. A panic of the vector field leaves the integration so too and
+/// goes on to the caller.
+pub struct Cvode<F> {
+    // Dropped in this order: what CVODES refers to after CVODES, the context last.
+    memory: Memory,
+    _nonlinear_iteration: NonlinearIteration,
+    linear: Option<(LinearSolver, Matrix)>,
+    /// y(`step_time`).
+    step_state: Vector,
+    /// y(`time`), unless `time` is `step_time`.
+    output: Vector,
+    /// Where CVODES writes.
+    work: Vector,
+    callbacks: UserData<F>,
+    context: Context,
+
+    time: f64,
+    /// How far CVODES is.
+    step_time: f64,
+    /// 1 or −1 since the first step.
+    direction: Option<f64>,
+    initial_step: Option<f64>,
+    max_steps: u64,
+    stop_time: Option<f64>,
+    /// Steps in sequence that have ended at the same time, and the last failure got over in them.
+    idle_steps: u32,
+    idle_failure: Option<Failure>,
+}
+
+/// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
+const MAX_IDLE_STEPS: u32 = 1000;
+
+// SAFETY: the SUNDIALS objects are reached through this struct alone, share nothing with other contexts and are not
+// tied to a thread; F is the only part that could be.
+unsafe impl<F: Send> Send for Cvode<F> {}
+
+impl<F: VectorField> fmt::Debug for Cvode<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cvode")
+            .field("time", &self.time)
+            .field("state", &self.state())
+            .field("statistics", &self.statistics())
+            .finish_non_exhaustive()
+    }
+}
+
+/// How a [`run`](Cvode::run) ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// All output times were reached.
+    Completed,
+    /// An observer stopped it.
+    Stopped,
+}
+
+impl<F: VectorField> Cvode<F> {
+    /// Integrates to `t` and returns the state there, at once if it is where the integration stands.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] if `t` is not finite, lies behind or beyond the stop time;
+    /// [`SolveError::Integration`] if the integration fails.
+    pub fn advance_to(&mut self, t: f64) -> Result<&[f64], SolveError> {
+        self.check_ahead(t)?;
+        // Without an observer nothing can stop it.
+        let _ = self.advance(t, t, &mut |_, _| ControlFlow::Continue(()))?;
+        Ok(self.state())
+    }
+
+    /// Takes one internal step in the direction of `towards` and returns its end, which may lie beyond `towards`.
+    ///
+    /// If the integration stands inside the last step, goes to the end of that step instead. The length of the first
+    /// step, unless given, is estimated with the distance to `towards` as scale.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Cvode::advance_to); [`InputError::EndIsStart`] if `towards` is where it stands.
+    pub fn step(&mut self, towards: f64) -> Result<f64, SolveError> {
+        self.check_ahead(towards)?;
+        if towards == self.time {
+            return Err(InputError::EndIsStart { t: towards }.into());
+        }
+        if self.time == self.step_time {
+            self.internal_step(towards)?;
+        } else {
+            self.time = self.step_time;
+        }
+        Ok(self.time)
+    }
+
+    /// Integrates through `times`, which go one way from where the integration stands, and gives each (t, y) to
+    /// `output`.
+    ///
+    /// The first time may be where the integration stands, the last may not.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Cvode::advance_to); outputs before the failure have been given.
+    pub fn run(
+        &mut self,
+        times: &[f64],
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.run_observed(times, output, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Cvode::run), and gives the end (t, y) of each internal step to `step`, before the outputs inside
+    /// that step: to show progress, or to stop.
+    ///
+    /// # Errors
+    /// As for [`run`](Cvode::run).
+    pub fn run_observed(
+        &mut self,
+        times: &[f64],
+        mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+        mut step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        let end = self.check_times(times)?;
+        for &t in times {
+            if self.advance(t, end, &mut step)?.is_break() || output(t, self.state()).is_break() {
+                return Ok(Ending::Stopped);
+            }
+        }
+        Ok(Ending::Completed)
+    }
+
+    /// The derivative of y of the given order at `t` in the last internal step, by the polynomial of the method.
+    ///
+    /// Order 0 is y itself. The polynomial has the degree of the method's current order.
+    ///
+    /// # Errors
+    /// [`InputError::NoStep`] before the first step; [`SolveError::Integration`] with [`Code::BadTime`] outside the last
+    /// step and [`Code::BadOrder`] above the degree.
+    pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        finite("the time", t)?;
+        if self.direction.is_none() {
+            return Err(InputError::NoStep.into());
+        }
+        self.interpolate_to_work(t, order)?;
+        Ok(self.work.as_slice())
+    }
+
+    /// Where the integration stands: the time last advanced or stepped to.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// y at [`time`](Cvode::time).
+    pub fn state(&self) -> &[f64] {
+        if self.time == self.step_time { self.step_state.as_slice() } else { self.output.as_slice() }
+    }
+
+    /// The vector field.
+    pub fn field(&self) -> &F {
+        self.callbacks.field()
+    }
+
+    /// Ends the integration and gives the vector field back.
+    pub fn into_field(self) -> F {
+        let Cvode { memory, callbacks, .. } = self;
+        drop(memory);
+        callbacks.into_field() // The other parts are dropped after this, in order.
+    }
+
+    /// The work so far.
+    pub fn statistics(&self) -> Statistics {
+        Statistics::read(&self.memory, self.linear.is_some())
+    }
+
+    /// Sets a time beyond which the vector field is never evaluated, or removes it.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] if it is not finite or lies behind the last internal step.
+    pub fn set_stop_time(&mut self, stop_time: Option<f64>) -> Result<(), SolveError> {
+        if let Some(t) = stop_time {
+            finite("the stop time", t)?;
+            if self.direction.is_some_and(|direction| (t - self.step_time) * direction < 0.0) {
+                return Err(InputError::Behind { requested: t, current: self.step_time }.into());
+            }
+            self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, t)?;
+        } else {
+            // SAFETY: the memory is live and initialised.
+            let code = unsafe { sys::CVodeClearStopTime(self.memory.raw()) };
+            self.context.check("CVodeClearStopTime", code)?;
+        }
+        self.stop_time = stop_time;
+        Ok(())
+    }
+
+    /// Checks that the integration can go on to `t`.
+    fn check_ahead(&self, t: f64) -> Result<(), InputError> {
+        finite("the time", t)?;
+        if t == self.time {
+            return Ok(());
+        }
+        let direction = self.direction.unwrap_or(1.0_f64.copysign(t - self.time));
+        if (t - self.time) * direction < 0.0 {
+            return Err(InputError::Behind { requested: t, current: self.time });
+        }
+        match self.stop_time {
+            Some(stop_time) if (t - stop_time) * direction > 0.0 => {
+                Err(InputError::BeyondStopTime { requested: t, stop_time })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks output times and returns the last.
+    fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
+        let &end = times.last().ok_or(InputError::NoTimes)?;
+        for (i, &t) in times.iter().enumerate() {
+            finite(&format!("output time number {i} (from 0)"), t)?;
+        }
+        if end == self.time {
+            return Err(InputError::EndIsStart { t: end });
+        }
+        let direction = 1.0_f64.copysign(end - self.time);
+        for (i, pair) in times.windows(2).enumerate() {
+            if (pair[1] - pair[0]) * direction <= 0.0 {
+                return Err(InputError::TimesNotMonotonic { index: i + 1, previous: pair[0], time: pair[1] });
+            }
+        }
+        if (times[0] - self.time) * direction < 0.0 {
+            return Err(InputError::Behind { requested: times[0], current: self.time });
+        }
+        self.check_ahead(end)?;
+        Ok(end)
+    }
+
+    /// Goes to `t`, which has been checked, with internal steps towards `end` as far as needed.
+    fn advance(
+        &mut self,
+        t: f64,
+        end: f64,
+        observe: &mut impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, SolveError> {
+        if t == self.time {
+            return Ok(ControlFlow::Continue(()));
+        }
+        let mut steps = 0;
+        while self.direction.is_none_or(|direction| (t - self.step_time) * direction > 0.0) {
+            if steps == self.max_steps {
+                // Counted here, because CVODES is asked for one step at a time.
+                let message = format!("{steps} internal steps taken before reaching t = {t}.");
+                let reason = Reason::Cvode { code: Code::TooMuchWork, message };
+                return Err(self.failed(reason, None));
+            }
+            self.internal_step(end)?;
+            steps += 1;
+            if observe(self.step_time, self.step_state.as_slice()).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        if t != self.step_time {
+            self.interpolate_to_work(t, 0)?;
+            std::mem::swap(&mut self.output, &mut self.work);
+        }
+        self.time = t;
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// One step of CVODES.
+    fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
+        if self.direction.is_none()
+            && let Some(length) = self.initial_step
+        {
+            let length = length.copysign(towards - self.step_time);
+            self.memory.set(&mut self.context, "CVodeSetInitStep", sys::CVodeSetInitStep, length)?;
+        }
+        // CVODES minds its stop time only if the target is not nearer.
+        let target = self.stop_time.unwrap_or(towards);
+        let mut t = self.step_time;
+        // SAFETY: all is live and of one context; callbacks use only the user data, which nobody holds meanwhile.
+        let code =
+            unsafe { sys::CVode(self.memory.raw(), target, self.work.raw(), &raw mut t, sys::CV_ONE_STEP) };
+        if let Some(panic) = self.callbacks.take_panic() {
+            self.time = self.step_time;
+            resume_unwind(panic);
+        }
+        let failure = self.callbacks.take_failure();
+        let message = self.context.take_messages();
+        if code != sys::CV_SUCCESS && code != sys::CV_TSTOP_RETURN {
+            return Err(self.failed(Reason::Cvode { code: code.into(), message }, failure));
+        }
+        if let Some(i) = self.work.as_slice().iter().position(|value| !value.is_finite()) {
+            let component = self.field().component_name(i);
+            let value = self.work.as_slice()[i];
+            return Err(self.failed(Reason::Overflow { component, value, t }, failure));
+        }
+        std::mem::swap(&mut self.step_state, &mut self.work);
+        self.direction.get_or_insert(1.0_f64.copysign(towards - self.step_time));
+        let before = std::mem::replace(&mut self.step_time, t);
+        self.time = t;
+        self.check_progress(before, failure)
+    }
+
+    /// Fails if many steps in sequence have ended where they began, the last at `before`.
+    ///
+    /// `failure` was met in the last step and got over by a shorter one.
+    fn check_progress(&mut self, before: f64, failure: Option<Failure>) -> Result<(), SolveError> {
+        if self.step_time != before {
+            self.idle_steps = 0;
+            self.idle_failure = None;
+            return Ok(());
+        }
+        self.idle_steps += 1;
+        self.idle_failure = failure.or(self.idle_failure.take());
+        if self.idle_steps < MAX_IDLE_STEPS {
+            return Ok(());
+        }
+        self.idle_steps = 0;
+        let failure = self.idle_failure.take();
+        Err(self.failed(Reason::Stalled, failure))
+    }
+
+    fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
+        let order = i32::try_from(order).unwrap_or(i32::MAX);
+        // SAFETY: memory and vector are live and of one context; a step has been taken.
+        let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, order, self.work.raw()) };
+        if code == sys::CV_SUCCESS {
+            return Ok(());
+        }
+        let reason = Reason::Cvode { code: code.into(), message: self.context.take_messages() };
+        Err(self.error(reason, None))
+    }
+
+    /// The error of a failed step, after going to the end of the last successful one.
+    fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+        self.time = self.step_time;
+        self.error(reason, failure)
+    }
+
+    fn error(&self, reason: Reason, failure: Option<Failure>) -> SolveError {
+        let state = self.step_state.as_slice().to_vec();
+        SolveError::Integration(Box::new(IntegrationError { reason, time: self.step_time, state, failure }))
+    }
+}

@@ -1,0 +1,131 @@
+//! From a problem and options to a solver that is ready.
+
+use std::ffi::c_int;
+
+use pc_expr::VectorField;
+use sundials_sys as sys;
+
+use super::Cvode;
+use crate::callback::{self, UserData};
+use crate::context::Context;
+use crate::error::{InputError, SolveError};
+use crate::handles::{LinearSolver, Matrix, Memory, NonlinearIteration, Vector};
+use crate::options::{Method, NonlinearSolver, Options, Tolerance, check_length, finite};
+
+impl<F: VectorField> Cvode<F> {
+    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
+    /// [`SolveError::Setup`] if SUNDIALS runs out of memory.
+    pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
+        check_start(&field, t0, y0)?;
+        options.validate(y0.len())?;
+        let has_jacobian = field.has_jacobian();
+
+        // Dropped in reverse order if one of them fails.
+        let mut context = Context::new()?;
+        let callbacks = UserData::new(field, y0.len());
+        let step_state = Vector::new(&mut context, y0)?;
+        let output = Vector::new(&mut context, y0)?;
+        let work = Vector::new(&mut context, y0)?;
+        let (linear, nonlinear_iteration) = match options.nonlinear_solver {
+            NonlinearSolver::Newton => {
+                let matrix = Matrix::new(&mut context, y0.len())?;
+                let solver = LinearSolver::dense(&mut context, &step_state, &matrix)?;
+                (Some((solver, matrix)), NonlinearIteration::newton(&mut context, &step_state)?)
+            }
+            NonlinearSolver::FixedPoint => {
+                (None, NonlinearIteration::fixed_point(&mut context, &step_state)?)
+            }
+        };
+        let method = match options.method {
+            Method::Bdf => sys::CV_BDF,
+            Method::Adams => sys::CV_ADAMS,
+        };
+        let memory = Memory::new(&mut context, method)?;
+        let mem = memory.raw();
+
+        // SAFETY: `mem` is live; CVODES copies the start from the vector.
+        let code = unsafe { sys::CVodeInit(mem, Some(callback::rhs::<F>), t0, step_state.raw()) };
+        context.check("CVodeInit", code)?;
+        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives `mem`.
+        let code = unsafe { sys::CVodeSetUserData(mem, callbacks.address()) };
+        context.check("CVodeSetUserData", code)?;
+        // SAFETY: `mem` is initialised; the iteration outlives it.
+        let code = unsafe { sys::CVodeSetNonlinearSolver(mem, nonlinear_iteration.raw()) };
+        context.check("CVodeSetNonlinearSolver", code)?;
+        if let Some((solver, matrix)) = &linear {
+            // SAFETY: `mem` is initialised; solver and matrix match and outlive it.
+            let code = unsafe { sys::CVodeSetLinearSolver(mem, solver.raw(), matrix.raw()) };
+            context.check("CVodeSetLinearSolver", code)?;
+            if has_jacobian {
+                // SAFETY: the linear solver is set, and its matrix is dense as the callback expects.
+                let code = unsafe { sys::CVodeSetJacFn(mem, Some(callback::jacobian::<F>)) };
+                context.check("CVodeSetJacFn", code)?;
+            }
+        }
+        apply(options, &memory, &mut context)?;
+
+        let mut cvode = Cvode {
+            memory,
+            _nonlinear_iteration: nonlinear_iteration,
+            linear,
+            step_state,
+            output,
+            work,
+            callbacks,
+            context,
+            time: t0,
+            step_time: t0,
+            direction: None,
+            initial_step: options.initial_step,
+            max_steps: options.max_steps,
+            stop_time: None,
+            idle_steps: 0,
+            idle_failure: None,
+        };
+        cvode.set_stop_time(options.stop_time)?;
+        Ok(cvode)
+    }
+}
+
+fn check_start(field: &impl VectorField, t0: f64, y0: &[f64]) -> Result<(), InputError> {
+    if field.dim() == 0 {
+        return Err(InputError::NoComponents);
+    }
+    finite("the start time", t0)?;
+    check_length("the start", y0.len(), field.dim())?;
+    for (i, &value) in y0.iter().enumerate() {
+        finite(&format!("{} at the start", field.component_name(i)), value)?;
+    }
+    Ok(())
+}
+
+/// Hands the tolerances and limits to CVODES, which has been initialised.
+fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<(), SolveError> {
+    let rtol = options.relative_tolerance;
+    match &options.absolute_tolerance {
+        Tolerance::Scalar(atol) => {
+            // SAFETY: the memory is initialised.
+            let code = unsafe { sys::CVodeSStolerances(memory.raw(), rtol, *atol) };
+            context.check("CVodeSStolerances", code)?;
+        }
+        Tolerance::Vector(atol) => {
+            let atol = Vector::new(context, atol)?;
+            // SAFETY: the memory is initialised; CVODES copies the vector, which has its dimension.
+            let code = unsafe { sys::CVodeSVtolerances(memory.raw(), rtol, atol.raw()) };
+            context.check("CVodeSVtolerances", code)?;
+        }
+    }
+    if let Some(length) = options.max_step {
+        memory.set(context, "CVodeSetMaxStep", sys::CVodeSetMaxStep, length)?;
+    }
+    if let Some(length) = options.min_step {
+        memory.set(context, "CVodeSetMinStep", sys::CVodeSetMinStep, length)?;
+    }
+    if let Some(order) = options.max_order {
+        memory.set(context, "CVodeSetMaxOrd", sys::CVodeSetMaxOrd, order as c_int)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,274 @@
+//! What can go wrong.
+
+use std::error::Error;
+use std::fmt;
+
+use pc_expr::Failure;
+
+use crate::code::Code;
+use crate::options::Method;
+use crate::trajectory::Trajectory;
+
+/// Why an integration was not begun or not completed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// The problem or an option is not valid; no step was taken.
+    #[error(transparent)]
+    Input(#[from] InputError),
+
+    /// SUNDIALS could not make or set up one of its objects; with valid input, it ran out of memory.
+    #[error("{function} failed with code {code}: {message}")]
+    Setup {
+        /// The function of SUNDIALS.
+        function: &'static str,
+        /// Its return code.
+        code: i32,
+        /// What SUNDIALS said.
+        message: String,
+    },
+
+    /// The integration began and could not go on.
+    #[error(transparent)]
+    Integration(Box<IntegrationError>),
+}
+
+impl SolveError {
+    /// The return code of CVODES, if that is the reason.
+    pub fn code(&self) -> Option<Code> {
+        match self {
+            SolveError::Integration(error) => match error.reason {
+                Reason::Cvode { code, .. } => Some(code),
+                Reason::Overflow { .. } | Reason::Stalled => None,
+            },
+            SolveError::Input(_) | SolveError::Setup { .. } => None,
+        }
+    }
+
+    /// The last state reached, (t, y), if the integration had begun.
+    pub fn reached(&self) -> Option<(f64, &[f64])> {
+        match self {
+            SolveError::Integration(error) => Some((error.time, &error.state)),
+            SolveError::Input(_) | SolveError::Setup { .. } => None,
+        }
+    }
+}
+
+/// Why an integration could not go on, and the last state it reached.
+///
+/// Its [`source`](Error::source) is the cause of [`failure`](IntegrationError::failure).
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct IntegrationError {
+    /// Why it could not go on.
+    pub reason: Reason,
+    /// End of the last successful internal step.
+    pub time: f64,
+    /// The state at [`time`](IntegrationError::time); as many numbers as the field has components.
+    pub state: Vec<f64>,
+    /// The last failure of the vector field there: what it reported, or [`NonFinite`] if it wrote such a number.
+    pub failure: Option<Failure>,
+}
+
+impl fmt::Display for IntegrationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = self.time;
+        match &self.reason {
+            Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),
+            Reason::Overflow { component, value, t } => {
+                write!(f, "{component} is {value} at t = {t}, after reaching t = {time}")
+            }
+            Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+        }
+    }
+}
+
+impl Error for IntegrationError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.failure.as_ref().map(|failure| failure.cause() as &(dyn Error + 'static))
+    }
+}
+
+/// Why an integration could not go on.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// CVODES returned an error.
+    Cvode {
+        /// Its return code.
+        code: Code,
+        /// What it said.
+        message: String,
+    },
+
+    /// A component grew beyond the largest number in a step that CVODES accepted.
+    Overflow {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// End of that step.
+        t: f64,
+    },
+
+    /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
+    /// wall it in.
+    Stalled,
+}
+
+/// A number that is not finite, written by a vector field that reported no failure, or never written.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NonFinite {
+    /// A component of f(t, y).
+    #[error("the rate of {component} is {value} at t = {t}")]
+    Rate {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where f was evaluated.
+        t: f64,
+    },
+
+    /// An entry of ∂f/∂y.
+    #[error("the derivative of the rate of {row} by {column} is {value} at t = {t}")]
+    Jacobian {
+        /// Name of the component of f.
+        row: String,
+        /// Name of the component of y.
+        column: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the Jacobian was evaluated.
+        t: f64,
+    },
+}
+
+/// What is wrong with a problem or an option.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// The vector field has dimension 0.
+    #[error("the vector field has no components")]
+    NoComponents,
+
+    /// A list of one number for each component has another length.
+    #[error("{what}: {found} numbers for {expected} components")]
+    Length {
+        /// Which list.
+        what: &'static str,
+        /// Dimension of the vector field.
+        expected: usize,
+        /// Length of the list.
+        found: usize,
+    },
+
+    /// An input is NaN or infinite.
+    #[error("{what} is {value}")]
+    NotFinite {
+        /// Which input.
+        what: String,
+        /// NaN or an infinity.
+        value: f64,
+    },
+
+    /// An option that must be positive is not.
+    #[error("{what} is {value}, but must be positive")]
+    NotPositive {
+        /// Which option.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+
+    /// The largest order is 0 or beyond what the method has.
+    #[error("the maximum order is {found}, but {method} has orders 1 to {limit}")]
+    MaxOrder {
+        /// The method.
+        method: Method,
+        /// Its highest order.
+        limit: u32,
+        /// The order asked for.
+        found: u32,
+    },
+
+    /// The least step is larger than the largest.
+    #[error("the minimum step {min} is larger than the maximum step {max}")]
+    StepBounds {
+        /// The least step.
+        min: f64,
+        /// The largest step.
+        max: f64,
+    },
+
+    /// The maximum number of steps is 0.
+    #[error("the maximum number of steps must be at least 1")]
+    MaxSteps,
+
+    /// No output times are given.
+    #[error("no output times are given")]
+    NoTimes,
+
+    /// The output times do not all go one way.
+    #[error("output time {time} (number {index} from 0) does not go on from {previous}")]
+    TimesNotMonotonic {
+        /// Place in the list.
+        index: usize,
+        /// The time before it.
+        previous: f64,
+        /// The time that goes back or stays.
+        time: f64,
+    },
+
+    /// The time to go to is where the integration stands.
+    #[error("the end is the start, t = {t}")]
+    EndIsStart {
+        /// That time.
+        t: f64,
+    },
+
+    /// A time lies against the direction of integration.
+    #[error("t = {requested} lies behind t = {current}")]
+    Behind {
+        /// The time asked for.
+        requested: f64,
+        /// Where the integration stands.
+        current: f64,
+    },
+
+    /// A time lies beyond the stop time.
+    #[error("t = {requested} lies beyond the stop time {stop_time}")]
+    BeyondStopTime {
+        /// The time asked for.
+        requested: f64,
+        /// The stop time.
+        stop_time: f64,
+    },
+
+    /// Interpolation before the first step.
+    #[error("no step has been taken to interpolate in")]
+    NoStep,
+}
+
+/// A failed [`solve`](crate::solve) with the outputs it had reached.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct SolveFailure {
+    /// The outputs before the failure.
+    pub reached: Trajectory,
+    /// What went wrong.
+    pub error: SolveError,
+}
+
+impl fmt::Display for SolveFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl Error for SolveFailure {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.error.source()
+    }
+}

@@ -1,0 +1,163 @@
+//! Owning handles of the SUNDIALS objects of one solver.
+//!
+//! Each frees its object when dropped and must be dropped before the [`Context`] it was made in.
+
+use std::ffi::{c_int, c_void};
+use std::ptr::NonNull;
+use std::slice;
+
+use sundials_sys as sys;
+
+use crate::context::Context;
+use crate::error::SolveError;
+
+/// A serial `N_Vector`.
+pub(crate) struct Vector {
+    raw: NonNull<sys::_generic_N_Vector>,
+    data: NonNull<f64>,
+    len: usize,
+}
+
+impl Vector {
+    pub(crate) fn new(context: &mut Context, values: &[f64]) -> Result<Self, SolveError> {
+        // SAFETY: the context is live; a slice is never longer than i64::MAX.
+        let raw = unsafe { sys::N_VNew_Serial(values.len() as sys::sunindextype, context.raw()) };
+        let raw = context.check_new("N_VNew_Serial", raw)?;
+        let mut vector = Vector { raw, data: NonNull::dangling(), len: values.len() };
+        // SAFETY: the vector is live; its data stay in place as long as it lives.
+        let data = unsafe { sys::N_VGetArrayPointer(vector.raw()) };
+        vector.data = context.check_new("N_VGetArrayPointer", data)?;
+        // SAFETY: the data have room for `values.len()` numbers and are not part of `values`.
+        unsafe { vector.data.as_ptr().copy_from_nonoverlapping(values.as_ptr(), values.len()) };
+        Ok(vector)
+    }
+
+    pub(crate) fn raw(&self) -> sys::N_Vector {
+        self.raw.as_ptr()
+    }
+
+    pub(crate) fn as_slice(&self) -> &[f64] {
+        // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector changes.
+        unsafe { slice::from_raw_parts(self.data.as_ptr(), self.len) }
+    }
+}
+
+impl Drop for Vector {
+    fn drop(&mut self) {
+        // SAFETY: the vector is owned.
+        unsafe { sys::N_VDestroy(self.raw.as_ptr()) };
+    }
+}
+
+/// A dense n × n `SUNMatrix`.
+pub(crate) struct Matrix(NonNull<sys::_generic_SUNMatrix>);
+
+impl Matrix {
+    pub(crate) fn new(context: &mut Context, n: usize) -> Result<Self, SolveError> {
+        let n = n as sys::sunindextype;
+        // SAFETY: the context is live.
+        let raw = unsafe { sys::SUNDenseMatrix(n, n, context.raw()) };
+        context.check_new("SUNDenseMatrix", raw).map(Matrix)
+    }
+
+    pub(crate) fn raw(&self) -> sys::SUNMatrix {
+        self.0.as_ptr()
+    }
+}
+
+impl Drop for Matrix {
+    fn drop(&mut self) {
+        // SAFETY: the matrix is owned.
+        unsafe { sys::SUNMatDestroy(self.0.as_ptr()) };
+    }
+}
+
+/// A dense `SUNLinearSolver`.
+pub(crate) struct LinearSolver(NonNull<sys::_generic_SUNLinearSolver>);
+
+impl LinearSolver {
+    pub(crate) fn dense(context: &mut Context, y: &Vector, matrix: &Matrix) -> Result<Self, SolveError> {
+        // SAFETY: all three are live and of one context; only the sizes of `y` and `matrix` are read.
+        let raw = unsafe { sys::SUNLinSol_Dense(y.raw(), matrix.raw(), context.raw()) };
+        context.check_new("SUNLinSol_Dense", raw).map(LinearSolver)
+    }
+
+    pub(crate) fn raw(&self) -> sys::SUNLinearSolver {
+        self.0.as_ptr()
+    }
+}
+
+impl Drop for LinearSolver {
+    fn drop(&mut self) {
+        // SAFETY: the linear solver is owned.
+        unsafe { sys::SUNLinSolFree(self.0.as_ptr()) };
+    }
+}
+
+/// A `SUNNonlinearSolver`: Newton's or the fixed-point iteration.
+pub(crate) struct NonlinearIteration(NonNull<sys::_generic_SUNNonlinearSolver>);
+
+impl NonlinearIteration {
+    pub(crate) fn newton(context: &mut Context, y: &Vector) -> Result<Self, SolveError> {
+        // SAFETY: both are live and of one context; `y` is only a template to clone.
+        let raw = unsafe { sys::SUNNonlinSol_Newton(y.raw(), context.raw()) };
+        context.check_new("SUNNonlinSol_Newton", raw).map(NonlinearIteration)
+    }
+
+    pub(crate) fn fixed_point(context: &mut Context, y: &Vector) -> Result<Self, SolveError> {
+        let acceleration_vectors = 0;
+        // SAFETY: both are live and of one context; `y` is only a template to clone.
+        let raw = unsafe { sys::SUNNonlinSol_FixedPoint(y.raw(), acceleration_vectors, context.raw()) };
+        context.check_new("SUNNonlinSol_FixedPoint", raw).map(NonlinearIteration)
+    }
+
+    pub(crate) fn raw(&self) -> sys::SUNNonlinearSolver {
+        self.0.as_ptr()
+    }
+}
+
+impl Drop for NonlinearIteration {
+    fn drop(&mut self) {
+        // SAFETY: the nonlinear solver is owned; CVODES frees only those it made itself.
+        unsafe { sys::SUNNonlinSolFree(self.0.as_ptr()) };
+    }
+}
+
+/// A type of plain values, not addresses.
+pub(crate) trait Number {}
+impl Number for f64 {}
+impl Number for c_int {}
+
+/// The memory block of CVODES.
+pub(crate) struct Memory(*mut c_void);
+
+impl Memory {
+    pub(crate) fn new(context: &mut Context, method: c_int) -> Result<Self, SolveError> {
+        // SAFETY: the context is live.
+        let raw = unsafe { sys::CVodeCreate(method, context.raw()) };
+        context.check_new("CVodeCreate", raw).map(|raw| Memory(raw.as_ptr()))
+    }
+
+    pub(crate) fn raw(&self) -> *mut c_void {
+        self.0
+    }
+
+    /// Calls a set-up `function` of CVODES that takes one `value`, once CVODES has been initialised.
+    pub(crate) fn set<T: Number>(
+        &self,
+        context: &mut Context,
+        name: &'static str,
+        function: unsafe extern "C" fn(*mut c_void, T) -> c_int,
+        value: T,
+    ) -> Result<(), SolveError> {
+        // SAFETY: the memory is live; values are numbers, which CVODES checks.
+        context.check(name, unsafe { function(self.0, value) })
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        // SAFETY: the memory is owned; what it refers to is dropped later.
+        unsafe { sys::CVodeFree(&raw mut self.0) };
+    }
+}

@@ -1,0 +1,48 @@
+//! Integration of ẏ = f(t, y) with SUNDIALS CVODES, for any [`VectorField`].
+//!
+//! A vector field is compiled equations of motion or a closure:
+//! ```
+//! use pc_solve::{Options, from_fn, solve};
+//!
+//! // The pendulum φ̈ = −sin φ.
+//! let pendulum = from_fn(2, |_t, y, ydot| {
+//!     ydot[0] = y[1];
+//!     ydot[1] = -y[0].sin();
+//!     Ok(())
+//! });
+//! let motion = solve(pendulum, 0.0, &[1.0, 0.0], &[0.0, 5.0, 10.0], &Options::default())?;
+//! let energy = |y: &[f64]| 0.5 * y[1] * y[1] - y[0].cos();
+//! for (t, y) in motion.iter() {
+//!     println!("{t} {} {}", y[0], y[1]);
+//!     assert!((energy(y) - energy(&[1.0, 0.0])).abs() < 1e-7);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//! [`Options`] chooses method and tolerances; [`Cvode`] is the integration itself, to take it step by step.
+//!
+//! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
+//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
+
+#![expect(unsafe_code, reason = "calls of the C library SUNDIALS")]
+
+mod callback;
+mod code;
+mod context;
+mod cvode;
+mod error;
+mod fn_field;
+mod handles;
+mod options;
+mod solve;
+mod statistics;
+mod trajectory;
+
+pub use code::Code;
+pub use cvode::{Cvode, Ending};
+pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
+pub use fn_field::{FnField, from_fn};
+pub use options::{Method, NonlinearSolver, Options, Tolerance};
+pub use pc_expr::{Failure, VectorField};
+pub use solve::{solve, solve_observed};
+pub use statistics::Statistics;
+pub use trajectory::Trajectory;

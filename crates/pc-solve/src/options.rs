@@ -1,0 +1,210 @@
+//! How to integrate.
+
+use std::fmt;
+
+use crate::error::InputError;
+
+/// A family of linear multistep methods of variable order and step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
+    Bdf,
+    /// Adams–Moulton formulas of orders 1 to 12, for systems that are not stiff.
+    Adams,
+}
+
+impl Method {
+    /// The highest order of the family.
+    pub fn highest_order(self) -> u32 {
+        match self {
+            Method::Bdf => 5,
+            Method::Adams => 12,
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Method::Bdf => "BDF",
+            Method::Adams => "Adams",
+        })
+    }
+}
+
+/// How the implicit equation of a step is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum NonlinearSolver {
+    /// Newton's iteration with a dense matrix, from the field's Jacobian if it has one, else from difference quotients.
+    Newton,
+    /// Fixed-point iteration, which needs no matrix but contracts only for small steps of a stiff system.
+    FixedPoint,
+}
+
+/// Absolute tolerance: one for all components, or one for each.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tolerance {
+    /// The same for all components.
+    Scalar(f64),
+    /// One for each component, in order.
+    Vector(Vec<f64>),
+}
+
+impl From<f64> for Tolerance {
+    fn from(tolerance: f64) -> Self {
+        Tolerance::Scalar(tolerance)
+    }
+}
+
+impl From<Vec<f64>> for Tolerance {
+    fn from(tolerances: Vec<f64>) -> Self {
+        Tolerance::Vector(tolerances)
+    }
+}
+
+/// Method, tolerances and limits of an integration.
+///
+/// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at most 1, where e
+/// is the estimated local error. Values are checked when an integration starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    pub(crate) method: Method,
+    pub(crate) nonlinear_solver: NonlinearSolver,
+    pub(crate) relative_tolerance: f64,
+    pub(crate) absolute_tolerance: Tolerance,
+    pub(crate) max_steps: u64,
+    pub(crate) initial_step: Option<f64>,
+    pub(crate) min_step: Option<f64>,
+    pub(crate) max_step: Option<f64>,
+    pub(crate) max_order: Option<u32>,
+    pub(crate) stop_time: Option<f64>,
+}
+
+impl Default for Options {
+    /// [`Method::Adams`] with the defaults of [`Options::new`].
+    fn default() -> Self {
+        Options::new(Method::Adams)
+    }
+}
+
+impl Options {
+    /// A method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000 steps between outputs, Newton's
+    /// iteration for BDF and the fixed-point iteration for Adams.
+    pub fn new(method: Method) -> Self {
+        Options {
+            method,
+            nonlinear_solver: match method {
+                Method::Bdf => NonlinearSolver::Newton,
+                Method::Adams => NonlinearSolver::FixedPoint,
+            },
+            relative_tolerance: 1e-9,
+            absolute_tolerance: Tolerance::Scalar(1e-12),
+            max_steps: 500_000,
+            initial_step: None,
+            min_step: None,
+            max_step: None,
+            max_order: None,
+            stop_time: None,
+        }
+    }
+
+    /// How the implicit equation of a step is solved.
+    pub fn nonlinear_solver(self, nonlinear_solver: NonlinearSolver) -> Self {
+        Options { nonlinear_solver, ..self }
+    }
+
+    /// Relative tolerance, positive.
+    pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
+        Options { relative_tolerance, ..self }
+    }
+
+    /// Absolute tolerance, positive: a number, or a `Vec` of one for each component.
+    pub fn absolute_tolerance(self, absolute_tolerance: impl Into<Tolerance>) -> Self {
+        Options { absolute_tolerance: absolute_tolerance.into(), ..self }
+    }
+
+    /// Most internal steps from one output to the next, at least 1; beyond them the error is
+    /// [`Code::TooMuchWork`](crate::Code::TooMuchWork).
+    pub fn max_steps(self, max_steps: u64) -> Self {
+        Options { max_steps, ..self }
+    }
+
+    /// Length of the first step, positive in both directions of time; estimated unless given.
+    pub fn initial_step(self, length: f64) -> Self {
+        Options { initial_step: Some(length), ..self }
+    }
+
+    /// Least length of a step, positive in both directions of time.
+    pub fn min_step(self, length: f64) -> Self {
+        Options { min_step: Some(length), ..self }
+    }
+
+    /// Largest length of a step, positive in both directions of time.
+    pub fn max_step(self, length: f64) -> Self {
+        Options { max_step: Some(length), ..self }
+    }
+
+    /// Highest order to use, from 1 to [`Method::highest_order`].
+    pub fn max_order(self, order: u32) -> Self {
+        Options { max_order: Some(order), ..self }
+    }
+
+    /// A time beyond which the vector field is never evaluated.
+    pub fn stop_time(self, t: f64) -> Self {
+        Options { stop_time: Some(t), ..self }
+    }
+
+    pub(crate) fn validate(&self, dim: usize) -> Result<(), InputError> {
+        positive("the relative tolerance", self.relative_tolerance)?;
+        match &self.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => positive("the absolute tolerance", *tolerance)?,
+            Tolerance::Vector(tolerances) => {
+                check_length("the absolute tolerances", tolerances.len(), dim)?;
+                for (i, &tolerance) in tolerances.iter().enumerate() {
+                    positive(&format!("absolute tolerance number {i} (from 0)"), tolerance)?;
+                }
+            }
+        }
+        if self.max_steps == 0 {
+            return Err(InputError::MaxSteps);
+        }
+        let lengths = [
+            ("the initial step", self.initial_step),
+            ("the minimum step", self.min_step),
+            ("the maximum step", self.max_step),
+        ];
+        for (what, length) in lengths {
+            if let Some(length) = length {
+                positive(what, length)?;
+            }
+        }
+        if let (Some(min), Some(max)) = (self.min_step, self.max_step)
+            && min > max
+        {
+            return Err(InputError::StepBounds { min, max });
+        }
+        if let Some(found) = self.max_order {
+            let limit = self.method.highest_order();
+            if !(1..=limit).contains(&found) {
+                return Err(InputError::MaxOrder { method: self.method, limit, found });
+            }
+        }
+        if let Some(t) = self.stop_time {
+            finite("the stop time", t)?;
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn finite(what: &str, value: f64) -> Result<(), InputError> {
+    if value.is_finite() { Ok(()) } else { Err(InputError::NotFinite { what: what.to_owned(), value }) }
+}
+
+fn positive(what: &str, value: f64) -> Result<(), InputError> {
+    finite(what, value)?;
+    if value > 0.0 { Ok(()) } else { Err(InputError::NotPositive { what: what.to_owned(), value }) }
+}
+
+pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), InputError> {
+    if found == expected { Ok(()) } else { Err(InputError::Length { what, expected, found }) }
+}

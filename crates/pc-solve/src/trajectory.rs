@@ -1,0 +1,98 @@
+//! States at the output times.
+
+use crate::statistics::Statistics;
+
+/// The states of a motion at its output times, in the order they were reached.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    dim: usize,
+    times: Vec<f64>,
+    /// One state after the other.
+    states: Vec<f64>,
+    complete: bool,
+    statistics: Statistics,
+}
+
+impl Trajectory {
+    pub(crate) fn new(dim: usize) -> Self {
+        Trajectory {
+            dim,
+            times: Vec::new(),
+            states: Vec::new(),
+            complete: false,
+            statistics: Statistics::default(),
+        }
+    }
+
+    pub(crate) fn push(&mut self, t: f64, y: &[f64]) {
+        self.times.push(t);
+        self.states.extend_from_slice(y);
+    }
+
+    pub(crate) fn finish(&mut self, complete: bool, statistics: Statistics) {
+        self.complete = complete;
+        self.statistics = statistics;
+    }
+
+    /// Number of components of a state.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Number of outputs.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there is no output.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// The output times.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The state at `times()[i]`, of length [`dim`](Trajectory::dim).
+    ///
+    /// # Panics
+    /// If `i` is not less than [`len`](Trajectory::len).
+    pub fn state(&self, i: usize) -> &[f64] {
+        &self.states[i * self.dim..(i + 1) * self.dim]
+    }
+
+    /// All states, one after the other: component j at `times()[i]` is `states()[i * dim + j]`.
+    pub fn states(&self) -> &[f64] {
+        &self.states
+    }
+
+    /// Component `j` at each output time.
+    ///
+    /// # Panics
+    /// If `j` is not less than [`dim`](Trajectory::dim).
+    pub fn component(&self, j: usize) -> impl Iterator<Item = f64> {
+        assert!(j < self.dim, "component {j} of {}", self.dim);
+        self.iter().map(move |(_, y)| y[j])
+    }
+
+    /// The outputs (t, y) in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, &[f64])> {
+        self.times.iter().copied().zip(self.states.chunks_exact(self.dim.max(1)))
+    }
+
+    /// The last output (t, y).
+    pub fn last(&self) -> Option<(f64, &[f64])> {
+        self.times.last().map(|&t| (t, self.state(self.len() - 1)))
+    }
+
+    /// Whether all output times asked for were reached.
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+
+    /// The work done, beyond the last output too if the integration failed or was stopped.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+}

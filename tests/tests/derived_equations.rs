@@ -1,0 +1,42 @@
+//! Derived equations of every built-in model against the classical ones, coded by hand.
+
+use pc_mech::{Folding, Graph, VectorField};
+use pc_model::{Builtin, Model};
+use pc_tests::classical::{MODELS, SplitMix64, classical, sample};
+
+/// Products of numbers of order one, sums of a dozen terms: a few hundred units of rounding.
+const TOLERANCE: f64 = 1e-12;
+const STATES: usize = 1000;
+
+fn compare(folding: Folding) {
+    for &name in MODELS {
+        let builtin = Builtin::named(name).unwrap_or_else(|| panic!("{name} is not built in"));
+        let model = Model::new(builtin.document().unwrap());
+        let graph = Graph::with_folding(folding);
+        let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
+        let mut motion = assembly.system.poincare().unwrap().compile().unwrap();
+        let classical = classical(name).unwrap();
+        let mut random = SplitMix64::new(7);
+        for _ in 0..STATES {
+            let (t, y) = sample(name, &mut random).unwrap();
+            let (mut derived, mut expected) = (vec![0.0; y.len()], vec![0.0; y.len()]);
+            motion.rhs(t, &y, &mut derived).unwrap();
+            classical(t, &y, &mut expected);
+            let size = expected.iter().fold(1.0f64, |size, v| size.max(v.abs()));
+            for (i, (d, e)) in derived.iter().zip(&expected).enumerate() {
+                let error = (d - e).abs() / size;
+                assert!(error <= TOLERANCE, "{name}: component {i} at t = {t}, {y:?}: {d} against {e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn derived_equations_are_the_classical_ones() {
+    compare(Folding::ByValue);
+}
+
+#[test]
+fn without_folding_they_are_the_same() {
+    compare(Folding::Structural);
+}
