@@ -52,6 +52,10 @@ impl Interpreter {
                 Instruction::Multiply(a, b) => get(a) * get(b),
                 Instruction::Divide(a, b) => get(a) / get(b),
                 Instruction::Negate(a) => -get(a),
+                Instruction::MultiplyAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
+                Instruction::MultiplySubtract(a, b, c) => get(a).mul_add(get(b), -get(c)),
+                Instruction::NegateMultiplyAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
+                Instruction::NegateMultiplySubtract(a, b, c) => (-get(a)).mul_add(get(b), -get(c)),
                 Instruction::Call(function, args) => function.eval(&args.map(get)),
             };
         }

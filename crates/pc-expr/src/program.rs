@@ -34,6 +34,14 @@ pub enum Instruction {
     Divide(Register, Register),
     /// −a
     Negate(Register),
+    /// a·b + c, rounded once where the processor can; only in a [fused](Program::fused) program
+    MultiplyAdd(Register, Register, Register),
+    /// a·b − c, likewise
+    MultiplySubtract(Register, Register, Register),
+    /// c − a·b, likewise
+    NegateMultiplyAdd(Register, Register, Register),
+    /// −a·b − c, likewise
+    NegateMultiplySubtract(Register, Register, Register),
     /// f(a, …), as many of the registers as f has arguments
     Call(Function, [Register; 3]),
 }
@@ -47,9 +55,31 @@ impl Instruction {
             | Instruction::Multiply(a, b)
             | Instruction::Divide(a, b) => ([a, b, b], 2),
             Instruction::Negate(a) => ([a, a, a], 1),
+            Instruction::MultiplyAdd(a, b, c)
+            | Instruction::MultiplySubtract(a, b, c)
+            | Instruction::NegateMultiplyAdd(a, b, c)
+            | Instruction::NegateMultiplySubtract(a, b, c) => ([a, b, c], 3),
             Instruction::Call(function, args) => (args, function.arity()),
         };
         registers.into_iter().take(count)
+    }
+
+    /// The same operation on other registers.
+    #[must_use]
+    pub fn map(self, f: impl Fn(Register) -> Register) -> Instruction {
+        use Instruction::*;
+        match self {
+            Add(a, b) => Add(f(a), f(b)),
+            Subtract(a, b) => Subtract(f(a), f(b)),
+            Multiply(a, b) => Multiply(f(a), f(b)),
+            Divide(a, b) => Divide(f(a), f(b)),
+            Negate(a) => Negate(f(a)),
+            MultiplyAdd(a, b, c) => MultiplyAdd(f(a), f(b), f(c)),
+            MultiplySubtract(a, b, c) => MultiplySubtract(f(a), f(b), f(c)),
+            NegateMultiplyAdd(a, b, c) => NegateMultiplyAdd(f(a), f(b), f(c)),
+            NegateMultiplySubtract(a, b, c) => NegateMultiplySubtract(f(a), f(b), f(c)),
+            Call(function, args) => Call(function, args.map(f)),
+        }
     }
 }
 
@@ -67,12 +97,12 @@ pub struct Inputs<'g> {
 /// A tape of operations that computes some outputs from (t, state, parameters). Owned, `Send` and `Sync`.
 #[derive(Clone, Debug)]
 pub struct Program {
-    constants: Vec<f64>,
+    pub(crate) constants: Vec<f64>,
     names: Vec<String>,
     state: usize,
     parameters: usize,
-    code: Vec<Instruction>,
-    outputs: Vec<Register>,
+    pub(crate) code: Vec<Instruction>,
+    pub(crate) outputs: Vec<Register>,
 }
 
 impl Program {
@@ -162,11 +192,6 @@ impl Program {
         self.first_result() + self.code.len()
     }
 
-    /// Number of operations of one evaluation.
-    pub fn operations(&self) -> usize {
-        self.code.len()
-    }
-
     /// Text of what a register holds, abbreviated where it is deep.
     pub fn describe(&self, register: Register) -> String {
         self.text(register, 0)
@@ -198,6 +223,12 @@ impl Program {
             Instruction::Multiply(a, b) => format!("{}*{}", closed(a), closed(b)),
             Instruction::Divide(a, b) => format!("{}/{}", closed(a), closed(b)),
             Instruction::Negate(a) => format!("-{}", closed(a)),
+            Instruction::MultiplyAdd(a, b, c) => format!("{}*{} + {}", closed(a), closed(b), operand(c)),
+            Instruction::MultiplySubtract(a, b, c) => format!("{}*{} - {}", closed(a), closed(b), closed(c)),
+            Instruction::NegateMultiplyAdd(a, b, c) => format!("{} - {}*{}", operand(c), closed(a), closed(b)),
+            Instruction::NegateMultiplySubtract(a, b, c) => {
+                format!("-{}*{} - {}", closed(a), closed(b), closed(c))
+            }
             Instruction::Call(function, args) => {
                 let args: Vec<String> = args[..function.arity()].iter().map(|&r| operand(r)).collect();
                 format!("{}({})", function.name(), args.join(", "))
@@ -266,18 +297,7 @@ impl<'a> Lowering<'a> {
             _ => register,
         };
         self.program.outputs = registers.into_iter().map(place).collect();
-        self.program.code = self
-            .results
-            .iter()
-            .map(|instruction| match *instruction {
-                Instruction::Add(a, b) => Instruction::Add(place(a), place(b)),
-                Instruction::Subtract(a, b) => Instruction::Subtract(place(a), place(b)),
-                Instruction::Multiply(a, b) => Instruction::Multiply(place(a), place(b)),
-                Instruction::Divide(a, b) => Instruction::Divide(place(a), place(b)),
-                Instruction::Negate(a) => Instruction::Negate(place(a)),
-                Instruction::Call(function, args) => Instruction::Call(function, args.map(place)),
-            })
-            .collect();
+        self.program.code = self.results.iter().map(|instruction| instruction.map(place)).collect();
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Expr, ExprError, Failure, Inputs, Interpreter, Kernel, Program, VectorField};
+use pc_expr::{Cost, Expr, ExprError, Failure, Inputs, Interpreter, Kernel, Program, VectorField};
 
 use crate::error::MechError;
 use crate::ldl::Ldl;
@@ -137,9 +137,9 @@ impl Motion {
         values
     }
 
-    /// Operations of one evaluation of the right-hand side.
-    pub fn operations(&self) -> usize {
-        self.rhs.program().operations()
+    /// Operations of one evaluation of the right-hand side, kinematics included.
+    pub fn cost(&self) -> Cost {
+        self.rhs.program().cost()
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

@@ -1,0 +1,145 @@
+//! Fusing products into the sums that use them, and counting operations.
+
+use std::collections::BTreeMap;
+
+use crate::program::{Instruction, Program, Register};
+
+/// How many operations of each kind one evaluation takes; fused multiply-adds count as one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cost(BTreeMap<&'static str, usize>);
+
+impl Cost {
+    /// The sum over all kinds.
+    pub fn total(&self) -> usize {
+        self.0.values().sum()
+    }
+
+    /// Kinds (`add`, `sub`, `mul`, `div`, `neg`, `fma`, names of functions) with their counts, in alphabetical order.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
+        self.0.iter().map(|(&kind, &count)| (kind, count))
+    }
+
+    fn of(code: &[Instruction]) -> Cost {
+        let mut counts = BTreeMap::new();
+        for instruction in code {
+            let kind = match instruction {
+                Instruction::Add(..) => "add",
+                Instruction::Subtract(..) => "sub",
+                Instruction::Multiply(..) => "mul",
+                Instruction::Divide(..) => "div",
+                Instruction::Negate(_) => "neg",
+                Instruction::MultiplyAdd(..)
+                | Instruction::MultiplySubtract(..)
+                | Instruction::NegateMultiplyAdd(..)
+                | Instruction::NegateMultiplySubtract(..) => "fma",
+                Instruction::Call(function, _) => function.name(),
+            };
+            *counts.entry(kind).or_insert(0) += 1;
+        }
+        Cost(counts)
+    }
+}
+
+impl Program {
+    /// The operations of one evaluation, with multiply-adds fused.
+    pub fn cost(&self) -> Cost {
+        Cost::of(&self.fused().code)
+    }
+
+    /// The same program with every product that is used once, by a sum or difference, fused into it.
+    ///
+    /// A fused operation rounds once instead of twice, so results may differ by rounding from this program's.
+    #[must_use]
+    pub fn fused(&self) -> Program {
+        let first = self.first_result();
+        let uses = self.uses();
+        let product = |r: Register| match r.index().checked_sub(first).map(|i| self.code[i]) {
+            Some(Instruction::Multiply(a, b)) if uses[r.index()] == 1 => Some((a, b)),
+            _ => None,
+        };
+        let negation = |r: Register| match r.index().checked_sub(first).map(|i| self.code[i]) {
+            Some(Instruction::Negate(a)) if uses[r.index()] == 1 => Some(a),
+            _ => None,
+        };
+        let mut code = self.code.clone();
+        let mut absorbed = vec![false; code.len()];
+        for (i, instruction) in self.code.iter().enumerate() {
+            let (fused, inner) = match *instruction {
+                Instruction::Add(a, b) => match (product(a), product(b)) {
+                    // Of two products the later one is fused: the other is ready when it is needed.
+                    (_, Some((x, y))) => (Instruction::MultiplyAdd(x, y, a), b),
+                    (Some((x, y)), None) => (Instruction::MultiplyAdd(x, y, b), a),
+                    (None, None) => continue,
+                },
+                Instruction::Subtract(a, b) => match (product(a), product(b)) {
+                    (_, Some((x, y))) => match negation(a) {
+                        Some(z) => {
+                            absorbed[a.index() - first] = true;
+                            (Instruction::NegateMultiplySubtract(x, y, z), b)
+                        }
+                        None => (Instruction::NegateMultiplyAdd(x, y, a), b),
+                    },
+                    (Some((x, y)), None) => (Instruction::MultiplySubtract(x, y, b), a),
+                    (None, None) => continue,
+                },
+                _ => continue,
+            };
+            code[i] = fused;
+            absorbed[inner.index() - first] = true;
+        }
+        self.without(&code, &absorbed)
+    }
+
+    /// How often each register is read, outputs included.
+    fn uses(&self) -> Vec<u32> {
+        let mut uses = vec![0; self.registers_len()];
+        let operands = self.code.iter().flat_map(|instruction| instruction.operands().collect::<Vec<_>>());
+        for register in operands.chain(self.outputs.iter().copied()) {
+            uses[register.index()] += 1;
+        }
+        uses
+    }
+
+    /// The program with another code of the same numbering, less the instructions marked.
+    fn without(&self, code: &[Instruction], marked: &[bool]) -> Program {
+        let first = self.first_result();
+        let mut places = Vec::with_capacity(code.len());
+        let mut next = first as u32;
+        for &gone in marked {
+            places.push(Register(next));
+            next += u32::from(!gone);
+        }
+        let place = |r: Register| r.index().checked_sub(first).map_or(r, |i| places[i]);
+        let kept = code.iter().zip(marked).filter(|(_, gone)| !**gone);
+        let mut program = self.clone();
+        program.code = kept.map(|(instruction, _)| instruction.map(place)).collect();
+        program.outputs = self.outputs.iter().map(|&r| place(r)).collect();
+        program
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::{Graph, Inputs, Interpreter, Kernel, Program};
+
+    #[test]
+    fn products_are_fused_once() {
+        let graph = Graph::new();
+        let [a, b, c, d] = graph.symbols(["a", "b", "c", "d"]);
+        let inputs = Inputs { time: None, state: vec![a, b, c, d], parameters: vec![] };
+        let outputs = [a * b + c * d, -(a * b) - c.sin() * d, a * c];
+        let program = Program::new(&graph, &inputs, &outputs).unwrap();
+        let fused = program.fused();
+        let y = [0.3, -1.7, 2.5, 0.9];
+        let (mut plain, mut once) = ([0.0; 3], [0.0; 3]);
+        Interpreter::new(Arc::new(program.clone())).eval(0.0, &y, &[], &mut plain);
+        Interpreter::new(Arc::new(fused)).eval(0.0, &y, &[], &mut once);
+        for (p, o) in plain.iter().zip(&once) {
+            assert!((p - o).abs() <= 1e-15 * p.abs().max(1.0));
+        }
+        let counts: Vec<_> = program.cost().iter().collect();
+        assert_eq!(counts, [("fma", 2), ("mul", 2), ("neg", 1), ("sin", 1)]);
+    }
+}
