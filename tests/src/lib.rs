@@ -9,3 +9,8 @@ pub mod classical;
 pub mod closed_form;
 pub mod malformed;
 pub mod reference;
+
+/// The programs of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

@@ -153,6 +153,19 @@ impl<'g> Frame<'g> {
         if s == 0 { self.b0.clone() } else { self.b.column(s - 1).collect() }
     }
 
+    /// The frame of the first `operators` operators, as many as there are at most, and X_0.
+    #[must_use]
+    pub fn restricted(&self, operators: usize) -> Frame<'g> {
+        let columns = operators.min(self.operators());
+        Frame { b: Matrix::from_fn(self.b.rows(), columns, |i, s| self.b[(i, s)]), ..self.clone() }
+    }
+
+    /// The frame with every coefficient passed through `f`.
+    #[must_use]
+    pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Frame<'g> {
+        Frame { b: self.b.map(&mut f), b0: self.b0.iter().map(|&x| f(x)).collect(), ..self.clone() }
+    }
+
     /// Rank of b at almost all points.
     pub fn rank(&self) -> usize {
         self.graph.generic_rank(&self.b.to_rows())

@@ -31,6 +31,12 @@ impl<'g> StructureCoefficients<'g> {
         Ok(StructureCoefficients { operators, upper })
     }
 
+    /// The coefficients passed through `f`.
+    #[must_use]
+    pub fn map(&self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
+        StructureCoefficients { operators: self.operators, upper: self.upper.iter().copied().map(f).collect() }
+    }
+
     /// Number k of operators, time not counted.
     pub fn operators(&self) -> usize {
         self.operators

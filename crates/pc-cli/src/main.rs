@@ -1,2 +1,30 @@
 //! The program `pc`.
-fn main() {}
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use pc_cli::args::{Arguments, Command};
+use pc_cli::{CliError, check, derive, models, run, text};
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print(); // nothing can be said where nothing can be printed
+            return ExitCode::from(if error.use_stderr() { CliError::USAGE } else { 0 });
+        }
+    };
+    let outcome = match &arguments.command {
+        Command::Check(arguments) => check::command(arguments),
+        Command::Derive(arguments) => derive::command(arguments),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Models(arguments) => models::command(arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            text::say(format_args!("{}\n", error.report()));
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

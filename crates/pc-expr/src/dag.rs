@@ -18,8 +18,10 @@ use crate::number::Number;
 const MERGED_TERMS: usize = 24;
 /// The same for products.
 const MERGED_FACTORS: usize = 64;
+/// Collecting the terms of one operand opens sums inside sums up to so many terms, factors likewise.
+const GATHERED: usize = 1024;
 /// Larger integer powers stay calls of `pow`.
-const MAX_EXPONENT: i32 = 1 << 16;
+const MAX_EXPONENT: u32 = 1 << 16;
 
 /// Index of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -178,6 +180,11 @@ impl Dag {
         &self.zero_divisions
     }
 
+    /// Forgets the divisions by zero past the first `kept`: those of a trial whose result was not taken.
+    pub(crate) fn forget_zero_divisions(&mut self, kept: usize) {
+        self.zero_divisions.truncate(kept);
+    }
+
     /// The arguments of a call.
     pub(crate) fn args(function: Function, args: &[NodeId; 3]) -> &[NodeId] {
         &args[..function.arity()]
@@ -198,7 +205,9 @@ impl Dag {
         let candidate = Candidate::Symbol(name);
         self.find(&candidate).unwrap_or_else(|| {
             let fingerprint = Fingerprint::symbol(name);
-            self.push(&candidate, fingerprint)
+            let id = self.push(&candidate, fingerprint);
+            self.register(id);
+            id
         })
     }
 
@@ -213,11 +222,12 @@ impl Dag {
         }
         gathered.sort_unstable_by_key(|&(node, _)| node);
         gathered.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 = kept.1 + next.1;
+            let sum = kept.1 + next.1;
+            let collected = next.0 == kept.0 && sum.is_finite();
+            if collected {
+                kept.1 = sum;
             }
-            same
+            collected
         });
         gathered.retain(|(_, q)| !q.is_zero());
         match gathered.as_slice() {
@@ -238,18 +248,29 @@ impl Dag {
         }
     }
 
+    /// Adds q·n to `out` and `constant`, opening the small sums inside. Coefficients that would overflow or
+    /// underflow stay where they are.
     fn gather_terms(&self, node: NodeId, q: Number, out: &mut Vec<(NodeId, Number)>, constant: &mut Number) {
-        let (node, sign) = self.representative(node);
-        let q = q * sign;
-        match self.node(node) {
-            Node::Constant(c) => *constant = *constant + q * c,
-            Node::Sum { constant: c, terms } if terms.range().len() <= MERGED_TERMS => {
-                *constant = *constant + q * c;
-                for &(child, coefficient) in self.terms(terms) {
-                    self.gather_terms(child, q * coefficient, out, constant);
+        let limit = out.len() + GATHERED;
+        let (mut next, mut open) = (Some((node, q)), Vec::new());
+        while let Some((node, q)) = next {
+            let (node, sign) = self.representative(node);
+            let q = q * sign;
+            let fits = |r: Number| q.abs().is_one() || q.checked_mul(r).is_some();
+            match self.node(node) {
+                Node::Constant(c) => *constant = *constant + q * c,
+                Node::Sum { constant: c, terms }
+                    if terms.range().len() <= MERGED_TERMS
+                        && out.len() < limit
+                        && fits(c)
+                        && self.terms(terms).iter().all(|&(_, r)| fits(r)) =>
+                {
+                    *constant = *constant + q * c;
+                    open.extend(self.terms(terms).iter().map(|&(child, r)| (child, q * r)));
                 }
+                _ => out.push((node, q)),
             }
-            _ => out.push((node, q)),
+            next = open.pop();
         }
     }
 
@@ -275,15 +296,26 @@ impl Dag {
         }
     }
 
-    /// Writes q·n as q'·n' with n' not a scaled node.
+    /// Writes q·n as q'·n' with n' not a scaled node (unless q' would overflow or underflow).
     fn split_coefficient(&self, node: NodeId, q: Number) -> (NodeId, Number) {
-        let (node, sign) = self.representative(node);
-        match self.node(node) {
-            Node::Sum { constant, terms } if constant.is_zero() && terms.range().len() == 1 => {
-                let (child, coefficient) = self.terms(terms)[0];
-                self.split_coefficient(child, q * sign * coefficient)
+        let (mut node, sign) = self.representative(node);
+        let mut q = q * sign;
+        while let Node::Sum { constant, terms } = self.node(node) {
+            let &[(child, coefficient)] = self.terms(terms) else { break };
+            let (true, Some(product)) = (constant.is_zero(), q.checked_mul(coefficient)) else { break };
+            let (child, sign) = self.representative(child);
+            (node, q) = (child, product * sign);
+        }
+        (node, q)
+    }
+
+    /// Whether two expressions are the same node, up to the choice among nodes of equal value.
+    pub(crate) fn same(&self, a: Atom, b: Atom) -> bool {
+        match (a, b) {
+            (Atom::Node(a), Atom::Node(b)) => {
+                self.split_coefficient(a, Number::ONE) == self.split_coefficient(b, Number::ONE)
             }
-            _ => (node, q * sign),
+            _ => a == b,
         }
     }
 
@@ -307,7 +339,7 @@ impl Dag {
         match gathered.as_slice() {
             [] => Atom::Constant(coefficient),
             &[(node, 1)] => self.scaled(coefficient, node),
-            _ if gathered.iter().any(|(_, e)| e.abs() > MAX_EXPONENT) => {
+            _ if gathered.iter().any(|(_, e)| e.unsigned_abs() > MAX_EXPONENT) => {
                 let powers: Vec<Atom> = gathered.iter().map(|&(node, e)| self.large_power(node, e)).collect();
                 self.product_of(coefficient, &powers)
             }
@@ -318,43 +350,74 @@ impl Dag {
         }
     }
 
-    fn gather_factors(&self, node: NodeId, e: i32, out: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) {
-        let (node, q) = self.split_coefficient(node, Number::ONE);
-        *coefficient = *coefficient * q.powi(e);
-        match self.node(node) {
-            Node::Constant(c) => *coefficient = *coefficient * c.powi(e),
-            Node::Product { factors } if factors.range().len() <= MERGED_FACTORS => {
-                for &(child, exponent) in self.factors(factors) {
-                    self.gather_factors(child, exponent.saturating_mul(e), out, coefficient);
+    /// Adds n^e to `out` and `coefficient`, opening the small products inside. Coefficients and exponents that
+    /// would overflow or underflow stay where they are.
+    fn gather_factors(
+        &self,
+        node: NodeId,
+        e: i32,
+        out: &mut Vec<(NodeId, i32)>,
+        coefficient: &mut Number,
+    ) {
+        let limit = out.len() + GATHERED;
+        let (mut next, mut open) = (Some((node, e)), Vec::new());
+        while let Some((node, e)) = next {
+            let (inner, q) = self.split_coefficient(node, Number::ONE);
+            let scaled = if q.is_one() {
+                Some(*coefficient)
+            } else {
+                q.checked_powi(e).and_then(|power| coefficient.checked_mul(power))
+            };
+            match (scaled, self.node(inner)) {
+                (None, _) => match self.representative(node) {
+                    (kept, sign) if sign.is_one() => out.push((kept, e)),
+                    _ => out.push((node, e)),
+                },
+                (Some(q), Node::Constant(c)) => *coefficient = q * c.powi(e),
+                (Some(q), Node::Product { factors })
+                    if factors.range().len() <= MERGED_FACTORS
+                        && out.len() < limit
+                        && self.factors(factors).iter().all(|&(_, d)| d.checked_mul(e).is_some()) =>
+                {
+                    *coefficient = q;
+                    open.extend(self.factors(factors).iter().map(|&(child, d)| (child, d * e)));
+                }
+                (Some(q), _) => {
+                    *coefficient = q;
+                    out.push((inner, e));
                 }
             }
-            _ => out.push((node, e)),
+            next = open.pop();
         }
     }
 
-    /// Adds exponents of equal factors and takes (√e)² to e and |e|² to e²; answers whether it took any such.
+    /// Adds exponents of equal factors and takes (√e)² to e, e/√e to √e and |e|² to e²; answers whether the
+    /// factors may be gathered once more.
     fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 = kept.1.saturating_add(next.1);
-            }
-            same
+            let sum = kept.1.checked_add(next.1).filter(|_| next.0 == kept.0);
+            kept.1 = sum.unwrap_or(kept.1);
+            sum.is_some()
         });
         factors.retain(|&(_, e)| e != 0);
         let mut took = false;
         for i in 0..factors.len() {
             let (node, e) = factors[i];
-            if e.abs() < 2 {
-                continue;
-            }
             let Node::Call { function, args } = self.node(node) else { continue };
             match function {
-                Function::Sqrt => {
+                Function::Sqrt if e.unsigned_abs() >= 2 => {
                     factors[i].1 = e % 2;
                     factors.push((args[0], e / 2));
                     took = true;
+                }
+                Function::Sqrt => {
+                    let (radicand, _) = self.representative(args[0]);
+                    let other = factors.iter_mut().find(|(node, r)| *node == radicand && r.signum() == -e);
+                    if let Some((_, r)) = other {
+                        *r += e;
+                        factors[i].1 = -e;
+                    }
                 }
                 Function::Abs if e % 2 == 0 => {
                     factors[i] = (args[0], e);
@@ -368,7 +431,7 @@ impl Dag {
     }
 
     fn large_power(&mut self, node: NodeId, exponent: i32) -> Atom {
-        if exponent.abs() <= MAX_EXPONENT {
+        if exponent.unsigned_abs() <= MAX_EXPONENT {
             return self.product(Number::ONE, &[(node, exponent)]);
         }
         self.call_unfolded(Function::Pow, &[Atom::Node(node), Atom::Constant(Number::integer(exponent))])
@@ -403,6 +466,7 @@ impl Dag {
     /// x^e
     pub(crate) fn powi(&mut self, x: Atom, exponent: i32) -> Atom {
         match x {
+            Atom::Constant(c) if c.is_zero() && exponent < 0 => self.divide(Atom::ONE, x),
             Atom::Constant(c) => Atom::Constant(c.powi(exponent)),
             Atom::Node(node) => self.product(Number::ONE, &[(node, exponent)]),
         }
@@ -459,7 +523,7 @@ impl Dag {
 
     /// x^y: integer powers are products, half-integer ones powers of a square root.
     fn constant_power(&mut self, x: Atom, y: Number) -> Atom {
-        let small = |q: Number| q.as_integer().filter(|e| e.abs() <= MAX_EXPONENT);
+        let small = |q: Number| q.as_integer().filter(|e| e.unsigned_abs() <= MAX_EXPONENT);
         if let Some(e) = small(y) {
             return self.powi(x, e);
         }
@@ -489,8 +553,8 @@ impl Dag {
             }
             Atom::Node(node) => match self.representative(node) {
                 (node, sign) if sign.is_one() => node,
-                (node, sign) => match self.scaled(sign, node) {
-                    Atom::Node(scaled) => scaled,
+                (node, sign) => match self.signed(node, sign) {
+                    Atom::Node(signed) => signed,
                     Atom::Constant(_) => node,
                 },
             },
@@ -524,7 +588,7 @@ impl Dag {
         let hash = hash_of(&key);
         let Some(&equal) = self.by_value.find(hash, |&id| self.fingerprint(id).up_to_sign() == key) else {
             let id = self.push(candidate, fingerprint);
-            self.by_value.insert_unique(hash, id, |id| hash_of(&self.fingerprints[id.index()].up_to_sign()));
+            self.register(id);
             return Atom::Node(id);
         };
         let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
@@ -537,6 +601,13 @@ impl Dag {
             *slot = id;
         }
         Atom::Node(id)
+    }
+
+    /// Makes a node findable by its value.
+    fn register(&mut self, id: NodeId) {
+        let Dag { by_value, fingerprints, .. } = self;
+        let hash = |id: &NodeId| hash_of(&fingerprints[id.index()].up_to_sign());
+        by_value.insert_unique(hash(&id), id, hash);
     }
 
     /// ±n; a negative is interned as it is, without asking for its value again.
@@ -616,37 +687,46 @@ impl Dag {
         id
     }
 
+    /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands, and
+    /// what their coefficients and powers take; a division counts four, a call ten.
     fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
-        match candidate {
+        match *candidate {
             Candidate::Constant(_) | Candidate::Symbol(_) => 0,
-            Candidate::Sum(_, terms) => sum(&mut terms
-                .iter()
-                .map(|&(n, q)| self.cost(n).saturating_add(if q.abs().is_one() { 1 } else { 2 }))),
-            Candidate::Product(factors) => sum(&mut factors.iter().map(|&(n, e)| {
-                let multiplications = 32 - e.unsigned_abs().leading_zeros();
-                self.cost(n).saturating_add(multiplications + if e < 0 { 3 } else { 0 })
-            })),
+            Candidate::Sum(constant, terms) => {
+                let scaling = |q: Number| u32::from(!q.abs().is_one());
+                let operands = terms.len() as u32 + u32::from(!constant.is_zero());
+                sum(&mut terms.iter().map(|&(n, q)| self.cost(n).saturating_add(scaling(q))))
+                    .saturating_add(operands - 1)
+            }
+            Candidate::Product(factors) => {
+                let power = |e: u32| e.ilog2() + e.count_ones() - 1;
+                let division = if factors.iter().any(|&(_, e)| e < 0) { 3 } else { 0 };
+                sum(&mut factors.iter().map(|&(n, e)| self.cost(n).saturating_add(power(e.unsigned_abs()))))
+                    .saturating_add(factors.len() as u32 - 1 + division)
+            }
             Candidate::Call(function, args) => {
-                sum(&mut Dag::args(*function, args).iter().map(|&n| self.cost(n))).saturating_add(10)
+                sum(&mut Dag::args(function, &args).iter().map(|&n| self.cost(n))).saturating_add(10)
             }
         }
     }
 }
 
 /// The greatest common content of a linear combination, with the sign of its first term; a sum with coefficients
-/// that are not rational only gives up its sign.
+/// that are not rational, or would not be exact, only gives up its sign.
 fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
     let sign = if terms[0].1.is_negative() { Number::MINUS_ONE } else { Number::ONE };
-    let mut content = terms[0].1.abs();
-    let others = terms[1..].iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
-    for q in others {
-        match content.content(q) {
-            Some(common) => content = common,
-            None => return sign,
+    let coefficients =
+        || terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
+    let content = coefficients().try_fold(Number::ZERO, Number::content);
+    match content {
+        Some(content) if !content.is_one() => {
+            let divisor = content.recip();
+            let exact = coefficients().all(|q| matches!(q * divisor, Number::Rational { .. }));
+            if exact { content * sign } else { sign }
         }
+        _ => sign,
     }
-    if matches!(content, Number::Real(_)) { sign } else { content * sign }
 }
 
 /// The value of a call with constant arguments, if it is finite.

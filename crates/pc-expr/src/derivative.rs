@@ -151,7 +151,8 @@ impl Dag {
             Function::Abs => self.call(Function::Sign, &[x]),
             Function::Sign => Atom::ZERO,
             Function::Min | Function::Max => {
-                // The smaller argument alone counts for min, the larger for max; the first one at a tie.
+                // The smaller argument alone counts for min, the larger for max; at a tie
+                // the one whose node was made first.
                 let (this, other) = (args[position], args[1 - position]);
                 let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
                 if position == 0 {
@@ -175,6 +176,7 @@ impl Dag {
                     let power = self.call(Function::Pow, &[x, exponent]);
                     self.product_of(Number::ONE, &[y, power])
                 } else {
+                    let x = self.constant_of(x);
                     let log = self.call(Function::Log, &[x]);
                     self.product_of(Number::ONE, &[log, f])
                 }

@@ -7,12 +7,18 @@ use rustc_hash::FxHashMap;
 use crate::cone::Cone;
 use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::error::ExprError;
+use crate::expr::Expr;
 use crate::function::Function;
+use crate::number::Number;
 
 /// A number that expressions can be evaluated over: `f64`, or a dual number.
 pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     /// The constant.
     fn from_f64(value: f64) -> Self;
+    /// The constant, exactly where that is possible.
+    fn constant(value: Number) -> Self {
+        Self::from_f64(value.to_f64())
+    }
     /// x^exponent
     #[must_use]
     fn powi(self, exponent: i32) -> Self;
@@ -32,6 +38,21 @@ impl Scalar for f64 {
     }
 }
 
+impl<'h> Scalar for Expr<'h> {
+    fn from_f64(value: f64) -> Expr<'h> {
+        value.into()
+    }
+    fn constant(value: Number) -> Expr<'h> {
+        value.into()
+    }
+    fn powi(self, exponent: i32) -> Expr<'h> {
+        Expr::powi(self, exponent)
+    }
+    fn call(function: Function, args: &[Expr<'h>]) -> Expr<'h> {
+        Expr::apply(function, args)
+    }
+}
+
 pub(crate) fn evaluate<S: Scalar>(
     dag: &Dag,
     outputs: &[Atom],
@@ -41,20 +62,20 @@ pub(crate) fn evaluate<S: Scalar>(
     let mut values: FxHashMap<NodeId, S> = symbols.iter().copied().collect();
     for &id in &cone.order {
         let value = match dag.node(id) {
-            Node::Constant(c) => S::from_f64(c.to_f64()),
+            Node::Constant(c) => S::constant(c),
             Node::Symbol(_) if values.contains_key(&id) => continue,
             Node::Symbol(index) => {
                 return Err(ExprError::UnboundSymbol { symbol: dag.symbol_name(index).to_owned() });
             }
             Node::Sum { constant, terms } => {
-                dag.terms(terms).iter().fold(S::from_f64(constant.to_f64()), |sum, (child, q)| {
-                    sum + S::from_f64(q.to_f64()) * values[child]
+                dag.terms(terms).iter().fold(S::constant(constant), |sum, (child, q)| {
+                    sum + S::constant(*q) * values[child]
                 })
             }
             Node::Product { factors } => dag
                 .factors(factors)
                 .iter()
-                .fold(S::from_f64(1.0), |product, (child, e)| product * values[child].powi(*e)),
+                .fold(S::constant(Number::ONE), |product, (child, e)| product * values[child].powi(*e)),
             Node::Call { function, args } => {
                 let args: Vec<S> = Dag::args(function, &args).iter().map(|child| values[child]).collect();
                 S::call(function, &args)
@@ -65,7 +86,7 @@ pub(crate) fn evaluate<S: Scalar>(
     Ok(outputs
         .iter()
         .map(|output| match output {
-            Atom::Constant(c) => S::from_f64(c.to_f64()),
+            Atom::Constant(c) => S::constant(*c),
             Atom::Node(id) => values[id],
         })
         .collect())

@@ -4,7 +4,7 @@ use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::dag::{Atom, Dag, Folding, Node, NodeId};
 use crate::function::Function;
 use crate::graph::Graph;
 use crate::number::Number;
@@ -119,57 +119,37 @@ impl<'g> Expr<'g> {
         id
     }
 
-    fn unary(
-        self,
-        f: impl FnOnce(&mut Dag, Atom) -> Atom,
-        constant: impl FnOnce(Number) -> Option<Number>,
-    ) -> Expr<'g> {
-        if let Atom::Constant(c) = self.atom
-            && let Some(value) = constant(c)
-        {
-            return Expr { graph: self.graph, atom: Atom::Constant(value) };
-        }
-        match self.graph {
-            Some(graph) => graph.build(|dag| f(dag, self.atom)),
-            None => Expr { graph: None, atom: Atom::Constant(Number::UNDEFINED) },
-        }
+    /// A function of as many arguments as its arity.
+    ///
+    /// # Panics
+    /// If there are fewer arguments.
+    pub fn apply(function: Function, args: &[Expr<'g>]) -> Expr<'g> {
+        assert!(args.len() >= function.arity(), "{} takes {} arguments", function.name(), function.arity());
+        Expr::combined(args, |dag, atoms| dag.call(function, &atoms[..function.arity()]))
     }
 
-    fn binary(self, other: Expr<'g>, f: impl FnOnce(&mut Dag, Atom, Atom) -> Atom) -> Expr<'g> {
-        match self.graph.or(other.graph) {
-            Some(graph) => {
-                let (x, y) = (self.atom_in(graph), other.atom_in(graph));
-                graph.build(|dag| f(dag, x, y))
-            }
-            None => {
-                // Two constants that belong to no graph: any graph gives the same number, if there is one.
-                let atom = f(&mut Dag::new(crate::Folding::Structural), self.atom, other.atom);
-                let constant = if let Atom::Constant(c) = atom { c } else { Number::UNDEFINED };
-                Expr { graph: None, atom: Atom::Constant(constant) }
-            }
+    /// What `f` makes of some expressions, in their graph.
+    fn combined(operands: &[Expr<'g>], f: impl FnOnce(&mut Dag, &[Atom]) -> Atom) -> Expr<'g> {
+        if let Some(graph) = operands.iter().find_map(|x| x.graph) {
+            let atoms: Vec<Atom> = operands.iter().map(|x| x.atom_in(graph)).collect();
+            return graph.build(|dag| f(dag, &atoms));
         }
-    }
-
-    fn call(self, function: Function) -> Expr<'g> {
-        self.unary(
-            |dag, x| dag.call(function, &[x]),
-            |c| {
-                let value = function.eval(&[c.to_f64()]);
-                match function {
-                    Function::Sqrt => c.exact_sqrt().or(value.is_finite().then(|| value.into())),
-                    _ => value.is_finite().then(|| value.into()),
-                }
-            },
-        )
+        // Constants that belong to no graph: any graph gives the same number, if there is one.
+        let atoms: Vec<Atom> = operands.iter().map(|x| x.atom).collect();
+        match f(&mut Dag::new(Folding::Structural), &atoms) {
+            Atom::Constant(c) => c.into(),
+            Atom::Node(_) => Number::UNDEFINED.into(),
+        }
     }
 
     /// self^`exponent`
     #[must_use]
     pub fn powi(self, exponent: i32) -> Expr<'g> {
         if exponent < 0 {
-            return Expr::ONE / self.powi(exponent.saturating_neg());
+            let positive = exponent.checked_neg().map_or_else(|| self.powi(i32::MAX) * self, |e| self.powi(e));
+            return Expr::ONE / positive;
         }
-        self.unary(|dag, x| dag.powi(x, exponent), |c| Some(c.powi(exponent)))
+        Expr::combined(&[self], |dag, x| dag.powi(x[0], exponent))
     }
 
     /// self^`exponent`; a constant exponent that is an integer or half-integer gives powers of x or √x.
@@ -179,39 +159,31 @@ impl<'g> Expr<'g> {
         if let Some(e) = exponent.constant().and_then(Number::as_integer) {
             return self.powi(e);
         }
-        self.binary(exponent, |dag, x, y| dag.call(Function::Pow, &[x, y]))
+        Expr::apply(Function::Pow, &[self, exponent])
     }
 
     /// The angle of the point (`x`, self).
     #[must_use]
     pub fn atan2(self, x: impl Into<Expr<'g>>) -> Expr<'g> {
-        self.binary(x.into(), |dag, y, x| dag.call(Function::Atan2, &[y, x]))
+        Expr::apply(Function::Atan2, &[self, x.into()])
     }
 
     /// The smaller of the two.
     #[must_use]
     pub fn min(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
-        self.binary(other.into(), |dag, x, y| dag.call(Function::Min, &[x, y]))
+        Expr::apply(Function::Min, &[self, other.into()])
     }
 
     /// The larger of the two.
     #[must_use]
     pub fn max(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
-        self.binary(other.into(), |dag, x, y| dag.call(Function::Max, &[x, y]))
+        Expr::apply(Function::Max, &[self, other.into()])
     }
 
     /// `at_or_above` where self ≥ 0, else `below`.
     #[must_use]
     pub fn step(self, at_or_above: impl Into<Expr<'g>>, below: impl Into<Expr<'g>>) -> Expr<'g> {
-        let (a, b) = (at_or_above.into(), below.into());
-        match self.graph.or(a.graph).or(b.graph) {
-            Some(graph) => {
-                let atoms = [self, a, b].map(|x| x.atom_in(graph));
-                graph.build(|dag| dag.call(Function::Step, &atoms))
-            }
-            None if self.constant().is_some_and(|c| !c.is_negative()) => a,
-            None => b,
-        }
+        Expr::apply(Function::Step, &[self, at_or_above.into(), below.into()])
     }
 
     /// self²
@@ -236,7 +208,7 @@ impl<'g> Expr<'g> {
 macro_rules! functions {
     ($($(#[$doc:meta])* $name:ident => $function:ident;)*) => {
         impl<'g> Expr<'g> {
-            $($(#[$doc])* #[must_use] pub fn $name(self) -> Expr<'g> { self.call(Function::$function) })*
+            $($(#[$doc])* #[must_use] pub fn $name(self) -> Expr<'g> { Expr::apply(Function::$function, &[self]) })*
         }
     };
 }
@@ -274,7 +246,8 @@ impl PartialEq for Expr<'_> {
     fn eq(&self, other: &Self) -> bool {
         match (self.graph, other.graph) {
             (Some(a), Some(b)) if !std::ptr::eq(a, b) => self.constant().is_some() && self.atom == other.atom,
-            _ => self.atom == other.atom,
+            (Some(graph), _) | (None, Some(graph)) => graph.with(|dag| dag.same(self.atom, other.atom)),
+            (None, None) => self.atom == other.atom,
         }
     }
 }
@@ -314,7 +287,7 @@ impl From<i32> for Expr<'_> {
 impl<'g> Neg for Expr<'g> {
     type Output = Expr<'g>;
     fn neg(self) -> Expr<'g> {
-        self.unary(|dag, x| dag.scale(Number::MINUS_ONE, x), |c| Some(-c))
+        Expr::combined(&[self], |dag, x| dag.scale(Number::MINUS_ONE, x[0]))
     }
 }
 
@@ -323,7 +296,7 @@ macro_rules! operator {
         impl<'g, T: Into<Expr<'g>>> $trait<T> for Expr<'g> {
             type Output = Expr<'g>;
             fn $method(self, other: T) -> Expr<'g> {
-                self.binary(other.into(), $body)
+                Expr::combined(&[self, other.into()], $body)
             }
         }
         impl<'g> $trait<Expr<'g>> for f64 {
@@ -335,10 +308,10 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::ONE)]));
-operator!(Sub, sub, |dag, x, y| dag.sum_of(&[(x, Number::ONE), (y, Number::MINUS_ONE)]));
-operator!(Mul, mul, |dag, x, y| dag.product_of(Number::ONE, &[x, y]));
-operator!(Div, div, Dag::divide);
+operator!(Add, add, |dag, x| dag.sum_of(&[(x[0], Number::ONE), (x[1], Number::ONE)]));
+operator!(Sub, sub, |dag, x| dag.sum_of(&[(x[0], Number::ONE), (x[1], Number::MINUS_ONE)]));
+operator!(Mul, mul, |dag, x| dag.product_of(Number::ONE, x));
+operator!(Div, div, |dag, x| dag.divide(x[0], x[1]));
 
 impl<'g, T: Into<Expr<'g>>> AddAssign<T> for Expr<'g> {
     fn add_assign(&mut self, other: T) {

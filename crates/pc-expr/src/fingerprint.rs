@@ -1,33 +1,46 @@
-//! Fingerprints: the value of a node at two random points of GF(2⁶¹−1).
+//! Fingerprints: the value of a node at a random point of each of two prime fields, GF(2⁶¹−1) and GF(2⁶¹−45).
 //!
 //! Equal fingerprints mean equal as rational functions of the symbols, of e^{z/12} and of the points
 //! (cos z/12, sin z/12) of the circle, with an error probability of about 2⁻¹²⁰ times the degree (Schwartz 1980,
-//! Zippel 1979). Every other function is an unknown keyed by its arguments, so that √(x²) never becomes x.
-//! A fingerprint depends on names and structure only, so two graphs agree on it.
+//! Zippel 1979). There are two primes because constants are not random: in the first field 2⁶¹·x is x, while no two
+//! of our rationals agree in both. Every other function is an unknown keyed by its arguments, so that √(x²) never
+//! becomes x. A fingerprint depends on names and structure only, so two graphs agree on it.
 
 use crate::dag::{Candidate, Dag, Node, NodeId};
 use crate::field::{Element, mix};
 use crate::function::{Function, Parity};
 use crate::number::Number;
 
-/// Number of independent points.
-const POINTS: usize = 2;
 /// sin, cos and exp of q·z are composed from those of z/FRACTION where that is an integer multiple.
 const FRACTION: i32 = 12;
 /// Largest such multiple.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
+/// Sums inside the argument of a sine or exponential are opened up to so many terms; what is left counts as one term.
+const MAX_TERMS: usize = 1 << 14;
+
+/// The first of the two fields.
+pub(crate) type First = Element<1>;
+type Second = Element<45>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub(crate) struct Fingerprint([Element; POINTS]);
+pub(crate) struct Fingerprint(First, Second);
 
 impl Fingerprint {
+    const ZERO: Fingerprint = Fingerprint(First::ZERO, Second::ZERO);
+    const ONE: Fingerprint = Fingerprint(First::ONE, Second::ONE);
+
     pub(crate) fn constant(c: Number) -> Fingerprint {
-        let value = match c {
-            Number::Rational { num, den: 1 } => Element::integer(num),
-            Number::Rational { num, den } => Element::integer(num) * Element::integer(den).inverse(),
-            Number::Real(value) => Element::dyadic(value),
-        };
-        Fingerprint([value; POINTS])
+        match c {
+            Number::Rational { num, den: 1 } => Fingerprint::integer(num),
+            Number::Rational { num, den } => {
+                Fingerprint::integer(num).times(Fingerprint::integer(den).powi(-1))
+            }
+            Number::Real(value) => Fingerprint(Element::dyadic(value), Element::dyadic(value)),
+        }
+    }
+
+    fn integer(value: i64) -> Fingerprint {
+        Fingerprint(Element::integer(value), Element::integer(value))
     }
 
     pub(crate) fn symbol(name: &str) -> Fingerprint {
@@ -36,51 +49,51 @@ impl Fingerprint {
     }
 
     fn random(key: u64) -> Fingerprint {
-        Fingerprint(std::array::from_fn(|point| Element::random(mix(key) ^ point as u64)))
+        Fingerprint(Element::random(mix(key)), Element::random(mix(key) ^ 1))
     }
 
-    /// The value at the first point.
-    pub(crate) fn first(self) -> Element {
-        self.0[0]
+    /// The value in the first field.
+    pub(crate) fn first(self) -> First {
+        self.0
     }
 
     /// The fingerprint as the key of something else.
     fn key(self, salt: u64) -> u64 {
-        self.0.iter().fold(salt, |key, value| mix(key ^ value.to_bits()))
+        mix(mix(salt ^ self.0.to_bits()) ^ self.1.to_bits())
     }
 
     /// The rational constant, if this is one with numerator and denominator up to 2²⁰.
     pub(crate) fn small_rational(self) -> Option<(i64, i64)> {
-        (self.0[0] == self.0[1]).then(|| self.0[0].small_rational()).flatten()
+        self.0.small_rational().filter(|&(p, q)| Element::integer(p) == Element::integer(q) * self.1)
     }
 
     fn has_canonical_sign(self) -> bool {
-        self.0[0].is_canonical_sign()
+        self.0.is_canonical_sign()
     }
 
     /// The same for x and −x.
     pub(crate) fn up_to_sign(self) -> Fingerprint {
-        if self.has_canonical_sign() { self } else { self.map(|value| -value) }
-    }
-
-    fn map(self, f: impl Fn(Element) -> Element) -> Fingerprint {
-        Fingerprint(self.0.map(f))
-    }
-
-    fn combine(self, other: Fingerprint, f: impl Fn(Element, Element) -> Element) -> Fingerprint {
-        Fingerprint(std::array::from_fn(|point| f(self.0[point], other.0[point])))
+        if self.has_canonical_sign() { self } else { self.negated() }
     }
 
     fn plus(self, other: Fingerprint) -> Fingerprint {
-        self.combine(other, |a, b| a + b)
+        Fingerprint(self.0 + other.0, self.1 + other.1)
+    }
+
+    fn minus(self, other: Fingerprint) -> Fingerprint {
+        Fingerprint(self.0 - other.0, self.1 - other.1)
     }
 
     fn times(self, other: Fingerprint) -> Fingerprint {
-        self.combine(other, |a, b| a * b)
+        Fingerprint(self.0 * other.0, self.1 * other.1)
+    }
+
+    fn negated(self) -> Fingerprint {
+        Fingerprint(-self.0, -self.1)
     }
 
     fn powi(self, exponent: i32) -> Fingerprint {
-        self.map(|value| value.powi(exponent))
+        Fingerprint(self.0.powi(exponent), self.1.powi(exponent))
     }
 }
 
@@ -93,29 +106,29 @@ struct CirclePoint {
 
 impl CirclePoint {
     fn zero() -> CirclePoint {
-        CirclePoint { cos: Fingerprint::constant(Number::ONE), sin: Fingerprint::constant(Number::ZERO) }
+        CirclePoint { cos: Fingerprint::ONE, sin: Fingerprint::ZERO }
     }
 
     /// A random point of the circle by its rational parametrisation.
     fn random(key: u64) -> CirclePoint {
         let u = Fingerprint::random(key);
-        let scale = u.map(|u| (Element::ONE + u * u).inverse());
+        let square = u.times(u);
+        let scale = Fingerprint::ONE.plus(square).powi(-1);
         CirclePoint {
-            cos: u.combine(scale, |u, scale| (Element::ONE - u * u) * scale),
-            sin: u.combine(scale, |u, scale| (u + u) * scale),
+            cos: Fingerprint::ONE.minus(square).times(scale),
+            sin: u.plus(u).times(scale),
         }
     }
 
     fn plus(self, other: CirclePoint) -> CirclePoint {
-        let minus = |a: Fingerprint, b: Fingerprint| a.combine(b, |a, b| a - b);
         CirclePoint {
-            cos: minus(self.cos.times(other.cos), self.sin.times(other.sin)),
+            cos: self.cos.times(other.cos).minus(self.sin.times(other.sin)),
             sin: self.sin.times(other.cos).plus(self.cos.times(other.sin)),
         }
     }
 
     fn negated(self) -> CirclePoint {
-        CirclePoint { cos: self.cos, sin: self.sin.map(|s| -s) }
+        CirclePoint { cos: self.cos, sin: self.sin.negated() }
     }
 
     fn multiple(self, n: i32) -> CirclePoint {
@@ -147,7 +160,7 @@ impl Dag {
                 })
             }
             Candidate::Product(factors) => {
-                factors.iter().fold(Fingerprint::constant(Number::ONE), |product, &(node, e)| {
+                factors.iter().fold(Fingerprint::ONE, |product, &(node, e)| {
                     product.times(self.fingerprint(node).powi(e))
                 })
             }
@@ -160,7 +173,7 @@ impl Dag {
         if q.is_one() {
             value
         } else if (-q).is_one() {
-            value.map(|x| -x)
+            value.negated()
         } else {
             value.times(Fingerprint::constant(q))
         }
@@ -176,7 +189,7 @@ impl Dag {
                 let exp = self.exponential(args[0]);
                 let inverse = exp.powi(-1);
                 let cosh = exp.plus(inverse).times(Fingerprint::constant(half));
-                let sinh = exp.combine(inverse, |a, b| a - b).times(Fingerprint::constant(half));
+                let sinh = exp.minus(inverse).times(Fingerprint::constant(half));
                 match function {
                     Function::Sinh => sinh,
                     Function::Cosh => cosh,
@@ -197,7 +210,7 @@ impl Dag {
         });
         let value = Fingerprint::random(key);
         if parity == Parity::Odd && !self.fingerprint(args[0]).has_canonical_sign() {
-            value.map(|x| -x)
+            value.negated()
         } else {
             value
         }
@@ -216,7 +229,7 @@ impl Dag {
 
     /// e^u, as a product over the terms of u.
     fn exponential(&self, u: NodeId) -> Fingerprint {
-        let mut exponential = Fingerprint::constant(Number::ONE);
+        let mut exponential = Fingerprint::ONE;
         self.for_each_linear_term(u, |value, multiple| {
             let base = Fingerprint::random(value.up_to_sign().key(SALT_EXP));
             let multiple = if value.has_canonical_sign() { multiple } else { -multiple };
@@ -231,9 +244,15 @@ impl Dag {
             |q: Number| (q * Number::integer(FRACTION)).as_integer().filter(|m| m.abs() <= MAX_MULTIPLE);
         let mut constant = Number::ZERO;
         let mut open = vec![(u, Number::ONE)];
+        let mut opened = 0;
         while let Some((node, q)) = open.pop() {
             match self.node(node) {
-                Node::Sum { constant: c, terms } => {
+                Node::Sum { constant: c, terms }
+                    if opened < MAX_TERMS
+                        && q.checked_mul(c).is_some()
+                        && self.terms(terms).iter().all(|&(_, r)| q.checked_mul(r).is_some()) =>
+                {
+                    opened += terms.range().len();
                     constant = constant + q * c;
                     open.extend(
                         self.terms(terms).iter().map(|&(child, coefficient)| (child, q * coefficient)),
@@ -248,7 +267,7 @@ impl Dag {
         }
         if !constant.is_zero() {
             match multiple(constant) {
-                Some(m) => visit(Fingerprint::constant(Number::ONE), m),
+                Some(m) => visit(Fingerprint::ONE, m),
                 None => visit(Fingerprint::constant(constant), FRACTION),
             }
         }

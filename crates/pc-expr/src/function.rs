@@ -2,7 +2,7 @@
 
 /// A function of one, two or three arguments.
 ///
-/// tan, cot and non-negative integer powers are not here: they are written with these and with products.
+/// tan, cot and small integer powers are not here: they are written with these and with products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)] // each variant is the function of its name
 pub enum Function {
@@ -27,7 +27,7 @@ pub enum Function {
     Max,
     /// `step(x, a, b)`: a where x ≥ 0, else b.
     Step,
-    /// `pow(x, y)` for an exponent that is not an integer.
+    /// `pow(x, y)` for an exponent that is not an integer, or a very large one.
     Pow,
 }
 

@@ -91,7 +91,7 @@ impl Program {
     }
 
     /// How often each register is read, outputs included.
-    fn uses(&self) -> Vec<u32> {
+    pub(crate) fn uses(&self) -> Vec<u32> {
         let mut uses = vec![0; self.registers_len()];
         let operands = self.code.iter().flat_map(|instruction| instruction.operands().collect::<Vec<_>>());
         for register in operands.chain(self.outputs.iter().copied()) {

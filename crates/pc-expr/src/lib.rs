@@ -22,9 +22,11 @@
 //! # Ok::<(), pc_expr::ExprError>(())
 //! ```
 
+mod collect;
 mod cone;
 mod dag;
 mod derivative;
+mod emit;
 mod error;
 mod evaluate;
 mod expr;
@@ -41,7 +43,9 @@ mod program;
 mod rank;
 mod vector_field;
 
+pub use collect::Polynomial;
 pub use dag::Folding;
+pub use emit::{Body, Calls, Language, Layout, Place, Slot};
 pub use error::ExprError;
 pub use evaluate::Scalar;
 pub use expr::Expr;

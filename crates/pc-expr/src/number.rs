@@ -44,17 +44,27 @@ impl Number {
     }
 
     fn reduce(num: i128, den: i128) -> Number {
-        if den == 0 {
-            return Number::UNDEFINED;
+        match den {
+            0 => Number::UNDEFINED,
+            _ => Number::small(num, den).unwrap_or_else(|| Number::from(num as f64 / den as f64)),
         }
+    }
+
+    fn whole(value: i128) -> Number {
+        if value.abs() <= EXACT {
+            Number::Rational { num: value as i64, den: 1 }
+        } else {
+            Number::Real(value as f64)
+        }
+    }
+
+    /// `num / den` for `den ≠ 0`, if that is a small rational.
+    fn small(num: i128, den: i128) -> Option<Number> {
         let divisor = gcd(num.unsigned_abs(), den.unsigned_abs()).cast_signed();
         let (num, den) =
             if den < 0 { (-num / divisor, -den / divisor) } else { (num / divisor, den / divisor) };
-        if num.abs() <= EXACT && den <= EXACT {
-            Number::Rational { num: num as i64, den: den as i64 }
-        } else {
-            Number::Real(num as f64 / den as f64)
-        }
+        let small = num.abs() <= EXACT && den <= EXACT;
+        small.then_some(Number::Rational { num: num as i64, den: den as i64 })
     }
 
     /// The nearest `f64`.
@@ -143,6 +153,26 @@ impl Number {
         Some(Number::ratio(root(num)?, root(den)?))
     }
 
+    /// The product, unless it overflows or underflows.
+    pub(crate) fn checked_mul(self, other: Number) -> Option<Number> {
+        let product = self * other;
+        let Number::Real(_) = product else {
+            return (!product.is_zero() || self.is_zero() || other.is_zero()).then_some(product);
+        };
+        let unscaled = |x: Number| x.abs().is_one() || !x.is_finite();
+        (product.to_f64().is_normal() || unscaled(self) || unscaled(other)).then_some(product)
+    }
+
+    /// x^e, unless it overflows or underflows.
+    pub(crate) fn checked_powi(self, exponent: i32) -> Option<Number> {
+        let power = self.powi(exponent);
+        let out_of_range = match power {
+            Number::Rational { num, .. } => num == 0,
+            Number::Real(value) => !value.is_normal(),
+        };
+        (!out_of_range || exponent == 1 || self.is_zero() || !self.is_finite()).then_some(power)
+    }
+
     /// The greatest rational g such that both numbers are integer multiples of it; `None` for rounded reals.
     pub(crate) fn content(self, other: Number) -> Option<Number> {
         match (self, other) {
@@ -150,10 +180,7 @@ impl Number {
                 let num = gcd(a.unsigned_abs().into(), c.unsigned_abs().into());
                 let common = gcd(b.unsigned_abs().into(), d.unsigned_abs().into());
                 let den = (b.unsigned_abs() as u128 / common) * d.unsigned_abs() as u128;
-                match Number::reduce(num.cast_signed(), den.cast_signed()) {
-                    Number::Real(_) => None,
-                    exact @ Number::Rational { .. } => Some(exact),
-                }
+                Number::small(num.cast_signed(), den.cast_signed())
             }
             _ => None,
         }
@@ -188,10 +215,7 @@ fn decimal(value: f64) -> Option<Number> {
     let digits: i64 = mantissa.replace('.', "").parse().ok()?;
     let power = fraction_digits - exponent.parse::<i32>().ok()?;
     let den = 10i128.checked_pow(u32::try_from(power).ok()?)?;
-    match Number::reduce(digits.into(), den) {
-        exact @ Number::Rational { .. } => Some(exact),
-        Number::Real(_) => None,
-    }
+    Number::small(digits.into(), den)
 }
 
 impl From<i32> for Number {
@@ -214,6 +238,9 @@ impl std::ops::Add for Number {
     type Output = Number;
     fn add(self, other: Number) -> Number {
         match (self, other) {
+            (Number::Rational { num: a, den: 1 }, Number::Rational { num: c, den: 1 }) => {
+                Number::whole(i128::from(a) + i128::from(c))
+            }
             (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => {
                 let [a, b, c, d] = [a, b, c, d].map(i128::from);
                 Number::reduce(a * d + c * b, b * d)
@@ -227,6 +254,9 @@ impl std::ops::Mul for Number {
     type Output = Number;
     fn mul(self, other: Number) -> Number {
         match (self, other) {
+            (Number::Rational { num: a, den: 1 }, Number::Rational { num: c, den: 1 }) => {
+                Number::whole(i128::from(a) * i128::from(c))
+            }
             (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => {
                 let [a, b, c, d] = [a, b, c, d].map(i128::from);
                 Number::reduce(a * c, b * d)
@@ -260,16 +290,25 @@ impl Hash for Number {
 
 impl fmt::Display for Number {
     /// Small fractions as such (`-1/3`), other rationals as decimals where they terminate.
+    ///
+    /// Very large and very small numbers are written with an exponent.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Number::Rational { num, den: 1 } => write!(f, "{num}"),
             Number::Rational { num, den } if den <= 12 && den != 5 && den != 10 => write!(f, "{num}/{den}"),
             Number::Rational { num, den } => {
                 let value = self.to_f64();
-                if Number::from(value) == *self { write!(f, "{value}") } else { write!(f, "{num}/{den}") }
+                if Number::from(value) == *self { decimal_text(value, f) } else { write!(f, "{num}/{den}") }
             }
-            Number::Real(value) => write!(f, "{value}"),
+            Number::Real(value) => decimal_text(value, f),
         }
+    }
+}
+
+fn decimal_text(value: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match value.abs() {
+        size if size.is_finite() && !(1e-5..1e17).contains(&size) => write!(f, "{value:e}"),
+        _ => write!(f, "{value}"),
     }
 }
 
@@ -299,6 +338,19 @@ mod tests {
         let big = Number::ratio(1 << 40, 1);
         assert_eq!(big * big, Number::Real(2f64.powi(80)));
         assert_eq!(Number::ratio(1, 3) * Number::ratio(3, 1), Number::ONE);
+        assert_eq!(Number::ratio((1 << 54) + 1, 1 << 54), Number::ONE, "rounded to a small rational again");
+    }
+
+    #[test]
+    fn checked_operations_refuse_to_leave_the_range() {
+        let [huge, tiny] = [1e300, 1e-300].map(Number::from);
+        assert_eq!(huge.checked_mul(huge), None);
+        assert_eq!(tiny.checked_mul(tiny), None);
+        assert!(huge.checked_mul(tiny).is_some());
+        assert_eq!(tiny.checked_powi(2), None);
+        assert_eq!(tiny.checked_powi(-2), None);
+        assert_eq!(Number::ZERO.checked_mul(huge), Some(Number::ZERO));
+        assert_eq!(Number::from(5e-324).checked_mul(Number::MINUS_ONE), Some(Number::Real(-5e-324)));
     }
 
     #[test]
@@ -318,5 +370,7 @@ mod tests {
         let shown = [(1, 2), (-1, 3), (3, 10), (1, 7), (3, 1000), (22, 13)]
             .map(|(a, b)| Number::ratio(a, b).to_string());
         assert_eq!(shown, ["1/2", "-1/3", "0.3", "1/7", "0.003", "22/13"]);
+        let shown = [6.674e-11, -1e300, 5e-324, 1e5, 0.1 + 0.2].map(|x| Number::from(x).to_string());
+        assert_eq!(shown, ["6.674e-11", "-1e300", "5e-324", "100000", "0.30000000000000004"]);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::expr::Expr;
+use crate::function::Function;
 use crate::number::Number;
 
 /// How an expression is written.
@@ -67,17 +68,20 @@ fn piece(dag: &Dag, id: NodeId, depth: usize) -> Piece {
     match dag.node(id) {
         Node::Constant(c) => number(c),
         Node::Symbol(index) => Piece::atom(dag.symbol_name(index)),
-        Node::Call { function, args } => {
-            let args: Vec<String> =
-                Dag::args(function, &args).iter().map(|&arg| piece(dag, arg, depth + 1).text).collect();
-            match function {
-                crate::Function::Pow => {
-                    let power = format!("({})^({})", args[0], args[1]);
-                    Piece { text: power, binding: Binding::Power }
+        Node::Call { function, args } => match function {
+                Function::Pow => {
+                    let [base, exponent] = [args[0], args[1]].map(|arg| piece(dag, arg, depth + 1));
+                    let [base, exponent] = [base, exponent].map(|piece| piece.at_least(Binding::Atom));
+                    Piece { text: format!("{base}^{exponent}"), binding: Binding::Power }
                 }
-                _ => Piece::atom(format!("{}({})", function.name(), args.join(", "))),
-            }
-        }
+                _ => {
+                    let args: Vec<String> = Dag::args(function, &args)
+                        .iter()
+                        .map(|&arg| piece(dag, arg, depth + 1).text)
+                        .collect();
+                    Piece::atom(format!("{}({})", function.name(), args.join(", ")))
+                }
+            },
         Node::Product { .. } => monomial(dag, Number::ONE, id, depth),
         Node::Sum { constant, terms } => {
             let mut signed = Vec::new();
@@ -101,9 +105,10 @@ fn signed_terms(
     for (node, coefficient) in terms {
         let coefficient = coefficient * q;
         match dag.node(node) {
-            // −(a − b) is b − a
-            Node::Sum { constant, terms } if (-coefficient).is_one() && depth <= DEEP => {
-                signed_terms(dag, Number::MINUS_ONE, constant, dag.terms(terms), depth + 1, out);
+            Node::Sum { constant, terms }
+                if depth <= DEEP && opens(coefficient, constant, dag.terms(terms)) =>
+            {
+                signed_terms(dag, coefficient, constant, dag.terms(terms), depth + 1, out);
             }
             _ => out.push((coefficient.is_negative(), monomial(dag, coefficient.abs(), node, depth))),
         }
@@ -112,6 +117,15 @@ fn signed_terms(
     if !constant.is_zero() {
         out.push((constant.is_negative(), number(constant.abs())));
     }
+}
+
+/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, and (2·a − 1)/2 is a − 1/2.
+fn opens(q: Number, constant: Number, terms: &[(NodeId, Number)]) -> bool {
+    let whole = |c: Number| matches!(c, Number::Rational { num, den: 1 } if num != 0);
+    let fraction = matches!(q, Number::Rational { den, .. } if den > 1);
+    let becomes_whole = || whole(q * constant) || terms.iter().any(|&(_, c)| whole(q * c));
+    let several = terms.len() > 1 || !constant.is_zero();
+    (-q).is_one() || fraction && several && becomes_whole()
 }
 
 fn join(mut signed: Vec<(bool, Piece)>) -> Piece {
@@ -146,7 +160,10 @@ fn monomial(dag: &Dag, q: Number, node: NodeId, depth: usize) -> Piece {
     factors.sort_by_cached_key(|&(factor, _)| factor_key(dag, factor));
     let power = |factor: NodeId, e: i32| {
         let base = piece(dag, factor, depth + 1);
-        if e == 1 {
+        if e == 1 && matches!(dag.node(factor), Node::Sum { .. }) {
+            let alone = factors.len() == 1 && q.is_one();
+            if alone { base } else { Piece::atom(base.at_least(Binding::Power)) }
+        } else if e == 1 {
             base
         } else {
             Piece { text: format!("{}^{e}", base.at_least(Binding::Atom)), binding: Binding::Power }
@@ -159,9 +176,17 @@ fn monomial(dag: &Dag, q: Number, node: NodeId, depth: usize) -> Piece {
             .map(|&(factor, e)| power(factor, e.abs()))
             .collect()
     };
-    let (mut above, below) = (collect(1), collect(-1));
-    if !q.is_one() || above.is_empty() {
-        above.insert(0, number(q));
+    let (mut above, mut below) = (collect(1), collect(-1));
+    let mut front = q;
+    if let Number::Rational { num, den } = q
+        && !below.is_empty()
+        && number(q).binding == Binding::Product
+    {
+        front = Number::ratio(num, 1);
+        below.insert(0, number(Number::ratio(den, 1)));
+    }
+    if !front.is_one() || above.is_empty() {
+        above.insert(0, number(front));
     }
     if above.len() == 1 && below.is_empty() {
         return above.remove(0);

@@ -2,14 +2,13 @@
 
 use crate::dag::Atom;
 use crate::expr::Expr;
-use crate::field::Element;
-use crate::fingerprint::Fingerprint;
+use crate::fingerprint::{Fingerprint, First};
 use crate::graph::Graph;
 
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.
     pub fn generic_rank<'g>(&'g self, rows: &[Vec<Expr<'g>>]) -> usize {
-        let mut rows: Vec<Vec<Element>> = self.with(|dag| {
+        let mut rows: Vec<Vec<First>> = self.with(|dag| {
             let value = |x: &Expr<'g>| match x.atom() {
                 Atom::Constant(c) => Fingerprint::constant(c).first(),
                 Atom::Node(id) => dag.fingerprint(id).first(),
@@ -19,7 +18,7 @@ impl Graph {
         let columns = rows.first().map_or(0, Vec::len);
         let mut rank = 0;
         for column in 0..columns {
-            let Some(pivot) = (rank..rows.len()).find(|&r| rows[r][column] != Element::ZERO) else {
+            let Some(pivot) = (rank..rows.len()).find(|&r| rows[r][column] != First::ZERO) else {
                 continue;
             };
             rows.swap(rank, pivot);

@@ -25,15 +25,17 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 
+mod emit;
 mod error;
 mod ldl;
 mod motion;
 mod poincare;
 mod system;
 
+pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
 pub use motion::Motion;
 pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-pub use pc_expr::{Expr, ExprError, Folding, Graph, Number, VectorField};
+pub use pc_expr::{Expr, ExprError, Folding, Graph, Language, Number, VectorField};
 pub use poincare::Equations;
 pub use system::{System, SystemBuilder};

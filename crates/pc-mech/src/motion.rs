@@ -35,17 +35,13 @@ impl<'g> Equations<'g> {
         let system = &self.system;
         let graph = system.graph();
         let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
-        let state: Vec<Expr<'g>> = x.iter().chain(eta).copied().collect();
-        let inputs = Inputs {
-            time: Some(system.frame.time()),
-            state: state.clone(),
-            parameters: system.parameters.iter().map(|&(symbol, _)| symbol).collect(),
-        };
+        let inputs = self.inputs();
+        let state = inputs.state.clone();
         let compile = |outputs: &[Expr<'g>]| -> Result<Interpreter, ExprError> {
             Ok(Interpreter::new(Arc::new(Program::new(graph, &inputs, outputs)?)))
         };
         let ldl = Ldl::of(graph, &self.mass);
-        let accelerations = ldl.solve(&self.right);
+        let accelerations = self.solve(&ldl);
         let mut outputs = self.velocities.clone();
         outputs.extend(&accelerations);
         outputs.extend(ldl.pivots());
@@ -72,9 +68,19 @@ impl<'g> Equations<'g> {
         })
     }
 
+    /// What the compiled programs read.
+    pub(crate) fn inputs(&self) -> Inputs<'g> {
+        let system = &self.system;
+        Inputs {
+            time: Some(system.frame.time()),
+            state: system.frame.coordinates().iter().chain(&system.quasi_velocities).copied().collect(),
+            parameters: system.parameters.iter().map(|&(symbol, _)| symbol).collect(),
+        }
+    }
+
     /// ∂(ẋ, η̇)/∂(x, η), column after column. No inverse is differentiated: with F = r − M a at fixed a = η̇,
     /// ∂η̇/∂y = M⁻¹ ∂F/∂y.
-    fn jacobian(&self, ldl: &Ldl<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub(crate) fn jacobian(&self, ldl: &Ldl<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.system.graph();
         let eta = &self.system.quasi_velocities;
         let state: Vec<Expr<'g>> = self.system.frame.coordinates().iter().chain(eta).copied().collect();

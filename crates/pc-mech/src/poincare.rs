@@ -27,30 +27,85 @@ impl<'g> System<'g> {
     /// # Errors
     /// [`MechError::DegenerateLagrangian`] if M is singular everywhere.
     pub fn poincare(&self) -> Result<Equations<'g>, MechError> {
+        self.poincare_constrained(self.quasi_velocities.len())
+    }
+
+    /// The equations (30) of the system with nonholonomic constraints η_α = 0, α > `free`:
+    ///
+    ///   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s,   s, r = 1..`free`, m = 1..k.
+    ///
+    /// The constraints are put in after differentiation, so that all k momenta count. The [system](Equations::system)
+    /// of the result has the free quasi-velocities only. With `free` = k these are the equations (9).
+    ///
+    /// # Errors
+    /// [`MechError::DegenerateLagrangian`]; [`MechError::Shape`] if there are fewer than `free` quasi-velocities.
+    pub fn poincare_constrained(&self, free: usize) -> Result<Equations<'g>, MechError> {
         let graph = self.graph();
-        let (x, eta, t) = (self.frame.coordinates(), &self.quasi_velocities, self.frame.time());
-        let velocities = self.frame.velocities(eta);
-
-        let variables: Vec<Expr<'g>> = eta.iter().chain(x).copied().collect();
+        let all = &self.quasi_velocities;
+        if free > all.len() {
+            let what = "the list of free quasi-velocities";
+            return Err(MechError::Shape { what, found: free, expected: all.len() });
+        }
+        let (x, t) = (self.frame.coordinates(), self.frame.time());
+        let variables: Vec<Expr<'g>> = all.iter().chain(x).copied().collect();
         let gradient = graph.gradient(self.lagrangian, &variables);
-        let (momenta, slope) = gradient.split_at(eta.len());
 
-        let hessian: Vec<Vec<Expr<'g>>> = momenta.iter().map(|&p| graph.gradient(p, eta)).collect();
-        let mass = Matrix::from_fn(eta.len(), eta.len(), |r, s| hessian[r.max(s)][r.min(s)]);
-        self.check_regular(&mass)?;
+        let constraints: Vec<_> = all[free..].iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let on_constraints = |expressions: &[Expr<'g>]| graph.substitute(expressions, &constraints);
+        let gradient = on_constraints(&gradient);
+        let (momenta, slope) = gradient.split_at(all.len());
+        let system = self.restricted(free);
+        let eta = &system.quasi_velocities;
+        let velocities = system.frame.velocities(eta);
+
+        let hessian: Vec<Vec<Expr<'g>>> = momenta[..free].iter().map(|&p| graph.gradient(p, eta)).collect();
+        let mass = Matrix::from_fn(free, free, |r, s| hessian[r.max(s)][r.min(s)]);
+        system.check_regular(&mass)?;
 
         let along: Vec<_> =
             x.iter().copied().zip(velocities.iter().copied()).chain([(t, Expr::ONE)]).collect();
-        let transport = graph.directional(momenta, &along);
-        let gyroscopic = self.structure.gyroscopic(graph, eta, momenta);
-        let potential = self.frame.contract(slope);
-        let right = (0..eta.len())
-            .map(|s| graph.sum([gyroscopic[s], potential[s], self.forces[s], -transport[s]]))
+        let transport = graph.directional(&momenta[..free], &along);
+        let gyroscopic = self.structure.gyroscopic(graph, &on_constraints(all), momenta);
+        let potential = system.frame.contract(slope);
+        let right: Vec<Expr<'g>> = (0..free)
+            .map(|s| graph.sum([gyroscopic[s], potential[s], system.forces[s], -transport[s]]))
             .collect();
 
-        let energy = graph.dot(momenta.iter().copied(), eta.iter().copied()) - self.lagrangian;
+        let energy = graph.dot(momenta.iter().copied(), eta.iter().copied()) - system.lagrangian;
         graph.check()?;
-        Ok(Equations { system: self.clone(), velocities, mass, right, energy })
+
+        // Collected by products of quasi-velocities, then by parameters, the equations are those of a book.
+        let order = system.collecting_order();
+        let shorten = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
+        let entries = shorten(mass.entries());
+        Ok(Equations {
+            velocities,
+            mass: Matrix::from_fn(free, free, |r, s| entries[r * free + s]),
+            right: shorten(&right),
+            energy: shorten(&[energy])[0],
+            system,
+        })
+    }
+
+    /// The system with the first `free` quasi-velocities, the others zero. Its structure coefficients stay those of
+    /// the whole frame, and nothing may be derived from its Lagrangian but the energy.
+    fn restricted(&self, free: usize) -> System<'g> {
+        let graph = self.graph();
+        let dropped = &self.quasi_velocities[free..];
+        let rates = self.accelerations();
+        let zeros: Vec<_> = dropped.iter().chain(&rates[free..]).map(|&symbol| (symbol, Expr::ZERO)).collect();
+        let put = |x: Expr<'g>| graph.substitute(&[x], &zeros)[0];
+        let named = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
+        System {
+            frame: self.frame.restricted(free),
+            structure: self.structure.clone(),
+            quasi_velocities: self.quasi_velocities[..free].to_vec(),
+            parameters: self.parameters.clone(),
+            lagrangian: put(self.lagrangian),
+            forces: self.forces[..free].iter().map(|&q| put(q)).collect(),
+            integrals: named(&self.integrals),
+            outputs: named(&self.outputs),
+        }
     }
 
     fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
@@ -97,6 +152,41 @@ impl<'g> Equations<'g> {
 
     /// The accelerations η̇ = M⁻¹ r, length k.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
-        Ldl::of(self.system.graph(), &self.mass).solve(&self.right)
+        self.solve(&Ldl::of(self.system.graph(), &self.mass))
+    }
+
+    /// M⁻¹ r; an acceleration that is a single quotient is shortened once more.
+    pub(crate) fn solve(&self, ldl: &Ldl<'g>) -> Vec<Expr<'g>> {
+        let graph = self.system.graph();
+        let order = self.system.collecting_order();
+        let mut accelerations = ldl.solve(&self.right);
+        for (s, acceleration) in accelerations.iter_mut().enumerate() {
+            let row = self.mass.row(s);
+            let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());
+            let is_parameter = |symbol: &Expr<'g>| self.system.parameters.iter().any(|(known, _)| known == symbol);
+            if decoupled && !graph.symbols_of(&[row[s]]).iter().all(is_parameter) {
+                *acceleration = graph.shorten(&[*acceleration], &order)[0];
+            }
+        }
+        accelerations
+    }
+
+    /// The same equations with the parameters replaced by their numbers.
+    #[must_use]
+    pub fn with_parameters_bound(&self) -> Equations<'g> {
+        let system = self.system.with_parameters_bound();
+        let graph = system.graph();
+        let numbers: Vec<(Expr<'g>, Expr<'g>)> =
+            self.system.parameters.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let order = system.collecting_order();
+        let bind = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &numbers), &order);
+        let (k, mass) = (self.mass.rows(), bind(self.mass.entries()));
+        Equations {
+            velocities: graph.substitute(&self.velocities, &numbers),
+            mass: Matrix::from_fn(k, k, |r, s| mass[r * k + s]),
+            right: bind(&self.right),
+            energy: bind(&[self.energy])[0],
+            system,
+        }
     }
 }

@@ -76,6 +76,32 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
     }
 
+    /// Quasi-velocities, then parameters: equations are collected by powers of these, in this order.
+    pub(crate) fn collecting_order(&self) -> Vec<Expr<'g>> {
+        let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
+        self.quasi_velocities.iter().copied().chain(parameters).collect()
+    }
+
+    /// The same system with the parameters replaced by their numbers.
+    #[must_use]
+    pub fn with_parameters_bound(&self) -> System<'g> {
+        let graph = self.graph();
+        let numbers: Vec<(Expr<'g>, Expr<'g>)> =
+            self.parameters.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let bind = |x: Expr<'g>| graph.substitute(&[x], &numbers)[0];
+        let named = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), bind(*x))).collect();
+        System {
+            frame: self.frame.map(bind),
+            structure: self.structure.map(bind),
+            quasi_velocities: self.quasi_velocities.clone(),
+            parameters: Vec::new(),
+            lagrangian: bind(self.lagrangian),
+            forces: self.forces.iter().map(|&x| bind(x)).collect(),
+            integrals: named(&self.integrals),
+            outputs: named(&self.outputs),
+        }
+    }
+
     /// The momenta ∂L/∂η_s.
     pub fn momenta(&self) -> Vec<Expr<'g>> {
         self.graph().gradient(self.lagrangian, &self.quasi_velocities)

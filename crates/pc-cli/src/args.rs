@@ -1,0 +1,232 @@
+//! What stands on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// The command line of `pc`.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "pc",
+    version,
+    about = "Poincaré–Chetaev equations of mechanical systems, derived and integrated from text models",
+    after_help = "MODEL is a file, `-` for standard input, or the name of a model that comes with the program \
+                  (`pc models` lists them).\n\
+                  Exit codes: 0 done; 2 usage; 3 the model file is wrong; 4 the model is inconsistent; 5 the \
+                  integration failed; 130 interrupted."
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Say whether a model holds together: ranks, closure, Jacobi identity, start, integrals
+    Check(CheckArguments),
+    /// Print the equations of motion
+    Derive(DeriveArguments),
+    /// Integrate the motion; CSV on standard output unless -o is given
+    Run(RunArguments),
+    /// List the models that come with the program
+    Models(ModelsArguments),
+}
+
+/// The model and the values of its parameters.
+#[derive(Clone, Debug, Args)]
+pub struct ModelArguments {
+    /// A file, `-` for standard input, or a built-in name
+    pub model: String,
+    /// Give a parameter another value than that of the file (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub set: Vec<Setting>,
+}
+
+/// `NAME=VALUE`, the value as written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// The parameter.
+    pub name: String,
+    /// Its value as written.
+    pub value: String,
+}
+
+/// Arguments of `pc check`.
+#[derive(Clone, Debug, Args)]
+pub struct CheckArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// How to print: text or json
+    #[arg(long, default_value = "text", value_parser = format)]
+    pub format: Format,
+}
+
+/// Arguments of `pc derive`.
+#[derive(Clone, Debug, Args)]
+pub struct DeriveArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Form of the equations: poincare
+    #[arg(long, value_parser = form)]
+    pub form: Option<Form>,
+    /// How to print: text or json
+    #[arg(long, default_value = "text", value_parser = format)]
+    pub format: Format,
+}
+
+/// Arguments of `pc run`.
+#[derive(Clone, Debug, Args)]
+pub struct RunArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// End time; else that of the file
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = finite)]
+    pub t_end: Option<f64>,
+    /// Number of rows, evenly spaced, start and end included; else that of the file, else 201
+    #[arg(long, value_name = "N", value_parser = samples)]
+    pub samples: Option<usize>,
+    /// Relative tolerance; else that of the file, else 1e-9
+    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = positive)]
+    pub rtol: Option<f64>,
+    /// Absolute tolerance; else that of the file, else 1e-12
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = positive)]
+    pub atol: Option<f64>,
+    /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
+    #[arg(long, value_name = "METHOD", value_parser = method)]
+    pub method: Option<Method>,
+    /// Form of the equations: poincare
+    #[arg(long, value_parser = form)]
+    pub form: Option<Form>,
+    /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draw the motion into FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `pc models`.
+#[derive(Clone, Debug, Args)]
+pub struct ModelsArguments {
+    /// List the Lie algebras that `[algebra]` knows by name instead
+    #[arg(long)]
+    pub algebras: bool,
+}
+
+/// How a result is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// Form of the equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// Equations for the quasi-velocities.
+    Poincare,
+}
+
+/// Integration method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Adams–Moulton formulas.
+    Adams,
+    /// Backward differentiation formulas.
+    Bdf,
+}
+
+fn format(text: &str) -> Result<Format, String> {
+    choice(text, &["latex"])
+}
+
+fn form(text: &str) -> Result<Form, String> {
+    choice(text, &["canonical", "lagrange", "voronets"])
+}
+
+fn method(text: &str) -> Result<Method, String> {
+    choice(text, &["auto", "taylor", "dop853"])
+}
+
+/// One of the values of `T`; those of `later` are known and cannot be had yet.
+fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
+    T::from_str(text, false).map_err(|_| {
+        let names: Vec<String> = T::value_variants()
+            .iter()
+            .filter_map(|variant| variant.to_possible_value().map(|value| value.get_name().to_owned()))
+            .collect();
+        let names = names.join(" or ");
+        if later.contains(&text) {
+            format!("`{text}` is not supported yet; use {names}")
+        } else {
+            format!("use {names}")
+        }
+    })
+}
+
+fn setting(text: &str) -> Result<Setting, String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => {
+            Ok(Setting { name: name.trim().to_owned(), value: value.trim().to_owned() })
+        }
+        _ => Err("write NAME=VALUE, as in `--set m=2.5`".to_owned()),
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("write a finite number, such as 10 or 1e-3".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err("it must be positive".to_owned()),
+    }
+}
+
+/// More rows than this are a slip of the pen: each is held in memory.
+const MOST_SAMPLES: usize = 10_000_000;
+
+fn samples(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(count) if (2..=MOST_SAMPLES).contains(&count) => Ok(count),
+        _ => Err(format!("write a whole number from 2 (start and end) to {MOST_SAMPLES}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn what_is_not_supported_yet_is_said_to_be_so() {
+        assert_eq!(method("bdf"), Ok(Method::Bdf));
+        assert_eq!(method("taylor").unwrap_err(), "`taylor` is not supported yet; use adams or bdf");
+        assert_eq!(method("rk4").unwrap_err(), "use adams or bdf");
+    }
+
+    #[test]
+    fn settings_are_split_at_the_first_equals_sign() {
+        let set = |name: &str, value: &str| Setting { name: name.into(), value: value.into() };
+        assert_eq!(setting("m=2"), Ok(set("m", "2")));
+        assert_eq!(setting("m = -1e3"), Ok(set("m", "-1e3")));
+        assert_eq!(setting("m=a=b"), Ok(set("m", "a=b")));
+        assert!(setting("m").is_err() && setting("=2").is_err());
+    }
+}

@@ -1,0 +1,150 @@
+//! What can go wrong, and the exit code that says so.
+
+use std::error::Error;
+use std::io;
+use std::path::PathBuf;
+
+use pc_model::{ModelError, UnknownParameter};
+use pc_solve::SolveError;
+
+use crate::plot::PlotError;
+
+/// An error of the program.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CliError {
+    /// MODEL is neither a file nor the name of a built-in model.
+    #[error(
+        "there is no file `{name}`, nor a built-in model of that name{}",
+        nearest.map_or(" (`pc models` lists them)".to_owned(), |name| format!("; did you mean `{name}`?"))
+    )]
+    NoSuchModel {
+        /// As written.
+        name: String,
+        /// The built-in model with nearly that name.
+        nearest: Option<&'static str>,
+    },
+    /// The model file cannot be read.
+    #[error("cannot read {name}")]
+    Read {
+        /// The file.
+        name: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// `--set` of something that is not a parameter.
+    #[error("--set: {0}")]
+    UnknownParameter(#[from] UnknownParameter),
+    /// `--set` to something that is not a number.
+    #[error("--set {name}={value}: `{value}` is not a finite number; {}", known_parameters(known))]
+    BadValue {
+        /// What is set.
+        name: String,
+        /// As written.
+        value: String,
+        /// The parameters of the model.
+        known: Vec<String>,
+    },
+    /// Nobody says how long to integrate.
+    #[error("no end time: give `--t-end T`, or `t_end` in the section [simulation] of the model")]
+    NoEnd,
+    /// An end that is the start.
+    #[error("the end time {t} is the start time: nothing to integrate")]
+    EndIsStart {
+        /// That time.
+        t: f64,
+    },
+    /// A file whose name does not say what to write.
+    #[error("{option} {}: the name must end in {expected}", path.display())]
+    UnknownExtension {
+        /// The option that names the file.
+        option: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The endings there are.
+        expected: &'static str,
+    },
+    /// A file that cannot be written.
+    #[error("cannot write {path}")]
+    Write {
+        /// The file, or `standard output`.
+        path: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A picture that could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// Something wrong with the model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The integration could not go on.
+    #[error("the integration failed{}", at(.cause, names))]
+    Integration {
+        /// Why.
+        #[source]
+        cause: Box<SolveError>,
+        /// Names of the components of the state.
+        names: Vec<String>,
+    },
+    /// Ctrl-C.
+    #[error("interrupted at t = {t}")]
+    Interrupted {
+        /// How far the integration was.
+        t: f64,
+    },
+}
+
+impl CliError {
+    /// Exit code of a wrong command line.
+    pub const USAGE: u8 = 2;
+
+    /// Exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Model(error) => error.category().exit_code(),
+            CliError::Integration { .. } => 5,
+            CliError::Interrupted { .. } => 130,
+            CliError::NoSuchModel { .. }
+            | CliError::Read { .. }
+            | CliError::UnknownParameter(_)
+            | CliError::BadValue { .. }
+            | CliError::NoEnd
+            | CliError::EndIsStart { .. }
+            | CliError::UnknownExtension { .. }
+            | CliError::Write { .. }
+            | CliError::Plot(_) => CliError::USAGE,
+        }
+    }
+
+    /// The message with its causes, a line for each.
+    pub fn report(&self) -> String {
+        let mut report = format!("pc: {self}");
+        let mut last = self.to_string();
+        let mut source = self.source();
+        while let Some(error) = source {
+            let message = error.to_string();
+            if message != last {
+                report += &format!("\n  because: {message}");
+            }
+            last = message;
+            source = error.source();
+        }
+        report
+    }
+}
+
+fn known_parameters(known: &[String]) -> String {
+    if known.is_empty() {
+        "this model has no parameters".to_owned()
+    } else {
+        format!("the parameters of this model are {}", known.join(", "))
+    }
+}
+
+/// Where the integration stood, with the names of the state.
+fn at(cause: &SolveError, names: &[String]) -> String {
+    let Some((t, state)) = cause.reached() else { return String::new() };
+    let state: String = names.iter().zip(state).map(|(name, value)| format!(", {name} = {value}")).collect();
+    format!(" at t = {t}{state}")
+}

@@ -1,0 +1,75 @@
+//! From MODEL on the command line to a model and its equations.
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+
+use pc_expr::parse::nearest;
+use pc_mech::{Equations, Graph};
+use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
+
+use crate::args::{ModelArguments, Setting};
+use crate::error::CliError;
+
+/// The model that the command line names, its parameters set.
+///
+/// `-` is standard input; a name with `/` or `.` in it, or that of an existing file, is a file; any other name is
+/// that of a built-in model.
+///
+/// # Errors
+/// [`CliError`] if it cannot be found, read or understood, or has no such parameter.
+pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
+    let mut model = Model::new(document(&arguments.model)?);
+    for Setting { name, value } in &arguments.set {
+        match value.parse::<f64>() {
+            Ok(value) if value.is_finite() => model.set(name, value)?,
+            _ => {
+                let known = model.parameters().map(|(name, _)| name.to_owned()).collect();
+                return Err(CliError::BadValue { name: name.clone(), value: value.clone(), known });
+            }
+        }
+    }
+    Ok(model)
+}
+
+fn document(name: &str) -> Result<Document, CliError> {
+    if name == "-" {
+        let mut bytes = Vec::new();
+        let read = io::stdin().lock().read_to_end(&mut bytes);
+        read.map_err(|source| CliError::Read { name: "standard input".to_owned(), source })?;
+        return Ok(Document::from_bytes("<stdin>", &bytes)?);
+    }
+    let path = Path::new(name);
+    let looks_like_a_path = name.contains(['/', '\\', '.']);
+    if !path.exists() || !(looks_like_a_path || path.is_file()) {
+        return match Builtin::named(name) {
+            Some(builtin) if !looks_like_a_path => Ok(builtin.document()?),
+            _ => Err(no_such_model(name)),
+        };
+    }
+    let bytes = fs::read(path).map_err(|source| CliError::Read { name: name.to_owned(), source })?;
+    Ok(Document::from_bytes(name, &bytes)?)
+}
+
+fn no_such_model(name: &str) -> CliError {
+    let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
+    let nearest = nearest(stem, BUILTIN.iter().map(|model| model.name));
+    let nearest = nearest.and_then(Builtin::named).map(|model| model.name);
+    CliError::NoSuchModel { name: name.to_owned(), nearest }
+}
+
+/// The system of a model and its equations, expressions in `graph`.
+///
+/// # Errors
+/// [`ModelError`] at the place in the file that is to blame.
+pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equations<'g>), ModelError> {
+    let assembly = model.assemble(graph)?;
+    let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
+    Ok((assembly, equations))
+}
+
+/// What the model calls itself, else the name of its file.
+pub fn title(model: &Model) -> &str {
+    let document = model.document();
+    document.model.name.as_ref().map_or_else(|| document.source.name(), |name| name.value.as_str())
+}

@@ -1,0 +1,24 @@
+//! One JSON object: model, parameters, columns, rows, summary.
+
+use std::io::{self, Write};
+
+use serde_json::{Map, Value, json};
+
+use crate::run::Run;
+use crate::summary;
+
+/// Numbers are as short as gives the same number back; what is not finite is null.
+pub(super) fn write(run: &Run, out: &mut dyn Write) -> io::Result<()> {
+    let parameters: Map<String, Value> =
+        run.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    writeln!(out, "{{\n\"model\": {},", json!(run.title))?;
+    writeln!(out, "\"parameters\": {},", Value::from(parameters))?;
+    writeln!(out, "\"columns\": {},", json!(run.table.columns()))?;
+    writeln!(out, "\"rows\": [")?;
+    let last = run.table.len().saturating_sub(1);
+    for (i, row) in run.table.rows().enumerate() {
+        serde_json::to_writer(&mut *out, row)?;
+        writeln!(out, "{}", if i < last { "," } else { "" })?;
+    }
+    writeln!(out, "],\n\"summary\": {}\n}}", summary::json(run))
+}

@@ -1,0 +1,68 @@
+//! How a motion is to be computed: the command line first, then the model file, then what is usual.
+
+use pc_model::Model;
+use pc_model::document;
+use pc_solve::{Method, Options};
+
+use crate::args::{self, RunArguments};
+use crate::error::CliError;
+
+/// Rows of a table if nobody says how many.
+const SAMPLES: usize = 201;
+
+/// Time span, rows, method and tolerances of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Start time.
+    pub t_start: f64,
+    /// End time, which may lie before the start.
+    pub t_end: f64,
+    /// Number of rows, at least 2.
+    pub samples: usize,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance.
+    pub atol: f64,
+    /// Method.
+    pub method: Method,
+}
+
+impl Plan {
+    /// The plan for a model as the command line and the file want it.
+    ///
+    /// # Errors
+    /// [`CliError::NoEnd`], [`CliError::EndIsStart`].
+    pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
+        let simulation = &model.document().simulation;
+        let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let t_end = arguments.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or(CliError::NoEnd)?;
+        if t_end == t_start {
+            return Err(CliError::EndIsStart { t: t_end });
+        }
+        let method = match (arguments.method, simulation.method.as_ref().map(|method| method.value)) {
+            (Some(args::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
+            _ => Method::Adams,
+        };
+        Ok(Plan {
+            t_start,
+            t_end,
+            samples: arguments.samples.or(simulation.samples.as_ref().map(|n| n.value)).unwrap_or(SAMPLES),
+            rtol: arguments.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
+            atol: arguments.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
+            method,
+        })
+    }
+
+    /// The times of the rows, evenly spaced, start and end included.
+    pub fn times(&self) -> Vec<f64> {
+        let last = self.samples - 1;
+        let span = self.t_end - self.t_start;
+        let inner = (0..last).map(|i| self.t_start + span * (i as f64 / last as f64));
+        inner.chain([self.t_end]).collect()
+    }
+
+    /// Method and tolerances for the integrator.
+    pub fn options(&self) -> Options {
+        Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol)
+    }
+}

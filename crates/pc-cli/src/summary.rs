@@ -1,0 +1,101 @@
+//! What is said about a run, and what a file keeps of it.
+
+use serde_json::{Map, Value, json};
+
+use crate::run::{Ending, Run};
+use crate::text::{assignments, columns, labelled, short, small};
+
+const LABEL: usize = 9;
+const WIDTH: usize = 86;
+
+/// The summary for people.
+pub fn text(run: &Run) -> String {
+    let (plan, work) = (&run.plan, &run.statistics);
+    let mut text = format!("{}\n", run.title);
+    let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
+
+    line("method", &[format!("{}, rtol {:e}, atol {:e}", plan.method, plan.rtol, plan.atol)]);
+    let rows = run.table.len();
+    let reached = match run.ending {
+        Ending::Completed => format!("{rows} rows"),
+        _ => format!(
+            "{} at {}, {rows} of {} rows",
+            run.ending.word(),
+            short(work.current_time, 10),
+            plan.samples
+        ),
+    };
+    line("time", &[format!("{} to {}, {reached}", short(plan.t_start, 10), short(plan.t_end, 10))]);
+    line("work", &[work_done(run)]);
+    line("drift", &drifts(run));
+    if let Some(row) = run.table.rows().next_back() {
+        let state = run.table.coordinates().start..run.table.quasi_velocities().end;
+        let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
+        line(
+            "end",
+            &assignments(std::iter::once(("t", row[0])).chain(names.skip(1).take(state.len())), WIDTH),
+        );
+    }
+    text
+}
+
+fn work_done(run: &Run) -> String {
+    let work = &run.statistics;
+    let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let mut parts = vec![count(work.steps, "step"), count(work.rhs_evaluations, "evaluation")];
+    if work.jacobian_evaluations > 0 {
+        parts.push(count(work.jacobian_evaluations, "Jacobian"));
+    }
+    if work.error_test_failures > 0 {
+        parts.push(count(work.error_test_failures, "rejected step"));
+    }
+    parts.push(format!("{:.3} ms", run.wall.as_secs_f64() * 1e3));
+    parts.join(", ")
+}
+
+fn drifts(run: &Run) -> Vec<String> {
+    let table = &run.table;
+    let width = table.conserved().map(|j| columns(&table.columns()[j])).max().unwrap_or(0);
+    let drifts = table.conserved().map(|j| {
+        let name = &table.columns()[j];
+        let drift = table.drift(j);
+        let relative = drift.relative.map_or_else(
+            || "relative to a start value of 0: none".to_owned(),
+            |relative| format!("relative {}", small(relative)),
+        );
+        let note = if j + 1 == table.conserved().end && !run.keeps_energy {
+            "   (not an integral here)"
+        } else {
+            ""
+        };
+        format!("{name:width$}  {:<8} {relative}{note}", small(drift.absolute))
+    });
+    drifts.collect()
+}
+
+/// The summary for files; the time it took is left out, so that the same run gives the same file.
+pub fn json(run: &Run) -> Value {
+    let (plan, work, table) = (&run.plan, &run.statistics, &run.table);
+    let drift: Map<String, Value> = table
+        .conserved()
+        .map(|j| {
+            let drift = table.drift(j);
+            (table.columns()[j].clone(), json!({ "absolute": drift.absolute, "relative": drift.relative }))
+        })
+        .collect();
+    json!({
+        "ending": run.ending.word(),
+        "method": plan.method.to_string().to_lowercase(),
+        "rtol": plan.rtol,
+        "atol": plan.atol,
+        "t_start": plan.t_start,
+        "t_end": plan.t_end,
+        "t_reached": work.current_time,
+        "steps": work.steps,
+        "evaluations": work.rhs_evaluations,
+        "jacobians": work.jacobian_evaluations,
+        "rejected_steps": work.error_test_failures,
+        "keeps_energy": run.keeps_energy,
+        "drift": drift,
+    })
+}

@@ -1,0 +1,98 @@
+//! The table of a motion: t, coordinates, quasi-velocities, integrals, energy, outputs.
+
+use pc_mech::Motion;
+use pc_solve::Trajectory;
+
+/// A row for each output time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    columns: Vec<String>,
+    coordinates: usize,
+    quasi_velocities: usize,
+    conserved: usize,
+    /// One row after the other.
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// The states of a trajectory with the observables of its motion.
+    pub fn new(motion: &mut Motion, trajectory: &Trajectory) -> Table {
+        let names = motion.names().iter().chain(motion.observable_names()).cloned();
+        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).collect();
+        let mut values = Vec::with_capacity(columns.len() * trajectory.len());
+        for (t, y) in trajectory.iter() {
+            values.push(t);
+            values.extend_from_slice(y);
+            values.extend(motion.observe(t, y));
+        }
+        Table {
+            columns,
+            coordinates: motion.coordinates(),
+            quasi_velocities: motion.names().len() - motion.coordinates(),
+            conserved: motion.conserved_len(),
+            values,
+        }
+    }
+
+    /// Names of the columns, `t` first.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.columns.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// The rows in order.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
+        self.values.chunks_exact(self.columns.len())
+    }
+
+    /// Column number `j`, from 0.
+    pub fn column(&self, j: usize) -> impl ExactSizeIterator<Item = f64> + Clone + '_ {
+        self.values.chunks_exact(self.columns.len()).map(move |row| row[j])
+    }
+
+    /// The numbers of the columns that are coordinates.
+    pub fn coordinates(&self) -> std::ops::Range<usize> {
+        1..1 + self.coordinates
+    }
+
+    /// The numbers of the columns that are quasi-velocities.
+    pub fn quasi_velocities(&self) -> std::ops::Range<usize> {
+        let start = self.coordinates().end;
+        start..start + self.quasi_velocities
+    }
+
+    /// The numbers of the columns that are integrals, with the energy last.
+    pub fn conserved(&self) -> std::ops::Range<usize> {
+        let start = self.quasi_velocities().end;
+        start..start + self.conserved
+    }
+
+    /// max |I(t) − I(t_start)| over the rows for column `j`.
+    pub fn drift(&self, j: usize) -> Drift {
+        let start = self.column(j).next().unwrap_or(f64::NAN);
+        // f64::max would lose a NaN
+        let absolute = self.column(j).fold(0.0f64, |worst, value| {
+            let change = (value - start).abs();
+            if change > worst || change.is_nan() { change } else { worst }
+        });
+        Drift { absolute, relative: (start != 0.0).then(|| absolute / start.abs()) }
+    }
+}
+
+/// How far a quantity went from its start value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drift {
+    /// max |I(t) − I(t_start)|
+    pub absolute: f64,
+    /// The same, divided by |I(t_start)| unless that is 0.
+    pub relative: Option<f64>,
+}

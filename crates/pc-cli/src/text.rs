@@ -1,0 +1,132 @@
+//! Numbers and lines for people, and writing that does not mind a closed pipe.
+
+use std::fmt;
+use std::io::{self, Write};
+
+use crate::error::CliError;
+
+/// Writes to standard error; where nobody listens, nothing happens.
+pub fn say(message: fmt::Arguments<'_>) {
+    let _ = io::stderr().lock().write_fmt(message);
+}
+
+/// Writes to standard output; a reader that has gone away (`pc run … | head`) is no error.
+///
+/// # Errors
+/// [`CliError::Write`] for anything else.
+pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
+        Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
+            Err(CliError::Write { path: "standard output".to_owned(), source })
+        }
+        _ => {
+            drop(out.into_parts()); // what could not be written is not tried again
+            Ok(())
+        }
+    }
+}
+
+/// A number in at most `digits` significant digits, without needless zeros.
+pub fn short(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    let size = rounded.abs();
+    if rounded == 0.0 || (1e-4..1e9).contains(&size) || !rounded.is_finite() {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// A small number such as a residual or a drift: two digits.
+pub fn small(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
+}
+
+/// `name = value` for each, comma-separated, in lines of at most `width` characters.
+pub fn assignments<'a>(pairs: impl IntoIterator<Item = (&'a str, f64)>, width: usize) -> Vec<String> {
+    wrapped(pairs.into_iter().map(|(name, value)| format!("{name} = {}", short(value, 10))), width)
+}
+
+/// The items, comma-separated, in lines of at most `width` characters where they fit.
+pub fn wrapped(items: impl IntoIterator<Item = String>, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for item in items {
+        match lines.last_mut() {
+            Some(line) if columns(line) + columns(&item) + 2 <= width => *line += &format!(", {item}"),
+            Some(line) => {
+                line.push(',');
+                lines.push(item);
+            }
+            None => lines.push(item),
+        }
+    }
+    lines
+}
+
+/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` where all coefficients are.
+pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
+    let mut sum = String::new();
+    for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
+        let (sign, size) = match coefficient.strip_prefix('-') {
+            Some(rest) if !rest.contains([' ', '(']) => ("-", rest),
+            _ => ("+", coefficient.as_str()),
+        };
+        sum += match (sum.is_empty(), sign) {
+            (true, "-") => "-",
+            (true, _) => "",
+            (false, "-") => " - ",
+            (false, _) => " + ",
+        };
+        sum += &match size {
+            "1" => element,
+            _ if size.contains(' ') => format!("({size})*{element}"),
+            _ => format!("{size}*{element}"),
+        };
+    }
+    if sum.is_empty() { "0".to_owned() } else { sum }
+}
+
+/// Number of characters, each one column wide.
+pub fn columns(text: &str) -> usize {
+    text.chars().count()
+}
+
+/// `label`, padded, then the lines, those after the first indented alike.
+pub fn labelled(label: &str, width: usize, lines: &[String]) -> String {
+    let mut text = String::new();
+    for (i, line) in lines.iter().enumerate() {
+        text += &format!("  {:width$}{line}\n", if i == 0 { label } else { "" });
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(short(0.1 + 0.2, 10), "0.3");
+        assert_eq!(short(-1234.5678901234, 6), "-1234.57");
+        assert_eq!(short(1.5e-7, 10), "1.5e-7");
+        assert_eq!(short(0.0, 3), "0");
+        assert_eq!(short(f64::NAN, 3), "NaN");
+        assert_eq!(small(1.234e-12), "1.2e-12");
+    }
+
+    #[test]
+    fn combinations_read_as_written_by_hand() {
+        let sum =
+            |terms: &[(&str, &str)]| combination(terms.iter().map(|&(c, x)| (c.to_owned(), x.to_owned())));
+        assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
+        assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3*X2 - a*X3");
+        assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b)*X2");
+    }
+
+    #[test]
+    fn long_lists_are_wrapped() {
+        let lines = wrapped(["aaaa", "bbbb", "cccc"].map(str::to_owned), 11);
+        assert_eq!(lines, ["aaaa, bbbb,", "cccc"]);
+    }
+}

@@ -1,0 +1,89 @@
+//! What `pc derive` and `pc check` print.
+
+use std::process::Command;
+
+use serde_json::Value;
+
+fn pc(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc starts");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&pc(&[arguments, &["--format", "json"]].concat())).expect("JSON")
+}
+
+#[test]
+fn derived_equations_as_an_object() {
+    let object = json(&["derive", "heavy-top-euler", "--set", "r1=0.5"]);
+    assert_eq!(object["coordinates"], serde_json::json!(["ψ", "θ", "φ"]));
+    assert_eq!(object["quasi_velocities"], serde_json::json!(["ω1", "ω2", "ω3"]));
+    assert_eq!(object["parameters"]["r1"], 0.5);
+    assert_eq!(object["kinematics"]["b"].as_array().map(Vec::len), Some(3));
+    assert_eq!(object["kinematics"]["b_0"], serde_json::json!(["0", "0", "0"]));
+    let so3 = serde_json::json!([
+        { "r": "ω1", "s": "ω2", "m": "ω3", "value": "1" },
+        { "r": "ω1", "s": "ω3", "m": "ω2", "value": "-1" },
+        { "r": "ω2", "s": "ω3", "m": "ω1", "value": "1" },
+    ]);
+    assert_eq!(object["structure_coefficients"], so3);
+    assert_eq!(object["mass_matrix"][0], serde_json::json!(["I1", "0", "0"]));
+    assert_eq!(object["equations"].as_array().map(Vec::len), Some(3));
+    assert!(object["energy"].as_str().expect("text").contains("I1"));
+    for kind in ["free", "bound"] {
+        let operations = object["operations"][kind].as_object().expect("an object");
+        let sum: u64 =
+            operations.iter().filter(|(name, _)| *name != "total").filter_map(|(_, n)| n.as_u64()).sum();
+        assert_eq!(operations["total"].as_u64(), Some(sum), "{kind}");
+        assert_eq!(operations["sin"], 2, "sin θ and sin φ, once each");
+    }
+    let total = |kind: &str| object["operations"][kind]["total"].as_u64();
+    assert!(total("bound") < total("free"));
+}
+
+#[test]
+fn time_is_called_0_in_an_object_and_t_in_print() {
+    let object = json(&["derive", "damped-oscillator-scaled-frame"]);
+    let first = &object["structure_coefficients"][0];
+    assert_eq!(first["r"], "0");
+    let name = first["s"].as_str().expect("text");
+    assert!(pc(&["derive", "damped-oscillator-scaled-frame"]).contains(&format!("[t, {name}] = ")));
+}
+
+#[test]
+fn derived_equations_in_print() {
+    let text = pc(&["derive", "heavy-top-lagrange"]);
+    for line in ["γ1' = γ2*ω3 - γ3*ω2", "[ω1, ω2] = ω3", "diag(I1, I2, I3)", "I3*ω3' = ω1*ω2*(I1 - I2)"]
+    {
+        assert!(text.contains(line), "{line} not in {text}");
+    }
+}
+
+#[test]
+fn integrals_are_proved_or_not() {
+    let verdict = |model: &str, settings: &[&str], name: &str| {
+        let report = json(&[&["check", model], settings].concat());
+        let integrals = report["integrals"].as_array().expect("a list").clone();
+        let integral = integrals.into_iter().find(|integral| integral["name"] == name).expect("the integral");
+        integral["verdict"].as_str().expect("text").to_owned()
+    };
+    assert_eq!(verdict("heavy-top-lagrange", &[], "area"), "conserved (proved)");
+    assert_eq!(verdict("heavy-top-lagrange", &[], "energy"), "conserved (proved)");
+    assert_eq!(verdict("heavy-top-lagrange", &[], "spin"), "conserved for these parameters (proved)");
+    assert!(verdict("heavy-top-lagrange", &["--set", "I1=2"], "spin").starts_with("not proved"));
+    assert!(verdict("damped-oscillator", &[], "energy").contains("changes at the rate 0.75"));
+}
+
+#[test]
+fn a_check_as_an_object() {
+    let report = json(&["check", "heavy-top-lagrange"]);
+    assert_eq!(report["rank"], 2);
+    assert_eq!(report["closure_residual"], 0.0);
+    assert_eq!(report["jacobi_residual"], 0.0);
+    assert_eq!(report["start_residual"], 0.0);
+    assert_eq!(report["constraints"], serde_json::json!([]));
+    assert_eq!(report["integrals"][0]["how"], "declared");
+    let text = pc(&["check", "heavy-top-lagrange"]);
+    assert!(text.contains("2 of 3") && text.contains("so3") && text.contains("rank 3 of 3"), "{text}");
+}

@@ -1,0 +1,348 @@
+//! The program as it is used: exit codes, what goes where, and what is left behind.
+
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const HEADER: &str = "t,γ1,γ2,γ3,ω1,ω2,ω3,area,norm,spin,energy";
+
+/// Falls down the pole of spherical angles: θ reaches 0, where 1/sin θ is infinite.
+const POLE: &str = r#"
+[coordinates]
+"θ" = 1.0
+"φ" = 0.0
+[quasi_velocities]
+v = -1.0
+w = 0.0
+[kinematics]
+"θ" = "v"
+"φ" = "w/sin(θ)"
+[lagrangian]
+kinetic = "(v^2 + w^2)/2"
+[simulation]
+t_end = 2.0
+samples = 21
+"#;
+
+/// A mass that falls to where the root of its height ends.
+const WALL: &str = r#"
+[coordinates]
+x = 1.0
+[lagrangian]
+kinetic = "x'^2/2"
+potential = "x + sqrt(x)/1000"
+[simulation]
+t_end = 3.0
+samples = 31
+"#;
+
+const FREE: &str = "[parameters]\nm = 2.0\nl = 3.0\n[coordinates]\nx = \"2*l\"\n[quasi_velocities]\n\"x'\" = 1.0\n\
+                    [lagrangian]\nkinetic = \"m*x'^2/2\"\n[simulation]\nt_end = 1.0\nsamples = 3\n";
+
+fn pc() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_pc"))
+}
+
+fn run(arguments: &[&str]) -> Output {
+    pc().args(arguments).stdin(Stdio::null()).output().expect("pc starts")
+}
+
+fn run_on(model: &str, arguments: &[&str]) -> Output {
+    let mut command = pc();
+    let mut child = command
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    child.wait_with_output().expect("pc ends")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+#[track_caller]
+fn refuses(arguments: &[&str], exit_code: i32, mention: &str) {
+    let output = run(arguments);
+    let text = stderr(&output);
+    assert_eq!(code(&output), exit_code, "{arguments:?}: {text}");
+    assert!(text.contains(mention), "{arguments:?} should mention {mention}: {text}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+}
+
+#[test]
+fn the_table_has_its_header_and_all_digits() {
+    let output = run(&["run", "heavy-top-lagrange", "--samples", "5", "--t-end", "2"]);
+    assert_eq!(code(&output), 0);
+    let text = stdout(&output);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], HEADER);
+    assert_eq!(lines.len(), 6);
+    let mut times = Vec::new();
+    for line in &lines[1..] {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), 11);
+        for cell in &cells {
+            let (mantissa, _) = cell.split_once('e').expect("an exponent");
+            assert_eq!(mantissa.trim_start_matches('-').len(), 18, "17 digits and a point: {cell}");
+        }
+        times.push(cells[0].parse::<f64>().expect("a number"));
+    }
+    assert_eq!(times, [0.0, 0.5, 1.0, 1.5, 2.0]);
+    let summary = stderr(&output);
+    for word in ["Heavy top of Lagrange", "Adams", "rtol 1e-9", "steps", "area", "energy", "ω3 = 3"] {
+        assert!(summary.contains(word), "{word} not in {summary}");
+    }
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let mut files = Vec::new();
+    for extension in ["csv", "json", "npz", "svg", "png"] {
+        let option = if matches!(extension, "svg" | "png") { "--plot" } else { "-o" };
+        let bytes = ["a", "b"].map(|name| {
+            let path = directory.path().join(name).with_extension(extension);
+            let output =
+                run(&["run", "heavy-top-euler", "--t-end", "1", option, path.to_str().expect("UTF-8")]);
+            assert_eq!(code(&output), 0, "{}", stderr(&output));
+            std::fs::read(path).expect("a file")
+        });
+        assert!(bytes[0] == bytes[1], "{extension}");
+        files.push(bytes[0].clone());
+    }
+    let text = String::from_utf8(files[3].clone()).expect("UTF-8");
+    assert!(text.starts_with("<svg") && text.contains('ψ') && text.contains("relative drift"));
+    assert!(files[4].starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn json_and_npz_hold_the_table_of_the_csv() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let at = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
+    for name in ["a.csv", "a.json", "a.npz"] {
+        let output = run(&["run", "heavy-top-lagrange", "--samples", "4", "-o", &at(name)]);
+        assert!(code(&output) == 0 && output.stdout.is_empty());
+    }
+    let csv = std::fs::read_to_string(at("a.csv")).expect("a file");
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(at("a.json")).expect("a file")).expect("JSON");
+    assert_eq!(json["model"], "Heavy top of Lagrange");
+    assert_eq!(json["parameters"]["I3"], 0.5);
+    assert_eq!(json["columns"].as_array().expect("a list").len(), 11);
+    let read: Vec<Vec<f64>> = serde_json::from_value(json["rows"].clone()).expect("rows of numbers");
+    assert_eq!(read, rows);
+    assert_eq!(json["summary"]["ending"], "completed");
+    assert!(json["summary"]["drift"]["energy"]["absolute"].as_f64().expect("a number") < 1e-7);
+
+    let archive = std::fs::File::open(at("a.npz")).expect("a file");
+    let mut archive = zip::ZipArchive::new(archive).expect("an archive");
+    assert_eq!(archive.len(), 11);
+    for (j, name) in HEADER.split(',').enumerate() {
+        let mut bytes = Vec::new();
+        archive.by_name(&format!("{name}.npy")).expect(name).read_to_end(&mut bytes).expect("an array");
+        let column: Vec<f64> = npyz::NpyFile::new(&bytes[..]).expect("npy").into_vec().expect("f64");
+        assert_eq!(column, rows.iter().map(|row| row[j]).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn a_model_may_come_from_standard_input_and_its_parameters_from_the_command_line() {
+    let output = run_on(FREE, &["run", "-", "--set", "l=5", "--set", "m=4"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(1).map(|l| l.split(',').map(|c| c.parse().expect("a number")).collect()).collect();
+    assert_eq!(text.lines().next(), Some("t,x,x',energy"));
+    assert_eq!(rows[0], [0.0, 10.0, 1.0, 2.0], "the start follows l, the energy m");
+    assert!((rows[2][1] - 11.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_file_of_the_current_directory_comes_before_a_built_in_model() {
+    let directory = tempfile::tempdir().expect("a directory");
+    std::fs::write(directory.path().join("euler-top"), FREE).expect("written");
+    let header = |command: &mut Command| {
+        let output = command.args(["run", "euler-top"]).output().expect("pc starts");
+        stdout(&output).lines().next().expect("a header").to_owned()
+    };
+    assert_eq!(header(pc().current_dir(directory.path())), "t,x,x',energy");
+    assert_eq!(header(&mut pc()), "t,ω1,ω2,ω3,momentum,energy");
+}
+
+#[test]
+fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
+    refuses(&["run", "heavy-top-lagrang"], 2, "did you mean `heavy-top-lagrange`?");
+    refuses(&["run", "no/such/file.toml"], 2, "no file `no/such/file.toml`");
+    refuses(&["run", "."], 2, "cannot read .");
+    refuses(&["run", "euler-top", "--set", "I4=1"], 2, "its parameters are I1, I2, I3");
+    refuses(&["run", "euler-top", "--set", "I1=one"], 2, "the parameters of this model are I1, I2, I3");
+    refuses(&["run", "euler-top", "--set", "I1=inf"], 2, "not a finite number");
+    refuses(&["run", "euler-top", "--set", "I1"], 2, "NAME=VALUE");
+    refuses(&["run", "euler-top", "--samples", "1"], 2, "from 2");
+    refuses(&["run", "euler-top", "--rtol", "-1e-9"], 2, "positive");
+    refuses(&["run", "euler-top", "--atol", "NaN"], 2, "finite");
+    refuses(&["run", "euler-top", "--t-end", "0"], 2, "nothing to integrate");
+    refuses(&["run", "euler-top", "--method", "taylor"], 2, "not supported yet");
+    refuses(&["run", "euler-top", "--form", "canonical"], 2, "not supported yet");
+    refuses(&["derive", "euler-top", "--format", "latex"], 2, "not supported yet");
+    refuses(&["sweep", "euler-top"], 2, "sweep");
+    refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json or .npz");
+    refuses(&["run", "euler-top", "--plot", "motion.pdf"], 2, ".svg or .png");
+    refuses(&["run", "euler-top", "-o", "no/such/directory/a.csv"], 2, "no directory no/such/directory");
+    refuses(&[], 2, "Usage");
+    let output = run(&["--help"]);
+    assert!(code(&output) == 0 && stdout(&output).contains("Exit codes"));
+}
+
+#[test]
+fn the_end_time_must_stand_somewhere() {
+    let endless = FREE.replace("t_end = 1.0", "");
+    let output = run_on(&endless, &["run", "-"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("--t-end"));
+    assert_eq!(code(&run_on(&endless, &["run", "-", "--t-end", "-1"])), 0, "backwards");
+}
+
+#[test]
+fn a_wrong_model_is_exit_3_and_an_inconsistent_one_4() {
+    let output = run_on(&FREE.replace("m*x'^2/2", "m*x'^2/2 + mass"), &["run", "-"]);
+    assert_eq!(code(&output), 3);
+    let text = stderr(&output);
+    assert!(text.contains("<stdin>:9:") && text.contains("mass"), "{text}");
+    let output = run_on(&FREE.replace("m*x'^2/2", "m*x'"), &["check", "-"]);
+    assert_eq!(code(&output), 4, "{}", stderr(&output));
+    let output = run_on(&FREE.replace("m = 2.0", "m = 0.0"), &["run", "-"]);
+    assert_eq!(code(&output), 4, "{}", stderr(&output));
+}
+
+#[test]
+fn what_was_reached_is_written_before_a_failure() {
+    for (model, at_least, mention) in [(POLE, 9, "θ = "), (WALL, 10, "x = ")] {
+        let output = run_on(model, &["run", "-"]);
+        let text = stderr(&output);
+        assert_eq!(code(&output), 5, "{text}");
+        let rows = stdout(&output).lines().count() - 1;
+        assert!((at_least..20).contains(&rows), "{rows} rows");
+        assert!(text.contains("the integration failed at t = "), "{text}");
+        assert!(text.contains(mention) && text.contains("because: "), "{text}");
+    }
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("a.json");
+    let output = run_on(WALL, &["run", "-", "-o", path.to_str().expect("UTF-8")]);
+    assert_eq!(code(&output), 5);
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
+    assert_eq!(json["summary"]["ending"], "failed");
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_not_at_all() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("a.csv");
+    let name = path.to_str().expect("UTF-8");
+    std::fs::write(&path, "precious").expect("written");
+    for arguments in [["run", "euler-top", "--set", "I1=0"], ["run", "euler-top", "--t-end", "0"]] {
+        let output = run(&[&arguments[..], &["-o", name]].concat());
+        assert_ne!(code(&output), 0);
+        assert_eq!(std::fs::read_to_string(&path).expect("a file"), "precious");
+    }
+    assert_eq!(code(&run(&["run", "euler-top", "-o", name])), 0);
+    assert!(std::fs::read_to_string(&path).expect("a file").starts_with("t,"));
+    assert_eq!(entries(directory.path()), [path], "nothing else is left");
+}
+
+fn entries(directory: &Path) -> Vec<PathBuf> {
+    std::fs::read_dir(directory).expect("a directory").map(|entry| entry.expect("an entry").path()).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_new_file_has_the_usual_permissions_and_links_are_followed() {
+    use std::os::unix::fs::PermissionsExt;
+    let directory = tempfile::tempdir().expect("a directory");
+    let at = |name: &str| directory.path().join(name);
+    std::fs::write(at("plain"), "").expect("written");
+    std::os::unix::fs::symlink(at("a.csv"), at("link.csv")).expect("a link");
+    let output = at("a.csv");
+    assert_eq!(code(&run(&["run", "euler-top", "-o", output.to_str().expect("UTF-8")])), 0);
+    let mode = |path: &Path| std::fs::metadata(path).expect("a file").permissions().mode();
+    assert_eq!(mode(&output), mode(&at("plain")));
+    assert_eq!(code(&run(&["run", "euler-top", "-o", at("link.csv").to_str().expect("UTF-8")])), 0);
+    assert!(std::fs::symlink_metadata(at("link.csv")).expect("a link").is_symlink());
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let mut child = pc()
+        .args(["run", "euler-top", "--samples", "50000"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("pc ends");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_what_was_reached() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("a.json");
+    let mut child = pc()
+        .args(["run", "euler-top", "--t-end", "1e9", "--samples", "1000000", "-o"])
+        .arg(&path)
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    std::thread::sleep(Duration::from_millis(700));
+    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("kill").success());
+    let start = Instant::now();
+    while child.try_wait().expect("a child").is_none() {
+        assert!(start.elapsed() < Duration::from_secs(20), "still running");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let output = child.wait_with_output().expect("pc ends");
+    let text = stderr(&output);
+    assert_eq!(code(&output), 130, "{text}");
+    assert!(text.contains("interrupted at t = "), "{text}");
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
+    assert_eq!(json["summary"]["ending"], "interrupted");
+    assert!(!json["rows"].as_array().expect("rows").is_empty());
+}
+
+#[test]
+fn models_and_algebras_are_listed() {
+    let text = stdout(&run(&["models"]));
+    let names: Vec<&str> = text.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.contains(&"heavy-top-lagrange") && names.contains(&"euler-top"));
+    for name in names {
+        let output = run(&["check", name]);
+        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
+    }
+    let text = stdout(&run(&["models", "--algebras"]));
+    assert!(text.contains("so3") && text.contains("[X1,X2] = X3"));
+}

@@ -1,0 +1,346 @@
+//! Equations of motion as C or Rust source that depends on nothing of this library.
+
+mod c;
+mod rust;
+
+use pc_expr::{Body, Calls, Expr, Language, Layout, Place, Program, Slot};
+
+use crate::error::MechError;
+use crate::ldl::Ldl;
+use crate::poincare::Equations;
+
+/// Equations longer than this are not shown in the comment at the head of a file.
+const LONG_EQUATION: usize = 160;
+
+/// What source to write.
+#[derive(Clone, Debug)]
+pub struct EmitOptions {
+    language: Language,
+    name: String,
+    title: String,
+    start: Option<Start>,
+    fused: bool,
+}
+
+/// A motion to be tried.
+#[derive(Clone, Debug)]
+struct Start {
+    t: f64,
+    state: Vec<f64>,
+    t_end: f64,
+}
+
+impl EmitOptions {
+    /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
+    pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
+        let name = name.into();
+        EmitOptions { language, title: name.clone(), name, start: None, fused: false }
+    }
+
+    /// The title of the system, for the first line; without it the name.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> EmitOptions {
+        self.title = title.into();
+        self
+    }
+
+    /// A start state (coordinates, then quasi-velocities) and the times of a motion. With these the source has a
+    /// `main` that integrates it.
+    #[must_use]
+    pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
+        self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
+        self
+    }
+
+    /// Writes a·b + c as one operation that rounds once. This is fast only where the processor has it and the
+    /// compiler is told so, and the results differ by rounding from those of the library.
+    #[must_use]
+    pub fn fused(mut self, fused: bool) -> EmitOptions {
+        self.fused = fused;
+        self
+    }
+}
+
+/// A source file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EmittedFile {
+    /// Its name, without directory.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// How many numbers a routine writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    /// One, which is returned.
+    One,
+    /// One for each component of the state.
+    State,
+    /// A square matrix of these.
+    StateSquared,
+    /// A square matrix of the quasi-velocities.
+    QuasiVelocitiesSquared,
+    Integrals,
+    Outputs,
+}
+
+/// A function of the source.
+struct Routine {
+    name: &'static str,
+    purpose: String,
+    /// The array that it writes.
+    array: &'static str,
+    extent: Extent,
+    /// Whether zeros have to be written before the rest.
+    sparse: bool,
+    body: Body,
+}
+
+/// All that the files of a language are put together from.
+struct Source<'a> {
+    options: &'a EmitOptions,
+    /// The name as an identifier.
+    name: String,
+    state: Vec<String>,
+    coordinates: usize,
+    parameters: Vec<(String, f64)>,
+    integrals: Vec<String>,
+    outputs: Vec<String>,
+    /// The equations as text, unless they are long.
+    equations: Vec<String>,
+    routines: Vec<Routine>,
+}
+
+impl<'g> Equations<'g> {
+    /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
+    /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments.
+    ///
+    /// C comes as a header and a source file, Rust as one file. Both say at their head how they are used. The same
+    /// system gives the same text, and the values are bit for bit those of [`compile`](Equations::compile) where the
+    /// mathematical library is the same and operations are not fused.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`] if the start state has the wrong length,
+    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
+    /// parameter.
+    pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
+        let source = self.source(options)?;
+        Ok(match options.language {
+            Language::C => c::files(&source),
+            Language::Rust => rust::files(&source),
+        })
+    }
+
+    fn source<'a>(&self, options: &'a EmitOptions) -> Result<Source<'a>, MechError> {
+        let system = &self.system;
+        let names = |symbols: &[Expr<'g>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
+        let of = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        let state = names(&self.inputs().state);
+        if let Some(start) = &options.start
+            && start.state.len() != state.len()
+        {
+            let (found, expected) = (start.state.len(), state.len());
+            return Err(MechError::Shape { what: "the start state", found, expected });
+        }
+        Ok(Source {
+            options,
+            name: options.language.identifiers(&[&options.name], &[]).remove(0),
+            state,
+            coordinates: system.frame.coordinates().len(),
+            parameters: system.parameters.iter().map(|(symbol, value)| (symbol.to_string(), *value)).collect(),
+            integrals: of(&system.integrals),
+            outputs: of(&system.outputs),
+            equations: self.equations_as_text(),
+            routines: self.routines(options)?,
+        })
+    }
+
+    fn equations_as_text(&self) -> Vec<String> {
+        let graph = self.system.graph();
+        let rates = self.system.accelerations();
+        let kinematic = self.system.frame.coordinates().iter().zip(&self.velocities);
+        let mut lines: Vec<String> = kinematic.map(|(x, velocity)| format!("{x}' = {velocity}")).collect();
+        for (s, right) in self.right.iter().enumerate() {
+            let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
+            lines.push(format!("{left} = {right}"));
+        }
+        let short = lines.iter().all(|line| line.chars().count() <= LONG_EQUATION);
+        if short { lines } else { Vec::new() }
+    }
+
+    fn routines(&self, options: &EmitOptions) -> Result<Vec<Routine>, MechError> {
+        let system = &self.system;
+        let graph = system.graph();
+        let (n, k) = (system.frame.coordinates().len(), system.quasi_velocities.len());
+        let dim = n + k;
+        let writer = Writer::new(self, options);
+        let state: Vec<String> = self.inputs().state.iter().map(Expr::to_string).collect();
+        let rates: Vec<String> = state.iter().map(|name| format!("{name}'")).collect();
+
+        let ldl = Ldl::of(graph, &self.mass);
+        let accelerations = self.solve(&ldl);
+        let motion: Vec<Expr<'g>> = self.velocities.iter().chain(&accelerations).copied().collect();
+        let mut routines = vec![writer.routine(
+            "rhs",
+            "ydot = dy/dt: the velocities of the coordinates, then the accelerations".to_owned(),
+            ("ydot", Extent::State),
+            &motion,
+            |i| (format!("[{i}]"), rates[i].clone()),
+        )?];
+        routines.push(writer.routine(
+            "jacobian",
+            format!("the Jacobian of rhs, column after column: jac[i + {dim}*j] = ∂ydot[i]/∂y[j]"),
+            ("jac", Extent::StateSquared),
+            &self.jacobian(&ldl, &accelerations),
+            |e| {
+                let (i, j) = (e % dim, e / dim);
+                (format!("[{i} + {dim}*{j}]"), format!("∂{}/∂{}", rates[i], state[j]))
+            },
+        )?);
+        let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass.column(s)).collect();
+        routines.push(writer.routine(
+            "mass_matrix",
+            format!("the symmetric mass matrix of the quasi-velocities: mass[r + {k}*s]"),
+            ("mass", Extent::QuasiVelocitiesSquared),
+            &columns,
+            |e| (format!("[{} + {k}*{}]", e % k, e / k), String::new()),
+        )?);
+        let energy = "the energy, sum of quasi-velocities times momenta less the Lagrangian".to_owned();
+        routines.push(writer.routine("energy", energy, ("", Extent::One), &[self.energy], |_| Default::default())?);
+        let watched = [
+            ("integrals", "integrals", Extent::Integrals, &system.integrals),
+            ("outputs", "outputs", Extent::Outputs, &system.outputs),
+        ];
+        let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
+        for (name, what, extent, list) in watched.into_iter().filter(|(.., list)| !list.is_empty()) {
+            let names: Vec<&str> = list.iter().map(|(name, _)| name.as_str()).collect();
+            let values: Vec<Expr<'g>> = list.iter().map(|&(_, value)| value).collect();
+            routines.push(writer.routine(
+                name,
+                format!("the {what} {}", names.join(", ")),
+                ("values", extent),
+                &graph.substitute(&values, &rates),
+                |i| (format!("[{i}]"), names[i].to_owned()),
+            )?);
+        }
+        Ok(routines)
+    }
+}
+
+/// Prints programs of the same inputs.
+struct Writer<'a, 'g> {
+    equations: &'a Equations<'g>,
+    options: &'a EmitOptions,
+    inputs: Vec<String>,
+    prefix: String,
+    /// What no local may be called.
+    reserved: Vec<String>,
+}
+
+impl<'a, 'g> Writer<'a, 'g> {
+    fn new(equations: &'a Equations<'g>, options: &'a EmitOptions) -> Writer<'a, 'g> {
+        let inputs = equations.inputs();
+        let names: Vec<String> = inputs.state.iter().chain(&inputs.parameters).map(Expr::to_string).collect();
+        let language = options.language;
+        let name = language.identifiers(&[&options.name], &[]).remove(0);
+        let mut reserved = match language {
+            Language::C => c::macros(&name),
+            Language::Rust => rust::CONSTANTS.iter().map(|&name| name.to_owned()).collect(),
+        };
+        reserved.extend(["ydot", "jac", "mass", "values"].map(str::to_owned));
+        let inputs = language.identifiers(&names, &reserved.iter().map(String::as_str).collect::<Vec<_>>());
+        Writer { equations, options, inputs, prefix: name + "_", reserved }
+    }
+
+    /// A function of the name, purpose and array given; `slot` gives the index of each output in the array and what
+    /// it is.
+    fn routine(
+        &self,
+        name: &'static str,
+        purpose: String,
+        (array, extent): (&'static str, Extent),
+        values: &[Expr<'g>],
+        slot: impl Fn(usize) -> (String, String),
+    ) -> Result<Routine, MechError> {
+        let language = self.options.language;
+        let graph = self.equations.system.graph();
+        let mut program = Program::new(graph, &self.equations.inputs(), values)?;
+        if self.options.fused {
+            program = program.fused();
+        }
+        let slots: Vec<(String, String)> = (0..values.len()).map(slot).collect();
+        let is_matrix = matches!(extent, Extent::StateSquared | Extent::QuasiVelocitiesSquared);
+        let locals = match is_matrix || extent == Extent::One {
+            true => vec![String::new(); slots.len()],
+            false => language.identifiers(&slots.iter().map(|(_, what)| what).collect::<Vec<_>>(), &[array]),
+        };
+        let place = |index: &str| match extent {
+            Extent::One => Place::Returned,
+            _ => Place::Entry(format!("{array}{index}")),
+        };
+        let layout = Layout {
+            inputs: self.inputs.clone(),
+            slots: slots
+                .iter()
+                .zip(locals)
+                .map(|((index, what), local)| Slot { place: place(index), comment: what.clone(), local })
+                .collect(),
+            skip_zeros: is_matrix,
+            prefix: self.prefix.clone(),
+            reserved: self.reserved.clone(),
+        };
+        let sparse = is_matrix && values.iter().any(|value| value.is_zero());
+        Ok(Routine { name, purpose, array, extent, sparse, body: program.emit(language, &layout) })
+    }
+}
+
+impl Source<'_> {
+    /// What all routines call.
+    fn calls(&self) -> Calls {
+        self.routines.iter().fold(Calls::default(), |calls, routine| calls.and(&routine.body.calls))
+    }
+
+    /// The comment at the head: title, equations, state and parameters, line by line.
+    fn head(&self) -> Vec<String> {
+        let comment = |text: &str| self.options.language.comment(text);
+        let mut lines = vec![
+            comment(&self.options.title),
+            String::new(),
+            format!("Generated by pc {} from the Lagrangian: better derived again than edited.", env!("CARGO_PKG_VERSION")),
+        ];
+        if !self.equations.is_empty() {
+            lines.extend([String::new(), "Equations of motion, with ' for the derivative by time:".to_owned()]);
+            lines.extend(self.equations.iter().map(|line| format!("    {}", comment(line))));
+        }
+        let count = |number: usize, one: &str, many: &str| match number {
+            1 => format!("one {one}"),
+            _ => format!("{number} {many}"),
+        };
+        let quasi_velocities = count(self.quasi_velocities(), "quasi-velocity", "quasi-velocities");
+        lines.push(String::new());
+        lines.push(match self.coordinates {
+            0 => format!("State: {quasi_velocities}."),
+            n => format!("State: {}, then {quasi_velocities}.", count(n, "coordinate", "coordinates")),
+        });
+        lines.extend(self.state.iter().enumerate().map(|(i, name)| format!("    y[{i}]  {}", comment(name))));
+        if !self.parameters.is_empty() {
+            lines.extend([String::new(), "Parameters, with their default values:".to_owned()]);
+            let parameters = self.parameters.iter().enumerate();
+            lines.extend(parameters.map(|(i, (name, value))| format!("    p[{i}]  {} = {value}", comment(name))));
+        }
+        lines
+    }
+
+    fn quasi_velocities(&self) -> usize {
+        self.state.len() - self.coordinates
+    }
+
+    fn constants(&self, values: impl Iterator<Item = f64>) -> String {
+        values.map(|value| self.options.language.constant(value)).collect::<Vec<_>>().join(", ")
+    }
+
+    fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
+        texts.map(|text| self.options.language.string(text)).collect::<Vec<_>>().join(", ")
+    }
+}
