@@ -24,8 +24,16 @@ const SAME_LIBRARY: bool = cfg!(target_os = "linux");
 /// `main` takes 10 000 steps of fourth order: their length is at most 0.002, the motions are of order one.
 const MAIN_TOLERANCE: f64 = 1e-8;
 
-const C_FLAGS: &[&str] =
-    &["-std=c99", "-O2", "-fno-tree-slp-vectorize", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+const C_FLAGS: &[&str] = &[
+    "-std=c99",
+    "-O2",
+    "-fno-tree-slp-vectorize",
+    "-ffp-contract=off",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Werror",
+];
 const CXX_FLAGS: &[&str] =
     &["-x", "c++", "-std=c++11", "-O1", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
@@ -41,31 +49,36 @@ struct Case {
 }
 
 fn emit(equations: &Equations<'_>, options: impl Fn(Language) -> EmitOptions) -> Vec<EmittedFile> {
-    [Language::C, Language::Rust].into_iter().flat_map(|language| equations.emit(&options(language)).unwrap()).collect()
+    [Language::C, Language::Rust]
+        .into_iter()
+        .flat_map(|language| equations.emit(&options(language)).unwrap())
+        .collect()
 }
 
 impl Case {
     fn new(
         equations: &Equations<'_>,
         options: impl Fn(Language) -> EmitOptions,
+        fused: bool,
         states: impl Iterator<Item = (f64, Vec<f64>, Vec<f64>)>,
     ) -> Case {
         let system = equations.system();
         let graph = system.graph();
-        let files = emit(equations, options);
+        let files = emit(equations, |language| options(language).fused(fused));
         let parameters: Vec<Expr<'_>> = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
         let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).copied().collect();
         let inputs = Inputs { time: Some(system.frame().time()), state, parameters };
         let accelerations = equations.accelerations();
-        let mut outputs = equations.velocities().to_vec();
-        outputs.extend(&accelerations);
-        outputs.extend(equations.mass_matrix().entries());
-        outputs.push(equations.energy());
-        let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations).collect();
+        let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
         let integrals: Vec<Expr<'_>> = system.integrals().iter().map(|&(_, value)| value).collect();
-        outputs.extend(graph.substitute(&integrals, &rates));
-        let program = Program::new(graph, &inputs, &outputs).unwrap();
-        let mut interpreter = Interpreter::new(Arc::new(program));
+        let integrals = graph.substitute(&integrals, &rates);
+        let motion: Vec<Expr<'_>> = equations.velocities().iter().chain(&accelerations).copied().collect();
+        // Each function of the source is a program of its own: in a common one sums may be parted otherwise.
+        let outputs = [&motion[..], equations.mass_matrix().entries(), &[equations.energy()], &integrals];
+        let mut interpreters = outputs.map(|outputs| {
+            let program = Program::new(graph, &inputs, outputs).unwrap();
+            Interpreter::new(Arc::new(if fused { program.fused() } else { program }))
+        });
         let mut motion = equations.compile().unwrap();
 
         let mut case = Case {
@@ -76,8 +89,12 @@ impl Case {
             expected: Vec::new(),
         };
         for (t, y, p) in states {
-            let mut values = vec![0.0; outputs.len()];
-            interpreter.eval(t, &y, &p, &mut values);
+            let values = interpreters.iter_mut().flat_map(|interpreter| {
+                let mut values = vec![0.0; interpreter.program().outputs_len()];
+                interpreter.eval(t, &y, &p, &mut values);
+                values
+            });
+            let values = values.collect();
             let mut jacobian = vec![0.0; y.len() * y.len()];
             motion.parameters_mut().copy_from_slice(&p);
             let _ = motion.jacobian(t, &y, &mut jacobian); // not finite where the state is not
@@ -88,6 +105,14 @@ impl Case {
     }
 
     fn builtin(name: &str, states: usize) -> Case {
+        Case::of(name, name, false, states)
+    }
+
+    fn fused(name: &str, states: usize) -> Case {
+        Case::of(name, &format!("{name}-fused"), true, states)
+    }
+
+    fn of(name: &str, called: &str, fused: bool, states: usize) -> Case {
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
@@ -95,7 +120,7 @@ impl Case {
         let t_end = reference(name).map_or(1.0, |reference: &Reference| reference.t_end);
         let title = model.document().model.name.as_ref().map_or(name, |title| &title.value).to_owned();
         let options = |language| {
-            EmitOptions::new(language, name).title(&title).start(assembly.t_start, &assembly.start, t_end)
+            EmitOptions::new(language, called).title(&title).start(assembly.t_start, &assembly.start, t_end)
         };
         let mut random = SplitMix64::new(11);
         let states = (0..states).map(|_| {
@@ -104,7 +129,7 @@ impl Case {
             let p = model.parameters().map(|(_, value)| value * (1.0 + random.uniform(0.0, 0.05))).collect();
             (t, y, p)
         });
-        Case::new(&equations, options, states)
+        Case::new(&equations, options, fused, states)
     }
 
     fn file(&self, suffix: &str) -> &EmittedFile {
@@ -122,12 +147,15 @@ fn awkward() -> Case {
         builder = builder.parameter(symbol, 0.5 + i as f64);
     }
     let system = builder
-        .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square() + v[3].square() + v[4].square()) / 2.0)
+        .lagrangian(|_, _, v| {
+            (v[0].square() + v[1].square() + v[2].square() + v[3].square() + v[4].square()) / 2.0
+        })
         .forces(|t, x, v| {
             let positive = x[0].square() + 1.0;
             let small = x[1].tanh() / 2.0;
             let smooth = small.asin() + small.acos() - x[2].atan() * epsilon - v[1].atan2(x[3]);
-            let grown = (-positive).exp() - positive.log().sqrt() + positive.pow(sin) + small.sinh() * small.cosh();
+            let grown =
+                (-positive).exp() - positive.log().sqrt() + positive.pow(sin) + small.sinh() * small.cosh();
             [
                 x[0].sign() - x[0].abs() * p,
                 x[1].step(x[2], int) - 3.0 * (x[3] - v[2]).step(x[0], -1.5),
@@ -150,7 +178,12 @@ fn awkward() -> Case {
         (0.5, y, (0..8).map(|_| value(false)).collect())
     });
     let title = "Awkward */ names ??/\n\\";
-    Case::new(&system.poincare().unwrap(), |language| EmitOptions::new(language, "awkward").title(title), states)
+    Case::new(
+        &system.poincare().unwrap(),
+        |language| EmitOptions::new(language, "awkward").title(title),
+        false,
+        states,
+    )
 }
 
 /// A fresh directory for files of this test.
@@ -355,12 +388,16 @@ fn compile_rust(cases: &[Case], flags: &[&str], directory_name: &str) -> PathBuf
     fs::write(path.join("driver.rs"), rust_driver(cases)).unwrap();
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let mut command = Command::new(rustc);
-    run(command.current_dir(&path).args(["--edition=2021", "-O", "-Dwarnings"]).args(flags).arg("driver.rs"), "");
+    run(
+        command.current_dir(&path).args(["--edition=2021", "-O", "-Dwarnings"]).args(flags).arg("driver.rs"),
+        "",
+    );
     path.join("driver")
 }
 
 fn all_cases() -> Vec<Case> {
-    MODELS.iter().map(|name| Case::builtin(name, STATES)).chain([awkward()]).collect()
+    let fused = ["heavy-top-euler", "charged-particle-induction"].map(|name| Case::fused(name, STATES));
+    MODELS.iter().map(|name| Case::builtin(name, STATES)).chain(fused).chain([awkward()]).collect()
 }
 
 #[test]
@@ -383,4 +420,99 @@ fn emitted_c_is_cpp() {
 fn emitted_rust_computes_what_the_interpreter_does() {
     let cases = all_cases();
     compare(&compile_rust(&cases, &[], "rustc"), &cases, "Rust");
+}
+
+/// The crate `libm` as far as it is called, so that the test needs no network.
+const LIBM: &str = "
+macro_rules! functions {
+    ($($name:ident => $method:ident($($more:ident),*);)*) => {
+        $(pub fn $name(x: f64 $(, $more: f64)*) -> f64 { x.$method($($more),*) })*
+    };
+}
+functions! {
+    sin => sin(); cos => cos(); asin => asin(); acos => acos(); atan => atan(); atan2 => atan2(z);
+    sinh => sinh(); cosh => cosh(); tanh => tanh(); exp => exp(); log => ln(); sqrt => sqrt(); fabs => abs();
+    pow => powf(y); fma => mul_add(y, z);
+}
+";
+
+#[test]
+fn emitted_rust_needs_no_std() {
+    let cases: Vec<Case> = ["heavy-top-euler", "euler-top"]
+        .map(|name| Case::builtin(name, 0))
+        .into_iter()
+        .chain([awkward()])
+        .collect();
+    let path = directory("no_std");
+    write_files(&path, &cases);
+    fs::write(path.join("libm.rs"), LIBM).unwrap();
+    let modules: String = cases.iter().map(|case| format!("pub mod {};\n", case.name)).collect();
+    fs::write(path.join("alone.rs"), format!("#![no_std]\n{modules}")).unwrap();
+    let rustc = || {
+        let mut command = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
+        command.current_dir(&path).args(["--edition=2021", "--crate-type=lib", "-Dwarnings"]);
+        command
+    };
+    run(rustc().arg("libm.rs"), "");
+    let cfg = ["--cfg", "feature=\"libm\"", "--extern", "libm=liblibm.rlib", "--emit=metadata"];
+    run(rustc().args(cfg).arg("alone.rs"), "");
+}
+
+/// The last line of what a `main` prints: t, the state and the energy.
+fn last_line(program: &Path) -> Vec<f64> {
+    let output = run(&mut Command::new(program), "");
+    output.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect()
+}
+
+fn compare_end(name: &str, end: &[f64]) {
+    let reference = reference(name).unwrap();
+    assert!((end[0] - reference.t_end).abs() < 1e-9, "{name} ends at {}", end[0]);
+    for (i, expected) in reference.state.iter().enumerate() {
+        let error = (end[i + 1] - expected).abs();
+        assert!(error <= MAIN_TOLERANCE, "{name}: component {i} ends at {}, not {expected}", end[i + 1]);
+    }
+}
+
+#[test]
+fn main_of_emitted_c_arrives() {
+    let path = directory("main_c");
+    for &name in MODELS.iter().filter(|name| reference(name).is_some()) {
+        let case = Case::builtin(name, 0);
+        write_files(&path, std::slice::from_ref(&case));
+        let source = &case.file(".c").name;
+        let main = format!("-D{}_MAIN", case.name.to_uppercase());
+        let mut gcc = Command::new("gcc");
+        run(gcc.current_dir(&path).args(C_FLAGS).args([&main, "-o", &case.name, source, "-lm"]), "");
+        compare_end(name, &last_line(&path.join(&case.name)));
+    }
+}
+
+#[test]
+fn main_of_emitted_rust_arrives() {
+    let path = directory("main_rust");
+    for name in ["heavy-top-lagrange", "euler-top"] {
+        let case = Case::builtin(name, 0);
+        write_files(&path, std::slice::from_ref(&case));
+        let mut rustc = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
+        let flags = ["-O", "--cfg", "pc_main", "-Dwarnings", &case.file(".rs").name];
+        run(rustc.current_dir(&path).args(flags), "");
+        compare_end(name, &last_line(&path.join(&case.name)));
+    }
+}
+
+#[test]
+fn emission_is_deterministic() {
+    for name in ["heavy-top-euler", "relativistic-particle"] {
+        assert_eq!(Case::builtin(name, 0).files, Case::builtin(name, 0).files);
+    }
+}
+
+#[test]
+fn start_states_have_the_length_of_the_state() {
+    let model = Model::new(Builtin::named("euler-top").unwrap().document().unwrap());
+    let graph = Graph::new();
+    let equations = model.assemble(&graph).unwrap().system.poincare().unwrap();
+    let options = EmitOptions::new(Language::C, "top").start(0.0, &[1.0], 2.0);
+    let message = equations.emit(&options).unwrap_err().to_string();
+    assert_eq!(message, "the start state has 1 entries where 3 are needed");
 }

@@ -160,6 +160,15 @@ impl<'g> Frame<'g> {
         Frame { b: Matrix::from_fn(self.b.rows(), columns, |i, s| self.b[(i, s)]), ..self.clone() }
     }
 
+    /// The frame of the operators listed, numbered from 0, in the order of the list, and X_0.
+    ///
+    /// # Panics
+    /// If a number is out of range.
+    #[must_use]
+    pub fn permuted(&self, order: &[usize]) -> Frame<'g> {
+        Frame { b: Matrix::from_fn(self.b.rows(), order.len(), |i, s| self.b[(i, order[s])]), ..self.clone() }
+    }
+
     /// The frame with every coefficient passed through `f`.
     #[must_use]
     pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Frame<'g> {

@@ -1,5 +1,7 @@
 //! Structure coefficients of a frame.
 
+use std::convert::Infallible;
+
 use pc_expr::{Expr, Graph, Number};
 
 use crate::lie_algebra::LieAlgebra;
@@ -29,6 +31,22 @@ impl<'g> StructureCoefficients<'g> {
             }
         }
         Ok(StructureCoefficients { operators, upper })
+    }
+
+    /// The coefficients of the same operators in another order: `order` is a permutation of 0..k.
+    ///
+    /// # Panics
+    /// If it is not.
+    #[must_use]
+    pub fn permuted(&self, order: &[usize]) -> StructureCoefficients<'g> {
+        let old = |s: usize| if s == 0 { 0 } else { order[s - 1] + 1 };
+        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
+            Ok((1..=self.operators).map(|m| self.get(old(r), old(s), old(m))).collect())
+        };
+        match StructureCoefficients::from_pairs(self.operators, pair) {
+            Ok(structure) => structure,
+            Err(never) => match never {},
+        }
     }
 
     /// The coefficients passed through `f`.
@@ -112,7 +130,7 @@ impl LieAlgebra {
     /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
     pub fn with_time<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
         let k = self.dim();
-        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, std::convert::Infallible> {
+        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
             Ok((0..k)
                 .map(|m| if r == 0 { drift(s - 1, m) } else { self.constant(r - 1, s - 1, m) }.into())
                 .collect())

@@ -85,16 +85,16 @@ pub struct RunArguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// End time; else that of the file
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     pub t_end: Option<f64>,
     /// Number of rows, evenly spaced, start and end included; else that of the file, else 201
     #[arg(long, value_name = "N", value_parser = samples)]
     pub samples: Option<usize>,
     /// Relative tolerance; else that of the file, else 1e-9
-    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance; else that of the file, else 1e-12
-    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = positive)]
     pub atol: Option<f64>,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]

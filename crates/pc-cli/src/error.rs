@@ -8,6 +8,7 @@ use pc_model::{ModelError, UnknownParameter};
 use pc_solve::SolveError;
 
 use crate::plot::PlotError;
+use crate::text::short;
 
 /// An error of the program.
 #[derive(Debug, thiserror::Error)]
@@ -46,8 +47,13 @@ pub enum CliError {
         known: Vec<String>,
     },
     /// Nobody says how long to integrate.
-    #[error("no end time: give `--t-end T`, or `t_end` in the section [simulation] of the model")]
-    NoEnd,
+    #[error(
+        "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
+    )]
+    NoEnd {
+        /// Name of the model file.
+        model: String,
+    },
     /// An end that is the start.
     #[error("the end time {t} is the start time: nothing to integrate")]
     EndIsStart {
@@ -88,7 +94,7 @@ pub enum CliError {
         names: Vec<String>,
     },
     /// Ctrl-C.
-    #[error("interrupted at t = {t}")]
+    #[error("interrupted at t = {}", short(*t, 17))]
     Interrupted {
         /// How far the integration was.
         t: f64,
@@ -109,7 +115,7 @@ impl CliError {
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
             | CliError::BadValue { .. }
-            | CliError::NoEnd
+            | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }
             | CliError::Write { .. }
@@ -145,6 +151,7 @@ fn known_parameters(known: &[String]) -> String {
 /// Where the integration stood, with the names of the state.
 fn at(cause: &SolveError, names: &[String]) -> String {
     let Some((t, state)) = cause.reached() else { return String::new() };
-    let state: String = names.iter().zip(state).map(|(name, value)| format!(", {name} = {value}")).collect();
-    format!(" at t = {t}{state}")
+    let state: String =
+        names.iter().zip(state).map(|(name, value)| format!(", {name} = {}", short(*value, 17))).collect();
+    format!(" at t = {}{state}", short(t, 17))
 }

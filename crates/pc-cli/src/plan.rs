@@ -35,7 +35,8 @@ impl Plan {
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
         let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
-        let t_end = arguments.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or(CliError::NoEnd)?;
+        let no_end = || CliError::NoEnd { model: model.document().source.name().to_owned() };
+        let t_end = arguments.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or_else(no_end)?;
         if t_end == t_start {
             return Err(CliError::EndIsStart { t: t_end });
         }

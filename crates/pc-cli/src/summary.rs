@@ -31,10 +31,9 @@ pub fn text(run: &Run) -> String {
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.quasi_velocities().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
-        line(
-            "end",
-            &assignments(std::iter::once(("t", row[0])).chain(names.skip(1).take(state.len())), WIDTH),
-        );
+        let shown = names.take(1 + state.len());
+        let label = if matches!(run.ending, Ending::Completed) { "end" } else { "last row" };
+        line(label, &assignments(shown, WIDTH));
     }
     text
 }
@@ -59,10 +58,9 @@ fn drifts(run: &Run) -> Vec<String> {
     let drifts = table.conserved().map(|j| {
         let name = &table.columns()[j];
         let drift = table.drift(j);
-        let relative = drift.relative.map_or_else(
-            || "relative to a start value of 0: none".to_owned(),
-            |relative| format!("relative {}", small(relative)),
-        );
+        let relative = drift
+            .relative
+            .map_or_else(|| "(starts at 0)".to_owned(), |relative| format!("relative {}", small(relative)));
         let note = if j + 1 == table.conserved().end && !run.keeps_energy {
             "   (not an integral here)"
         } else {

@@ -7,19 +7,13 @@ use std::time::{Duration, Instant};
 
 const HEADER: &str = "t,γ1,γ2,γ3,ω1,ω2,ω3,area,norm,spin,energy";
 
-/// Falls down the pole of spherical angles: θ reaches 0, where 1/sin θ is infinite.
-const POLE: &str = r#"
+/// A mass that falls into a centre of attraction, where its speed is infinite.
+const CENTRE: &str = r#"
 [coordinates]
-"θ" = 1.0
-"φ" = 0.0
-[quasi_velocities]
-v = -1.0
-w = 0.0
-[kinematics]
-"θ" = "v"
-"φ" = "w/sin(θ)"
+r = 1.0
 [lagrangian]
-kinetic = "(v^2 + w^2)/2"
+kinetic = "r'^2/2"
+potential = "log(r)"
 [simulation]
 t_end = 2.0
 samples = 21
@@ -151,7 +145,9 @@ fn json_and_npz_hold_the_table_of_the_csv() {
     assert_eq!(json["parameters"]["I3"], 0.5);
     assert_eq!(json["columns"].as_array().expect("a list").len(), 11);
     let read: Vec<Vec<f64>> = serde_json::from_value(json["rows"].clone()).expect("rows of numbers");
-    assert_eq!(read, rows);
+    for (read, row) in read.iter().flatten().zip(rows.iter().flatten()) {
+        assert!((read - row).abs() <= 4.0 * f64::EPSILON * row.abs(), "this reader of JSON rounds a little");
+    }
     assert_eq!(json["summary"]["ending"], "completed");
     assert!(json["summary"]["drift"]["energy"]["absolute"].as_f64().expect("a number") < 1e-7);
 
@@ -220,7 +216,7 @@ fn the_end_time_must_stand_somewhere() {
     let endless = FREE.replace("t_end = 1.0", "");
     let output = run_on(&endless, &["run", "-"]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("--t-end"));
+    assert!(stderr(&output).contains("<stdin>: no end time: give `--t-end T`"));
     assert_eq!(code(&run_on(&endless, &["run", "-", "--t-end", "-1"])), 0, "backwards");
 }
 
@@ -238,12 +234,12 @@ fn a_wrong_model_is_exit_3_and_an_inconsistent_one_4() {
 
 #[test]
 fn what_was_reached_is_written_before_a_failure() {
-    for (model, at_least, mention) in [(POLE, 9, "θ = "), (WALL, 10, "x = ")] {
+    for (model, at_least, mention) in [(CENTRE, 10, "r = "), (WALL, 10, "x = ")] {
         let output = run_on(model, &["run", "-"]);
         let text = stderr(&output);
         assert_eq!(code(&output), 5, "{text}");
         let rows = stdout(&output).lines().count() - 1;
-        assert!((at_least..20).contains(&rows), "{rows} rows");
+        assert!((at_least..21).contains(&rows), "{rows} rows");
         assert!(text.contains("the integration failed at t = "), "{text}");
         assert!(text.contains(mention) && text.contains("because: "), "{text}");
     }

@@ -93,7 +93,7 @@ impl Graph {
         let mut factorial = 1;
         for (i, c) in at_zero.iter_mut().enumerate().skip(1) {
             factorial *= i as i64;
-            *c = *c * Expr::ratio(1, factorial);
+            *c *= Expr::ratio(1, factorial);
         }
         Some(at_zero)
     }

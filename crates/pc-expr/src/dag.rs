@@ -352,13 +352,7 @@ impl Dag {
 
     /// Adds n^e to `out` and `coefficient`, opening the small products inside. Coefficients and exponents that
     /// would overflow or underflow stay where they are.
-    fn gather_factors(
-        &self,
-        node: NodeId,
-        e: i32,
-        out: &mut Vec<(NodeId, i32)>,
-        coefficient: &mut Number,
-    ) {
+    fn gather_factors(&self, node: NodeId, e: i32, out: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) {
         let limit = out.len() + GATHERED;
         let (mut next, mut open) = (Some((node, e)), Vec::new());
         while let Some((node, e)) = next {
@@ -716,8 +710,7 @@ impl Dag {
 /// that are not rational, or would not be exact, only gives up its sign.
 fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
     let sign = if terms[0].1.is_negative() { Number::MINUS_ONE } else { Number::ONE };
-    let coefficients =
-        || terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
+    let coefficients = || terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
     let content = coefficients().try_fold(Number::ZERO, Number::content);
     match content {
         Some(content) if !content.is_one() => {

@@ -146,7 +146,8 @@ impl<'g> Expr<'g> {
     #[must_use]
     pub fn powi(self, exponent: i32) -> Expr<'g> {
         if exponent < 0 {
-            let positive = exponent.checked_neg().map_or_else(|| self.powi(i32::MAX) * self, |e| self.powi(e));
+            let positive =
+                exponent.checked_neg().map_or_else(|| self.powi(i32::MAX) * self, |e| self.powi(e));
             return Expr::ONE / positive;
         }
         Expr::combined(&[self], |dag, x| dag.powi(x[0], exponent))

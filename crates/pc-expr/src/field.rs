@@ -150,7 +150,7 @@ mod tests {
             assert_eq!(a * (b + c), a * b + a * c);
             assert_eq!((a * b) * c, a * (b * c));
             assert_eq!(a * a.inverse(), Element::ONE);
-            assert_eq!(a - a, Element::ZERO);
+            assert_eq!(a + -a, Element::ZERO);
             assert_eq!(a.pow(Element::<C>::PRIME - 1), Element::ONE);
             assert_eq!(a.powi(-3) * a.powi(3), Element::ONE);
         }

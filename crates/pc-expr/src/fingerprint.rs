@@ -114,10 +114,7 @@ impl CirclePoint {
         let u = Fingerprint::random(key);
         let square = u.times(u);
         let scale = Fingerprint::ONE.plus(square).powi(-1);
-        CirclePoint {
-            cos: Fingerprint::ONE.minus(square).times(scale),
-            sin: u.plus(u).times(scale),
-        }
+        CirclePoint { cos: Fingerprint::ONE.minus(square).times(scale), sin: u.plus(u).times(scale) }
     }
 
     fn plus(self, other: CirclePoint) -> CirclePoint {
@@ -159,11 +156,9 @@ impl Dag {
                     sum.plus(self.scaled_fingerprint(node, q))
                 })
             }
-            Candidate::Product(factors) => {
-                factors.iter().fold(Fingerprint::ONE, |product, &(node, e)| {
-                    product.times(self.fingerprint(node).powi(e))
-                })
-            }
+            Candidate::Product(factors) => factors
+                .iter()
+                .fold(Fingerprint::ONE, |product, &(node, e)| product.times(self.fingerprint(node).powi(e))),
             Candidate::Call(function, args) => self.call_fingerprint(function, Dag::args(function, &args)),
         }
     }

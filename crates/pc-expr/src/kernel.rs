@@ -16,6 +16,15 @@ pub trait Kernel: Send {
     fn fork(&self) -> Box<dyn Kernel>;
 }
 
+/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.
+pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
+    #[cfg(feature = "jit")]
+    if let Ok(jit) = crate::jit::Jit::new(&program) {
+        return Box::new(jit);
+    }
+    Box::new(Interpreter::new(program))
+}
+
 /// The reference kernel: walks the tape.
 #[derive(Clone, Debug)]
 pub struct Interpreter {

@@ -35,12 +35,16 @@ mod fingerprint;
 mod function;
 mod fuse;
 mod graph;
+#[cfg(feature = "jit")]
+mod jit;
 mod kernel;
+mod lower;
 mod number;
 pub mod parse;
 mod print;
 mod program;
 mod rank;
+mod sharing;
 mod vector_field;
 
 pub use collect::Polynomial;
@@ -52,7 +56,9 @@ pub use expr::Expr;
 pub use function::Function;
 pub use fuse::Cost;
 pub use graph::Graph;
-pub use kernel::{Interpreter, Kernel};
+#[cfg(feature = "jit")]
+pub use jit::{Entry, Jit, JitError, JitOptions};
+pub use kernel::{Interpreter, Kernel, compile};
 pub use number::Number;
 pub use print::Style;
 pub use program::{Inputs, Instruction, Program, Register};

@@ -203,7 +203,8 @@ impl From<f64> for Number {
         if value.fract() == 0.0 && value.abs() <= EXACT as f64 {
             return Number::Rational { num: value as i64, den: 1 };
         }
-        decimal(value).unwrap_or(Number::Real(value))
+        let within = (1.0 / EXACT as f64..=EXACT as f64).contains(&value.abs());
+        within.then(|| decimal(value)).flatten().unwrap_or(Number::Real(value))
     }
 }
 

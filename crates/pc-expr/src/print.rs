@@ -18,24 +18,24 @@ const LONG: u32 = 20_000;
 
 /// How tightly a piece of text binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
+pub(crate) enum Binding {
     Sum,
     Product,
     Power,
     Atom,
 }
 
-struct Piece {
-    text: String,
-    binding: Binding,
+pub(crate) struct Piece {
+    pub(crate) text: String,
+    pub(crate) binding: Binding,
 }
 
 impl Piece {
-    fn atom(text: impl Into<String>) -> Piece {
+    pub(crate) fn atom(text: impl Into<String>) -> Piece {
         Piece { text: text.into(), binding: Binding::Atom }
     }
 
-    fn at_least(self, binding: Binding) -> String {
+    pub(crate) fn at_least(self, binding: Binding) -> String {
         if self.binding >= binding { self.text } else { format!("({})", self.text) }
     }
 }
@@ -49,7 +49,7 @@ pub(crate) fn print(expr: Expr<'_>, style: Style) -> String {
     }
 }
 
-fn number(c: Number) -> Piece {
+pub(crate) fn number(c: Number) -> Piece {
     let text = if c == Number::UNDEFINED { "undefined".to_owned() } else { c.to_string() };
     let binding = if text.starts_with('-') {
         Binding::Sum
@@ -69,19 +69,17 @@ fn piece(dag: &Dag, id: NodeId, depth: usize) -> Piece {
         Node::Constant(c) => number(c),
         Node::Symbol(index) => Piece::atom(dag.symbol_name(index)),
         Node::Call { function, args } => match function {
-                Function::Pow => {
-                    let [base, exponent] = [args[0], args[1]].map(|arg| piece(dag, arg, depth + 1));
-                    let [base, exponent] = [base, exponent].map(|piece| piece.at_least(Binding::Atom));
-                    Piece { text: format!("{base}^{exponent}"), binding: Binding::Power }
-                }
-                _ => {
-                    let args: Vec<String> = Dag::args(function, &args)
-                        .iter()
-                        .map(|&arg| piece(dag, arg, depth + 1).text)
-                        .collect();
-                    Piece::atom(format!("{}({})", function.name(), args.join(", ")))
-                }
-            },
+            Function::Pow => {
+                let [base, exponent] = [args[0], args[1]].map(|arg| piece(dag, arg, depth + 1));
+                let [base, exponent] = [base, exponent].map(|piece| piece.at_least(Binding::Atom));
+                Piece { text: format!("{base}^{exponent}"), binding: Binding::Power }
+            }
+            _ => {
+                let args: Vec<String> =
+                    Dag::args(function, &args).iter().map(|&arg| piece(dag, arg, depth + 1).text).collect();
+                Piece::atom(format!("{}({})", function.name(), args.join(", ")))
+            }
+        },
         Node::Product { .. } => monomial(dag, Number::ONE, id, depth),
         Node::Sum { constant, terms } => {
             let mut signed = Vec::new();

@@ -1,14 +1,12 @@
 //! Straight-line programs: chosen outputs of a graph as a tape that needs the graph no more.
 
-use rustc_hash::FxHashMap;
-
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::dag::{Atom, NodeId};
 use crate::error::ExprError;
 use crate::expr::Expr;
 use crate::function::Function;
 use crate::graph::Graph;
-use crate::number::Number;
+use crate::lower::Lowering;
+use crate::print::{Binding, Piece, number};
 
 /// A register of the tape: constants first, then inputs, then one for each instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -98,7 +96,7 @@ pub struct Inputs<'g> {
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(crate) constants: Vec<f64>,
-    names: Vec<String>,
+    pub(crate) names: Vec<String>,
     state: usize,
     parameters: usize,
     pub(crate) code: Vec<Instruction>,
@@ -194,242 +192,46 @@ impl Program {
 
     /// Text of what a register holds, abbreviated where it is deep.
     pub fn describe(&self, register: Register) -> String {
-        self.text(register, 0)
+        self.piece(register, 0).text
     }
 
-    fn text(&self, register: Register, depth: usize) -> String {
+    fn piece(&self, register: Register, depth: usize) -> Piece {
         let index = register.index();
         if index < self.first_input() {
-            return Number::from(self.constants[index]).to_string();
+            return number(self.constants[index].into());
         }
         if index < self.first_result() {
-            return self.names[index - self.first_input()].clone();
+            return Piece::atom(self.names[index - self.first_input()].as_str());
         }
         if depth > 6 {
-            return "…".to_owned();
+            return Piece::atom("…");
         }
-        let operand = |r: Register| self.text(r, depth + 1);
-        let closed = |r: Register| {
-            let text = operand(r);
-            if text.contains([' ', '*', '/']) && !text.ends_with(')') || text.starts_with('(') {
-                format!("({text})")
-            } else {
-                text
+        let operand = |r: Register| self.piece(r, depth + 1).text;
+        let term = |r: Register| self.piece(r, depth + 1).at_least(Binding::Product);
+        let divisor = |r: Register| self.piece(r, depth + 1).at_least(Binding::Power);
+        let (text, binding) = match self.code[index - self.first_result()] {
+            Instruction::Add(a, b) => (format!("{} + {}", operand(a), term(b)), Binding::Sum),
+            Instruction::Subtract(a, b) => (format!("{} - {}", operand(a), term(b)), Binding::Sum),
+            Instruction::Multiply(a, b) => (format!("{}*{}", term(a), term(b)), Binding::Product),
+            Instruction::Divide(a, b) => (format!("{}/{}", term(a), divisor(b)), Binding::Product),
+            Instruction::Negate(a) => (format!("-{}", term(a)), Binding::Sum),
+            Instruction::MultiplyAdd(a, b, c) => {
+                (format!("{}*{} + {}", term(a), term(b), term(c)), Binding::Sum)
             }
-        };
-        match self.code[index - self.first_result()] {
-            Instruction::Add(a, b) => format!("{} + {}", operand(a), operand(b)),
-            Instruction::Subtract(a, b) => format!("{} - {}", operand(a), closed(b)),
-            Instruction::Multiply(a, b) => format!("{}*{}", closed(a), closed(b)),
-            Instruction::Divide(a, b) => format!("{}/{}", closed(a), closed(b)),
-            Instruction::Negate(a) => format!("-{}", closed(a)),
-            Instruction::MultiplyAdd(a, b, c) => format!("{}*{} + {}", closed(a), closed(b), operand(c)),
-            Instruction::MultiplySubtract(a, b, c) => format!("{}*{} - {}", closed(a), closed(b), closed(c)),
-            Instruction::NegateMultiplyAdd(a, b, c) => format!("{} - {}*{}", operand(c), closed(a), closed(b)),
+            Instruction::MultiplySubtract(a, b, c) => {
+                (format!("{}*{} - {}", term(a), term(b), term(c)), Binding::Sum)
+            }
+            Instruction::NegateMultiplyAdd(a, b, c) => {
+                (format!("{} - {}*{}", operand(c), term(a), term(b)), Binding::Sum)
+            }
             Instruction::NegateMultiplySubtract(a, b, c) => {
-                format!("-{}*{} - {}", closed(a), closed(b), closed(c))
+                (format!("-{}*{} - {}", term(a), term(b), term(c)), Binding::Sum)
             }
             Instruction::Call(function, args) => {
                 let args: Vec<String> = args[..function.arity()].iter().map(|&r| operand(r)).collect();
-                format!("{}({})", function.name(), args.join(", "))
+                (format!("{}({})", function.name(), args.join(", ")), Binding::Atom)
             }
-        }
-    }
-}
-
-/// Turns n-ary nodes into binary operations, each computed once.
-struct Lowering<'a> {
-    dag: &'a Dag,
-    program: &'a mut Program,
-    constants: FxHashMap<u64, Register>,
-    known: FxHashMap<Instruction, u32>,
-    registers: FxHashMap<NodeId, Register>,
-    /// Results are numbered from here on once all constants are known.
-    results: Vec<Instruction>,
-}
-
-/// While lowering, constants are numbered from 0, inputs from `INPUT`, results from `RESULT`.
-const INPUT: u32 = 1 << 29;
-const RESULT: u32 = 1 << 30;
-
-impl<'a> Lowering<'a> {
-    fn new(dag: &'a Dag, symbols: &[Option<NodeId>], program: &'a mut Program) -> Lowering<'a> {
-        let mut registers = FxHashMap::default();
-        for (i, symbol) in symbols.iter().enumerate() {
-            if let Some(node) = symbol {
-                registers.insert(*node, Register(INPUT + i as u32));
-            }
-        }
-        Lowering {
-            dag,
-            program,
-            constants: FxHashMap::default(),
-            known: FxHashMap::default(),
-            registers,
-            results: Vec::new(),
-        }
-    }
-
-    fn run(mut self, outputs: &[Atom]) -> Result<(), ExprError> {
-        let cone = Cone::below(self.dag, outputs.iter().copied());
-        for &id in &cone.order {
-            if let Node::Symbol(index) = self.dag.node(id)
-                && !self.registers.contains_key(&id)
-            {
-                return Err(ExprError::UnboundSymbol { symbol: self.dag.symbol_name(index).to_owned() });
-            }
-        }
-        let mut registers = Vec::with_capacity(outputs.len());
-        for &output in outputs {
-            registers.push(match output {
-                Atom::Constant(c) => self.constant(c),
-                Atom::Node(id) => {
-                    self.lower_below(id);
-                    self.registers[&id]
-                }
-            });
-        }
-        let first_input = self.program.constants.len() as u32;
-        let first_result = first_input + self.program.names.len() as u32;
-        let place = |register: Register| match register.0 {
-            r if r >= RESULT => Register(r - RESULT + first_result),
-            r if r >= INPUT => Register(r - INPUT + first_input),
-            _ => register,
         };
-        self.program.outputs = registers.into_iter().map(place).collect();
-        self.program.code = self.results.iter().map(|instruction| instruction.map(place)).collect();
-        Ok(())
-    }
-
-    /// Lowers everything below a node in depth-first order, which keeps values close to their uses.
-    fn lower_below(&mut self, root: NodeId) {
-        let mut open = vec![(root, false)];
-        while let Some((id, children_done)) = open.pop() {
-            if self.registers.contains_key(&id) {
-                continue;
-            }
-            if children_done {
-                let register = self.lower(id);
-                self.registers.insert(id, register);
-            } else {
-                open.push((id, true));
-                let first = open.len();
-                self.dag.for_each_child(id, |child| open.push((child, false)));
-                open[first..].reverse();
-            }
-        }
-    }
-
-    fn lower(&mut self, id: NodeId) -> Register {
-        let dag = self.dag;
-        match dag.node(id) {
-            Node::Constant(c) => self.constant(c),
-            Node::Symbol(_) => unreachable!("every symbol of the cone is an input"),
-            Node::Call { function, args } => {
-                let mut registers = [Register(0); 3];
-                for (register, arg) in registers.iter_mut().zip(Dag::args(function, &args)) {
-                    *register = self.registers[arg];
-                }
-                for i in function.arity()..3 {
-                    registers[i] = registers[0];
-                }
-                self.emit(Instruction::Call(function, registers))
-            }
-            Node::Product { factors } => self.lower_product(dag.factors(factors)),
-            Node::Sum { constant, terms } => self.lower_sum(constant, dag.terms(terms)),
-        }
-    }
-
-    fn lower_product(&mut self, factors: &[(NodeId, i32)]) -> Register {
-        let mut numerator = None;
-        let mut denominator = None;
-        for &(node, e) in factors {
-            let power = self.power(self.registers[&node], e.unsigned_abs());
-            let side = if e > 0 { &mut numerator } else { &mut denominator };
-            *side = Some(match *side {
-                None => power,
-                Some(product) => self.emit(Instruction::Multiply(product, power)),
-            });
-        }
-        match (numerator, denominator) {
-            (Some(product), None) => product,
-            (numerator, Some(divisor)) => {
-                let dividend = numerator.unwrap_or_else(|| self.constant(Number::ONE));
-                self.emit(Instruction::Divide(dividend, divisor))
-            }
-            (None, None) => self.constant(Number::ONE),
-        }
-    }
-
-    fn power(&mut self, base: Register, exponent: u32) -> Register {
-        if exponent <= 1 {
-            return base;
-        }
-        let root = self.power(base, exponent / 2);
-        let square = self.emit(Instruction::Multiply(root, root));
-        if exponent.is_multiple_of(2) { square } else { self.emit(Instruction::Multiply(square, base)) }
-    }
-
-    fn lower_sum(&mut self, constant: Number, terms: &[(NodeId, Number)]) -> Register {
-        let mut sum = (!constant.is_zero()).then(|| self.constant(constant));
-        // Positive terms first, so that a sum begins with a negation only if all its terms are negative.
-        let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(_, q)| q.is_negative());
-        for (node, q) in positive {
-            let term = self.scaled(self.registers[&node], q);
-            sum = Some(match sum {
-                None => term,
-                Some(sum) => self.emit(Instruction::Add(sum, term)),
-            });
-        }
-        for (node, q) in negative {
-            let register = self.registers[&node];
-            sum = Some(match sum {
-                None if (-q).is_one() => self.emit(Instruction::Negate(register)),
-                None => self.scaled(register, q),
-                Some(sum) => {
-                    let term = self.scaled(register, -q);
-                    self.emit(Instruction::Subtract(sum, term))
-                }
-            });
-        }
-        sum.unwrap_or_else(|| self.constant(Number::ZERO))
-    }
-
-    fn scaled(&mut self, register: Register, q: Number) -> Register {
-        if q.is_one() {
-            return register;
-        }
-        let coefficient = self.constant(q);
-        self.emit(Instruction::Multiply(coefficient, register))
-    }
-
-    fn constant(&mut self, c: Number) -> Register {
-        let value = c.to_f64();
-        let constants = &mut self.program.constants;
-        *self.constants.entry(value.to_bits()).or_insert_with(|| {
-            constants.push(value);
-            Register(constants.len() as u32 - 1)
-        })
-    }
-
-    fn emit(&mut self, instruction: Instruction) -> Register {
-        let ordered = |a: Register, b: Register| if a <= b { (a, b) } else { (b, a) };
-        let instruction = match instruction {
-            Instruction::Add(a, b) => {
-                let (a, b) = ordered(a, b);
-                Instruction::Add(a, b)
-            }
-            Instruction::Multiply(a, b) => {
-                let (a, b) = ordered(a, b);
-                Instruction::Multiply(a, b)
-            }
-            other => other,
-        };
-        let results = &mut self.results;
-        let index = *self.known.entry(instruction).or_insert_with(|| {
-            results.push(instruction);
-            results.len() as u32 - 1
-        });
-        Register(RESULT + index)
+        Piece { text, binding }
     }
 }

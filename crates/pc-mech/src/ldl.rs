@@ -1,53 +1,96 @@
 //! M = L D Lᵀ, unrolled over expressions.
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, inverse};
 use pc_expr::{Expr, Graph};
 
-/// The factors of a symmetric matrix: L unit lower triangular, D diagonal. Zeros of M cost nothing.
+/// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
+pub(crate) enum Factors<'g> {
+    /// L D Lᵀ in the order of elimination that fills in least.
+    Ldl(Ldl<'g>),
+    /// The inverse itself, for a regular matrix without a usable pivot on its diagonal, such as that of L = ẋẏ.
+    Inverse(Matrix<Expr<'g>>),
+}
+
+/// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
-    graph: &'g Graph,
+    order: Vec<usize>,
     lower: Matrix<Expr<'g>>,
     diagonal: Vec<Expr<'g>>,
 }
 
-impl<'g> Ldl<'g> {
-    /// D_j = M_jj − Σ_q L_jq² D_q, L_ij = (M_ij − Σ_q L_iq L_jq D_q)/D_j, q < j < i.
-    pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Ldl<'g> {
-        let k = m.rows();
-        let mut lower = Matrix::from_fn(k, k, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
-        let mut diagonal: Vec<Expr<'g>> = Vec::with_capacity(k);
-        for j in 0..k {
-            let reduced = |lower: &Matrix<Expr<'g>>, diagonal: &[Expr<'g>], i: usize| {
-                let eliminated = (0..j).map(|q| -(lower[(i, q)] * lower[(j, q)] * diagonal[q]));
-                graph.sum(eliminated.chain([m[(i, j)]]))
-            };
-            let pivot = reduced(&lower, &diagonal, j);
-            for i in j + 1..k {
-                lower[(i, j)] = reduced(&lower, &diagonal, i) / pivot;
-            }
-            diagonal.push(pivot);
+impl<'g> Factors<'g> {
+    /// Factorises a matrix that is regular at almost all states.
+    pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Factors<'g> {
+        let undefined = || Matrix::from_fn(m.rows(), m.rows(), |_, _| Expr::ONE / Expr::ZERO);
+        match Ldl::of(graph, m) {
+            Some(ldl) => Factors::Ldl(ldl),
+            None => Factors::Inverse(inverse(graph, m).unwrap_or_else(undefined)), // a regular M has an inverse
         }
-        Ldl { graph, lower, diagonal }
     }
 
-    /// The pivots D.
+    /// The pivots D, in the order of M; none where M was inverted.
     pub(crate) fn pivots(&self) -> &[Expr<'g>] {
-        &self.diagonal
+        match self {
+            Factors::Ldl(ldl) => &ldl.diagonal,
+            Factors::Inverse(_) => &[],
+        }
     }
 
     /// M⁻¹ r
-    pub(crate) fn solve(&self, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let k = right.len();
-        let l = &self.lower;
-        let mut z: Vec<Expr<'g>> = Vec::with_capacity(k);
-        for i in 0..k {
-            let known = (0..i).map(|q| -(l[(i, q)] * z[q]));
-            z.push(self.graph.sum(known.chain([right[i]])));
+    pub(crate) fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        match self {
+            Factors::Ldl(ldl) => ldl.solve(graph, right),
+            Factors::Inverse(inverse) => (0..right.len())
+                .map(|i| graph.dot(inverse.row(i).iter().copied(), right.iter().copied()))
+                .collect(),
         }
-        let mut x: Vec<Expr<'g>> = (0..k).map(|i| z[i] / self.diagonal[i]).collect();
-        for i in (0..k).rev() {
-            let known = (i + 1..k).map(|q| -(l[(q, i)] * x[q]));
-            x[i] = self.graph.sum(known.chain([x[i]]));
+    }
+}
+
+impl<'g> Ldl<'g> {
+    /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has
+    /// the fewest entries left; `None` if the diagonal that is left is zero.
+    fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
+        let k = m.rows();
+        let mut schur = m.clone();
+        let mut lower = Matrix::from_fn(k, k, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
+        let mut diagonal = vec![Expr::ONE; k];
+        let mut open: Vec<usize> = (0..k).collect();
+        let mut order = Vec::with_capacity(k);
+        while !open.is_empty() {
+            let entries = |p: usize| open.iter().filter(|&&i| !schur[(i, p)].is_zero()).count();
+            let pivot = open.iter().copied().filter(|&p| !schur[(p, p)].is_zero()).min_by_key(|&p| entries(p))?;
+            open.retain(|&i| i != pivot);
+            order.push(pivot);
+            diagonal[pivot] = schur[(pivot, pivot)];
+            for &i in &open {
+                lower[(i, pivot)] = schur[(i, pivot)] / diagonal[pivot];
+            }
+            for &i in &open {
+                for &j in open.iter().filter(|&&j| j <= i) {
+                    let product = lower[(i, pivot)] * schur[(j, pivot)];
+                    if !product.is_zero() {
+                        let reduced = graph.sum([schur[(i, j)], -product]);
+                        schur[(i, j)] = reduced;
+                        schur[(j, i)] = reduced;
+                    }
+                }
+            }
+        }
+        Some(Ldl { order, lower, diagonal })
+    }
+
+    fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let l = &self.lower;
+        let mut z = right.to_vec();
+        for (done, &i) in self.order.iter().enumerate() {
+            let known = self.order[..done].iter().map(|&q| -(l[(i, q)] * z[q]));
+            z[i] = graph.sum(known.chain([z[i]]).collect::<Vec<_>>());
+        }
+        let mut x: Vec<Expr<'g>> = z.iter().zip(&self.diagonal).map(|(&z, &d)| z / d).collect();
+        for (done, &i) in self.order.iter().enumerate().rev() {
+            let known = self.order[done + 1..].iter().map(|&q| -(l[(q, i)] * x[q]));
+            x[i] = graph.sum(known.chain([x[i]]).collect::<Vec<_>>());
         }
         x
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pc_expr::{Cost, Expr, ExprError, Failure, Inputs, Interpreter, Kernel, Program, VectorField};
 
 use crate::error::MechError;
-use crate::ldl::Ldl;
+use crate::ldl::Factors;
 use crate::poincare::Equations;
 
 /// A pivot this small against the largest diagonal entry of M is rounding.
@@ -40,12 +40,12 @@ impl<'g> Equations<'g> {
         let compile = |outputs: &[Expr<'g>]| -> Result<Interpreter, ExprError> {
             Ok(Interpreter::new(Arc::new(Program::new(graph, &inputs, outputs)?)))
         };
-        let ldl = Ldl::of(graph, &self.mass);
-        let accelerations = self.solve(&ldl);
+        let factors = Factors::of(graph, &self.mass);
+        let accelerations = self.solve(&factors);
         let mut outputs = self.velocities.clone();
         outputs.extend(&accelerations);
-        outputs.extend(ldl.pivots());
-        outputs.extend((0..eta.len()).map(|s| self.mass[(s, s)]));
+        outputs.extend(factors.pivots());
+        outputs.extend((0..factors.pivots().len()).map(|s| self.mass[(s, s)]));
 
         let energy = ("energy".to_owned(), self.energy);
         let observed: Vec<(String, Expr<'g>)> =
@@ -61,7 +61,7 @@ impl<'g> Equations<'g> {
             parameters: system.parameters.iter().map(|&(_, value)| value).collect(),
             outputs: vec![0.0; rhs.program().outputs_len()],
             rhs,
-            jacobian: compile(&self.jacobian(&ldl, &accelerations))?,
+            jacobian: compile(&self.jacobian(&factors, &accelerations))?,
             observables: compile(&observed)?,
             observable_names,
             conserved: system.integrals.len() + 1,
@@ -80,7 +80,7 @@ impl<'g> Equations<'g> {
 
     /// ∂(ẋ, η̇)/∂(x, η), column after column. No inverse is differentiated: with F = r − M a at fixed a = η̇,
     /// ∂η̇/∂y = M⁻¹ ∂F/∂y.
-    pub(crate) fn jacobian(&self, ldl: &Ldl<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub(crate) fn jacobian(&self, factors: &Factors<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.system.graph();
         let eta = &self.system.quasi_velocities;
         let state: Vec<Expr<'g>> = self.system.frame.coordinates().iter().chain(eta).copied().collect();
@@ -95,7 +95,7 @@ impl<'g> Equations<'g> {
             let column = graph.directional(&rows, &[(y, Expr::ONE)]);
             let (velocity, balance) = column.split_at(self.velocities.len());
             columns.extend(velocity);
-            columns.extend(ldl.solve(&graph.substitute(balance, &values)));
+            columns.extend(factors.solve(graph, &graph.substitute(balance, &values)));
         }
         columns
     }

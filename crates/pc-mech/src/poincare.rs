@@ -4,7 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::error::MechError;
-use crate::ldl::Ldl;
+use crate::ldl::Factors;
 use crate::system::System;
 
 /// The equations of motion ẋ = b η + b_0, M η̇ = r.
@@ -152,14 +152,14 @@ impl<'g> Equations<'g> {
 
     /// The accelerations η̇ = M⁻¹ r, length k.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
-        self.solve(&Ldl::of(self.system.graph(), &self.mass))
+        self.solve(&Factors::of(self.system.graph(), &self.mass))
     }
 
     /// M⁻¹ r; an acceleration that is a single quotient is shortened once more.
-    pub(crate) fn solve(&self, ldl: &Ldl<'g>) -> Vec<Expr<'g>> {
+    pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         let graph = self.system.graph();
         let order = self.system.collecting_order();
-        let mut accelerations = ldl.solve(&self.right);
+        let mut accelerations = factors.solve(graph, &self.right);
         for (s, acceleration) in accelerations.iter_mut().enumerate() {
             let row = self.mass.row(s);
             let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());

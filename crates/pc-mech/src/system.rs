@@ -82,6 +82,22 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().copied().chain(parameters).collect()
     }
 
+    /// The same system with its quasi-velocities in another order, a permutation of 0..k.
+    ///
+    /// # Panics
+    /// If `order` is not one.
+    #[must_use]
+    pub fn permuted(&self, order: &[usize]) -> System<'g> {
+        assert_eq!(order.len(), self.quasi_velocities.len(), "a permutation of the quasi-velocities");
+        System {
+            frame: self.frame.permuted(order),
+            structure: self.structure.permuted(order),
+            quasi_velocities: order.iter().map(|&s| self.quasi_velocities[s]).collect(),
+            forces: order.iter().map(|&s| self.forces[s]).collect(),
+            ..self.clone()
+        }
+    }
+
     /// The same system with the parameters replaced by their numbers.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {

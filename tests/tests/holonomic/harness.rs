@@ -6,15 +6,15 @@ use pc_tests::classical::SplitMix64;
 
 /// A system as its text would say it: names, ẋ(t, x, η) and L(t, x, η).
 #[derive(Clone, Copy)]
-pub struct Description {
-    pub coordinates: &'static [&'static str],
-    pub quasi_velocities: &'static [&'static str],
-    pub velocities: for<'g> fn(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
-    pub lagrangian: for<'g> fn(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+pub(super) struct Description {
+    pub(super) coordinates: &'static [&'static str],
+    pub(super) quasi_velocities: &'static [&'static str],
+    pub(super) velocities: for<'g> fn(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
+    pub(super) lagrangian: for<'g> fn(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
 }
 
 impl Description {
-    pub fn builder<'g>(&self, graph: &'g Graph) -> SystemBuilder<'g> {
+    pub(super) fn builder<'g>(&self, graph: &'g Graph) -> SystemBuilder<'g> {
         System::builder(graph)
             .coordinates(self.coordinates)
             .quasi_velocities(self.quasi_velocities)
@@ -24,29 +24,29 @@ impl Description {
 }
 
 /// Random states at which two right-hand sides are compared.
-pub const STATES: usize = 200;
+pub(super) const STATES: usize = 200;
 
-pub fn normals<const N: usize>(random: &mut SplitMix64) -> [f64; N] {
+pub(super) fn normals<const N: usize>(random: &mut SplitMix64) -> [f64; N] {
     std::array::from_fn(|_| random.normal())
 }
 
 /// (ẋ, η̇) at a state.
-pub fn rates(motion: &mut Motion, t: f64, y: &[f64]) -> Vec<f64> {
+pub(super) fn rates(motion: &mut Motion, t: f64, y: &[f64]) -> Vec<f64> {
     let mut rates = vec![f64::NAN; y.len()];
     motion.rhs(t, y, &mut rates).unwrap_or_else(|error| panic!("{error}"));
     rates
 }
 
 /// Largest difference, relative to the largest entry of `expected` or to 1.
-pub fn distance(found: &[f64], expected: &[f64]) -> f64 {
+pub(super) fn distance(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len(), "length");
     let size = expected.iter().fold(1.0f64, |size, v| size.max(v.abs()));
     let differences = found.iter().zip(expected).map(|(f, e)| (f - e).abs());
-    differences.fold(0.0, |worst, d| if d <= worst { worst } else { d }) / size // NaN is the worst
+    differences.fold(0.0f64, |worst, d| if d.is_nan() || d > worst { d } else { worst }) / size
 }
 
 /// The states at `times` of the motion from `start` at t = 0, by Adams' method with rtol = 1e-12, atol = 1e-14.
-pub fn integrate(motion: &mut Motion, start: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn integrate(motion: &mut Motion, start: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
     let options = Options::new(Method::Adams).relative_tolerance(1e-12).absolute_tolerance(1e-14);
     let trajectory = solve(motion, 0.0, start, times, &options).unwrap_or_else(|failure| panic!("{failure}"));
     trajectory.iter().map(|(_, y)| y.to_vec()).collect()

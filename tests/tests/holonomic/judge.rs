@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 const ARRIVAL: f64 = 1e-8;
 
 /// Derived and classical right-hand sides agree at random states.
-pub fn assert_equations(
+pub(super) fn assert_equations(
     name: &str,
     motion: &mut Motion,
     classical: impl Fn(f64, &[f64]) -> Vec<f64>,
@@ -31,7 +31,7 @@ pub fn assert_equations(
 }
 
 /// The motion from `start` arrives at `end`, and the observables named in `conserved` keep their values on the way.
-pub fn assert_motion(
+pub(super) fn assert_motion(
     name: &str,
     motion: &mut Motion,
     start: &[f64],

@@ -9,7 +9,7 @@ use super::shared::TURNING_CHART;
 
 /// A bead on a straight wire through the origin, which turns in a vertical plane with Ω = 1; g = 3. In the redundant
 /// coordinates X, Y, with η = (1 + t/2) ṙ.
-pub const WIRE: Description = Description {
+pub(super) const WIRE: Description = Description {
     coordinates: &["X", "Y"],
     quasi_velocities: &["eta"],
     velocities: |t, x, eta| {
@@ -24,7 +24,7 @@ pub const WIRE: Description = Description {
 
 /// A bead on a hoop of radius 1, which turns about its vertical diameter with Ω = 3; g = 4. In the redundant
 /// coordinates X, Y, Z, with η = e^(t/5) θ̇ and θ from the bottom.
-pub const HOOP: Description = Description {
+pub(super) const HOOP: Description = Description {
     coordinates: &["X", "Y", "Z"],
     quasi_velocities: &["eta"],
     velocities: |t, x, eta| {
@@ -46,11 +46,8 @@ pub const HOOP: Description = Description {
 #[test]
 fn a_bead_on_a_turning_wire() {
     let graph = Graph::new();
-    let system = WIRE
-        .builder(&graph)
-        .integral("across", |t, x, _| x[0] * t.sin() - x[1] * t.cos())
-        .build()
-        .unwrap();
+    let system =
+        WIRE.builder(&graph).integral("across", |t, x, _| x[0] * t.sin() - x[1] * t.cos()).build().unwrap();
     let t = graph.symbol("t");
     assert_eq!(system.structure().nonzero().collect::<Vec<_>>(), [(0, 1, 1, -1.0 / (2.0 + t))]);
 
@@ -60,11 +57,7 @@ fn a_bead_on_a_turning_wire() {
         let (distance, stretch) = (y[0] * cos + y[1] * sin, 1.0 + t / 2.0);
         let speed = y[2] / stretch;
         // η = F ṙ, so η̇ = F r̈ + Ḟ ṙ
-        vec![
-            cos * speed - y[1],
-            sin * speed + y[0],
-            stretch * (distance - 3.0 * sin) + 0.5 * speed,
-        ]
+        vec![cos * speed - y[1], sin * speed + y[0], stretch * (distance - 3.0 * sin) + 0.5 * speed]
     };
     let sample = |random: &mut SplitMix64| {
         let t = random.uniform(0.0, 3.0);
@@ -117,7 +110,8 @@ fn a_bead_on_a_turning_hoop() {
         ]
     };
     let sample = |random: &mut SplitMix64| {
-        let (t, radius, angle) = (random.uniform(0.0, 3.0), random.uniform(0.5, 2.0), random.uniform(-3.0, 3.0));
+        let (t, radius, angle) =
+            (random.uniform(0.0, 3.0), random.uniform(0.5, 2.0), random.uniform(-3.0, 3.0));
         let rho = radius * angle.sin();
         let place = [rho * (3.0 * t).cos(), rho * (3.0 * t).sin(), -radius * angle.cos()];
         (t, vec![place[0], place[1], place[2], random.normal()])
@@ -149,8 +143,9 @@ fn an_oscillator_in_a_turning_chart() {
     assert_eq!(equations.right_hand_side(), [0.7 * v - x, -0.7 * u - 4.0 * y]);
 
     let mut motion = equations.compile().unwrap();
-    let classical =
-        |_: f64, y: &[f64]| vec![y[2] + 0.7 * y[1], y[3] - 0.7 * y[0], 0.7 * y[3] - y[0], -0.7 * y[2] - 4.0 * y[1]];
+    let classical = |_: f64, y: &[f64]| {
+        vec![y[2] + 0.7 * y[1], y[3] - 0.7 * y[0], 0.7 * y[3] - y[0], -0.7 * y[2] - 4.0 * y[1]]
+    };
     assert_equations("chart", &mut motion, classical, |random| (0.0, normals::<4>(random).to_vec()));
 
     let start = [1.0, 0.0, 0.0, 1.5];

@@ -3,7 +3,7 @@
 use super::harness::Description;
 
 /// A plane oscillator in a chart that turns with Ω = 0.7; the η are the absolute velocity along its axes.
-pub const TURNING_CHART: Description = Description {
+pub(super) const TURNING_CHART: Description = Description {
     coordinates: &["X", "Y"],
     quasi_velocities: &["u", "v"],
     velocities: |_, x, eta| vec![eta[0] + 0.7 * x[1], eta[1] - 0.7 * x[0]],
@@ -13,7 +13,7 @@ pub const TURNING_CHART: Description = Description {
 };
 
 /// A charge in the uniform magnetic field B(t) = 1 + ½ sin t, in polar coordinates, η = (ρ̇, ρφ̇).
-pub const CHARGE: Description = Description {
+pub(super) const CHARGE: Description = Description {
     coordinates: &["rho", "phi"],
     quasi_velocities: &["u", "v"],
     velocities: |_, x, eta| vec![eta[0], eta[1] / x[0]],
@@ -23,7 +23,7 @@ pub const CHARGE: Description = Description {
 };
 
 /// The damped oscillator ẍ = −½ẋ − 4x of L = e^(t/2) (½ẋ² − 2x²), in the frame ẋ = e^(−t/4) η + x/4.
-pub const SCALED_OSCILLATOR: Description = Description {
+pub(super) const SCALED_OSCILLATOR: Description = Description {
     coordinates: &["x"],
     quasi_velocities: &["eta"],
     velocities: |t, x, eta| vec![(-t / 4.0).exp() * eta[0] + x[0] / 4.0],

@@ -2,18 +2,20 @@
 
 use rustc_hash::FxHashSet;
 
-use super::{Body, Language, Layout, Place, c, rust};
+use super::{Body, Calls, Language, Layout, Place, c, rust};
 use crate::function::Function;
 use crate::program::{Instruction, Program, Register};
 
 /// Text longer than this is not put into another expression, but given a name.
-const LONG: usize = 60;
+const LONG: usize = 80;
 /// A sum may become this long, in several lines, before its beginning is given a name.
 const LONG_SUM: usize = 320;
 /// Brackets within brackets within brackets are enough.
 const DEEP: u32 = 3;
 /// Lines are broken where they would be longer.
 const WIDTH: usize = 110;
+/// Comments of neighbouring lines are aligned up to this column.
+const ALIGNED: usize = 64;
 
 /// How tightly a piece of text binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,7 +58,11 @@ impl Piece {
 
     /// The text, and how deep its brackets are, where an operator stands to its left: no sign may follow that.
     fn right(&self, least: Binding) -> (String, u32) {
-        if self.binding >= least && !self.is_negative() { (self.text(), self.depth) } else { self.bracketed() }
+        if self.binding >= least && !self.is_negative() {
+            (self.text(), self.depth)
+        } else {
+            self.bracketed()
+        }
     }
 
     /// The text, and how deep its brackets are, at the beginning of an expression.
@@ -93,7 +99,35 @@ pub(super) struct Printer<'a> {
     locals: usize,
     /// A name for the value of a register, from the slot of an output.
     hints: Vec<Option<&'a str>>,
-    body: Body,
+    statements: Lines,
+    calls: Calls,
+}
+
+/// Lines of code, each with the comment at its end.
+#[derive(Default)]
+struct Lines(Vec<(String, String)>);
+
+impl Lines {
+    fn push(&mut self, code: impl Into<String>, comment: String) {
+        self.0.push((code.into(), comment));
+    }
+
+    /// The text, comments of neighbouring lines one below the other.
+    fn text(&self, language: Language) -> String {
+        let mut text = String::new();
+        let run = |(code, comment): &(String, String)| !comment.is_empty() && code.len() <= ALIGNED;
+        for lines in self.0.chunk_by(|a, b| run(a) && run(b)) {
+            let width = lines.iter().map(|(code, _)| code.len()).max().unwrap_or(0);
+            for (code, comment) in lines {
+                text += &match language {
+                    _ if comment.is_empty() => format!("    {code}\n"),
+                    Language::C => format!("    {code:width$} /* {comment} */\n"),
+                    Language::Rust => format!("    {code:width$} // {comment}\n"),
+                };
+            }
+        }
+        text
+    }
 }
 
 impl<'a> Printer<'a> {
@@ -112,7 +146,8 @@ impl<'a> Printer<'a> {
         let mut names: FxHashSet<String> = ["t", "y", "p"].map(str::to_owned).into_iter().collect();
         names.extend(layout.inputs.iter().chain(&layout.reserved).cloned());
         let uses = program.uses();
-        Printer { program, language, layout, uses, pieces, names, locals: 0, hints, body: Body::default() }
+        let (statements, calls) = (Lines::default(), Calls::default());
+        Printer { program, language, layout, uses, pieces, names, locals: 0, hints, statements, calls }
     }
 
     pub(super) fn print(mut self) -> Body {
@@ -122,12 +157,13 @@ impl<'a> Printer<'a> {
         for (i, &instruction) in self.program.code().iter().enumerate() {
             let register = first + i;
             let piece = self.piece(instruction);
-            let piece = if self.uses[register] > 1 { self.named(register, instruction, &piece) } else { piece };
+            let piece =
+                if self.uses[register] > 1 { self.named(register, instruction, &piece) } else { piece };
             self.pieces.push(piece);
             self.write_outputs(&mut done, register + 1);
         }
-        self.write_inputs();
-        self.body
+        let inputs = self.inputs().text(self.language);
+        Body { inputs, statements: self.statements.text(self.language), calls: self.calls }
     }
 
     /// Writes the outputs, in their order, whose registers are before `known`.
@@ -141,7 +177,9 @@ impl<'a> Printer<'a> {
             let piece = self.pieces[output.index()].clone();
             match &slot.place {
                 Place::Entry(entry) => self.statement(&format!("{entry} = "), &piece, &slot.comment),
-                Place::Returned if self.language == Language::Rust => self.write("", &piece, "", &slot.comment),
+                Place::Returned if self.language == Language::Rust => {
+                    self.write("", &piece, "", &slot.comment);
+                }
                 Place::Returned => self.statement("return ", &piece, &slot.comment),
             }
         }
@@ -157,25 +195,17 @@ impl<'a> Printer<'a> {
     }
 
     fn write(&mut self, head: &str, piece: &Piece, tail: &str, comment: &str) {
-        let comment = self.language.comment(comment);
-        let comment = match self.language {
-            _ if comment.is_empty() => String::new(),
-            Language::C => format!(" /* {comment} */"),
-            Language::Rust => format!(" // {comment}"),
-        };
-        let text = &mut self.body.statements;
-        let mut line = format!("    {head}");
+        let mut line = head.to_owned();
         for (i, term) in piece.terms.iter().enumerate() {
-            if i > 0 && line.len() + 1 + term.len() >= WIDTH {
-                *text += &line;
-                *text += "\n";
-                line = " ".repeat(8);
+            if i > 0 && line.len() + term.len() + 5 >= WIDTH {
+                self.statements.push(line, String::new());
+                line = "    ".to_owned();
             } else if i > 0 {
                 line.push(' ');
             }
             line += term;
         }
-        *text += &format!("{line}{tail}{comment}\n");
+        self.statements.push(line + tail, self.language.comment(comment));
     }
 
     fn piece(&mut self, instruction: Instruction) -> Piece {
@@ -190,7 +220,8 @@ impl<'a> Printer<'a> {
                 let (a, b) = (self.operand(a), self.operand(b));
                 // a·b is b·a to the last bit: a factor that is itself a product comes first, without brackets.
                 let is_product = |piece: &Piece| piece.binding == Binding::Product && !piece.is_negative();
-                let is_number = |piece: &Piece| piece.terms[0].starts_with(|c: char| c.is_ascii_digit() || c == '-');
+                let is_number =
+                    |piece: &Piece| piece.terms[0].starts_with(|c: char| c.is_ascii_digit() || c == '-');
                 if is_product(&b) && !is_product(&a) && !is_number(&a) {
                     product('*', &b, &a)
                 } else {
@@ -211,7 +242,7 @@ impl<'a> Printer<'a> {
             NegateMultiplySubtract(a, b, c) => self.multiply_add(a, b, c, true, true),
             Call(function, args) => {
                 let args: Vec<Piece> = args[..function.arity()].iter().map(|&r| self.operand(r)).collect();
-                self.body.calls.add(function);
+                self.calls.add(function);
                 let depth = args.iter().map(|arg| arg.depth).max().unwrap_or(0);
                 let args = args.iter().map(Piece::text).collect::<Vec<_>>().join(", ");
                 let text = match self.language {
@@ -237,7 +268,7 @@ impl<'a> Printer<'a> {
     }
 
     fn multiply_add(&mut self, a: Register, b: Register, c: Register, minus: bool, less: bool) -> Piece {
-        self.body.calls.multiply_add = true;
+        self.calls.multiply_add = true;
         let [a, b, c] = [a, b, c].map(|r| self.operand(r));
         let a = if minus { negative(&a) } else { a };
         let c = if less { negative(&c) } else { c };
@@ -264,7 +295,8 @@ impl<'a> Printer<'a> {
 
     fn name_now(&mut self, register: Register) -> Piece {
         let index = register.index();
-        let Some(&instruction) = index.checked_sub(self.program.first_result()).map(|i| &self.program.code()[i])
+        let Some(&instruction) =
+            index.checked_sub(self.program.first_result()).map(|i| &self.program.code()[i])
         else {
             return self.pieces[index].clone(); // a long name of an input
         };
@@ -312,32 +344,31 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Declares the inputs that are read.
-    fn write_inputs(&mut self) {
+    /// Declares the inputs that are read, and passes over the arguments that are not.
+    fn inputs(&self) -> Lines {
         let first = self.program.first_input();
         let read = |i: usize| self.uses[first + i] > 0;
         let state = self.program.state_len();
-        let mut arrays = [("t", read(0)), ("y", false), ("p", false)];
-        let text = &mut self.body.inputs;
+        let mut arguments = [("t", read(0)), ("y", false), ("p", false)];
+        let mut lines = Lines::default();
         for (i, name) in self.layout.inputs.iter().enumerate().filter(|(i, _)| read(i + 1)) {
             let (array, index) = if i < state { (1, i) } else { (2, i - state) };
-            arrays[array].1 = true;
-            let from = format!("{}[{index}]", arrays[array].0);
+            arguments[array].1 = true;
+            let from = format!("{}[{index}]", arguments[array].0);
             let symbol = &self.program.input_names()[i + 1];
-            let comment = self.language.comment(symbol);
-            *text += &match self.language {
-                Language::C if symbol == name => format!("    const double {name} = {from};\n"),
-                Language::C => format!("    const double {name} = {from}; /* {comment} */\n"),
-                Language::Rust if symbol == name => format!("    let {name} = {from};\n"),
-                Language::Rust => format!("    let {name} = {from}; // {comment}\n"),
-            };
+            let comment = if symbol == name { String::new() } else { self.language.comment(symbol) };
+            match self.language {
+                Language::C => lines.push(format!("const double {name} = {from};"), comment),
+                Language::Rust => lines.push(format!("let {name} = {from};"), comment),
+            }
         }
-        for (array, _) in arrays.iter().filter(|(_, read)| !read) {
-            *text += &match self.language {
-                Language::C => format!("    (void){array};\n"),
-                Language::Rust => format!("    let _ = {array};\n"),
-            };
+        for (argument, _) in arguments.iter().filter(|(_, read)| !read) {
+            match self.language {
+                Language::C => lines.push(format!("(void){argument};"), String::new()),
+                Language::Rust => lines.push(format!("let _ = {argument};"), String::new()),
+            }
         }
+        lines
     }
 }
 

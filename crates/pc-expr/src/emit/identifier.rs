@@ -4,8 +4,8 @@ use super::{Language, c, rust};
 
 /// Lower-case names of α to ω.
 const GREEK: [&str; 25] = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
-    "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu",
+    "nu", "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
 ];
 
 fn greek(letter: char) -> Option<String> {
@@ -101,7 +101,7 @@ pub(super) fn comment(text: &str) -> String {
         }
     }
     // A backslash at the end of a line joins the next one to it.
-    text.trim().trim_end_matches('\\').to_owned()
+    text.trim().trim_end_matches('\\').trim_end().to_owned()
 }
 
 /// Control characters and those that change the direction of writing.
@@ -115,11 +115,27 @@ mod tests {
 
     #[test]
     fn identifiers_are_valid_and_distinct() {
-        let names = ["γ1", "γ_1", "gamma1", "ω", "Ω", "αβ", "mγ", "γm", "θ'", "q''", "ω₃", "int", "fn", "y", "1x", ""];
+        let names = [
+            "γ1", "γ_1", "gamma1", "ω", "Ω", "αβ", "mγ", "γm", "θ'", "q''", "ω₃", "int", "fn", "y", "1x", "",
+        ];
         let c = distinct(Language::C, &names, &["q_ddot"]);
         let expected = [
-            "gamma1", "gamma_1", "gamma1_2", "omega", "Omega", "alpha_beta", "m_gamma", "gamma_m", "theta_dot",
-            "q_ddot_", "omega3", "int_", "fn", "y_", "n_1x", "unnamed",
+            "gamma1",
+            "gamma_1",
+            "gamma1_2",
+            "omega",
+            "Omega",
+            "alpha_beta",
+            "m_gamma",
+            "gamma_m",
+            "theta_dot",
+            "q_ddot_",
+            "omega3",
+            "int_",
+            "fn",
+            "y_",
+            "n_1x",
+            "unnamed",
         ];
         assert_eq!(c, expected);
         assert_eq!(distinct(Language::Rust, &["int", "fn", "__x__y"], &[]), ["int", "fn_", "x_y"]);

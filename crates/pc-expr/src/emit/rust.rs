@@ -5,10 +5,11 @@ use crate::function::Function;
 
 /// Words of the language, names that cannot be bound, and those that the printed code uses.
 const RESERVED: &[&str] = &[
-    "Err", "None", "Ok", "Self", "Some", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
-    "else", "enum", "extern", "f64", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "libm", "loop",
-    "macro", "match", "math", "max", "min", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "sign", "static",
-    "step", "struct", "super", "trait", "true", "try", "type", "typeof", "union", "unsafe", "unsized", "use", "usize",
+    "Err", "None", "Ok", "Self", "Some", "abstract", "as", "async", "await", "become", "box", "break",
+    "const", "continue", "crate", "do", "dyn", "else", "enum", "extern", "f64", "false", "final", "fn",
+    "for", "gen", "if", "impl", "in", "let", "libm", "loop", "macro", "match", "math", "max", "min", "mod",
+    "move", "mut", "override", "priv", "pub", "ref", "return", "self", "sign", "static", "step", "struct",
+    "super", "trait", "true", "try", "type", "typeof", "union", "unsafe", "unsized", "use", "usize",
     "virtual", "where", "while", "yield",
 ];
 
@@ -71,15 +72,24 @@ pub(super) fn helpers(calls: &Calls) -> String {
     for &function in &calls.functions {
         let (purpose, arguments, choices, otherwise) = match function {
             Function::Sign => ("−1, 0 or 1", "x: f64", [("x > 0.0", "1.0"), ("x < 0.0", "-1.0")], "x * 0.0"),
-            Function::Min => {
-                ("The lesser; NaN if either is", "a: f64, b: f64", [("a.is_nan() || b.is_nan()", "a + b"), ("a < b", "a")], "b")
-            }
-            Function::Max => {
-                ("The greater; NaN if either is", "a: f64, b: f64", [("a.is_nan() || b.is_nan()", "a + b"), ("a > b", "a")], "b")
-            }
-            Function::Step => {
-                ("a where x ≥ 0, else b", "x: f64, a: f64, b: f64", [("x.is_nan()", "x"), ("x >= 0.0", "a")], "b")
-            }
+            Function::Min => (
+                "The lesser; NaN if either is",
+                "a: f64, b: f64",
+                [("a.is_nan() || b.is_nan()", "a + b"), ("a < b", "a")],
+                "b",
+            ),
+            Function::Max => (
+                "The greater; NaN if either is",
+                "a: f64, b: f64",
+                [("a.is_nan() || b.is_nan()", "a + b"), ("a > b", "a")],
+                "b",
+            ),
+            Function::Step => (
+                "a where x ≥ 0, else b",
+                "x: f64, a: f64, b: f64",
+                [("x.is_nan()", "x"), ("x >= 0.0", "a")],
+                "b",
+            ),
             _ => {
                 library.extend(library_function(function));
                 continue;
@@ -87,25 +97,31 @@ pub(super) fn helpers(calls: &Calls) -> String {
         };
         let [(first, a), (second, b)] = choices;
         text += &format!(
-            "/// {purpose}.\n#[inline]\nfn {name}({arguments}) -> f64 {{\n    if {first} {{\n        {a}\n    }} \
-             else if {second} {{\n        {b}\n    }} else {{\n        {otherwise}\n    }}\n}}\n\n",
+            "\n/// {purpose}.\n#[inline]\nfn {name}({arguments}) -> f64 {{\n    if {first} {{\n        {a}\n    }} \
+             else if {second} {{\n        {b}\n    }} else {{\n        {otherwise}\n    }}\n}}\n",
             name = function.name(),
         );
     }
     if calls.multiply_add {
-        library.push(Library { name: "mul_add", arguments: "a: f64, b: f64, c: f64", std: "a.mul_add(b, c)", libm: "fma" });
+        library.push(Library {
+            name: "mul_add",
+            arguments: "a: f64, b: f64, c: f64",
+            std: "a.mul_add(b, c)",
+            libm: "fma",
+        });
     }
     if library.is_empty() {
         return text;
     }
-    text += "/// The elementary functions of `std`.\n#[cfg(not(feature = \"libm\"))]\nmod math {\n";
+    text += "\n/// The elementary functions of `std`.\n#[cfg(not(feature = \"libm\"))]\nmod math {\n";
     for Library { name, arguments, std, .. } in &library {
         text += &format!("    #[inline]\n    pub fn {name}({arguments}) -> f64 {{\n        {std}\n    }}\n");
     }
-    text += "}\n\n/// The elementary functions of the crate `libm`.\n#[cfg(feature = \"libm\")]\nmod math {\n";
+    text +=
+        "}\n\n/// The elementary functions of the crate `libm`.\n#[cfg(feature = \"libm\")]\nmod math {\n";
     for Library { name, libm, .. } in &library {
         let renamed = if name == libm { String::new() } else { format!(" as {name}") };
         text += &format!("    pub use libm::{libm}{renamed};\n");
     }
-    text + "}\n\n"
+    text + "}\n"
 }

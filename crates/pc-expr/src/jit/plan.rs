@@ -91,7 +91,7 @@ impl Reach {
 
 impl Plan {
     pub(super) fn new(program: &Program, options: &JitOptions) -> Plan {
-        let order = if std::env::var_os("ASIS").is_some() { (0..program.code().len() as u32).collect() } else { depth_first(program) };
+        let order = depth_first(program);
         let steps = if options.inline_trig { with_circles(program, &order) } else { plain(program, &order) };
         let chunk = if steps.len() > WHOLE { options.chunk.max(1) } else { usize::MAX };
         let mut plan = Plan {

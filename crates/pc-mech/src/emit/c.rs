@@ -48,8 +48,11 @@ fn extent(source: &Source<'_>, extent: Extent) -> String {
 fn arrays(source: &Source<'_>) -> Vec<(String, &'static str, String)> {
     let (name, capitals) = (&source.name, capitals(source));
     let string = format!("const char *const {name}");
-    let mut arrays =
-        vec![(format!("{string}_names[{capitals}_DIM]"), "Names of the state", source.strings(source.state.iter()))];
+    let mut arrays = vec![(
+        format!("{string}_names[{capitals}_DIM]"),
+        "Names of the state",
+        source.strings(source.state.iter()),
+    )];
     if !source.parameters.is_empty() {
         let (names, values): (Vec<_>, Vec<_>) = source.parameters.iter().cloned().unzip();
         arrays.push((
@@ -68,7 +71,11 @@ fn arrays(source: &Source<'_>) -> Vec<(String, &'static str, String)> {
         ("output", "OUTPUTS", "Names of the outputs", &source.outputs),
     ];
     for (what, size, purpose, names) in watched.into_iter().filter(|(.., names)| !names.is_empty()) {
-        arrays.push((format!("{string}_{what}_names[{capitals}_{size}]"), purpose, source.strings(names.iter())));
+        arrays.push((
+            format!("{string}_{what}_names[{capitals}_{size}]"),
+            purpose,
+            source.strings(names.iter()),
+        ));
     }
     if let Some(start) = &source.options.start {
         arrays.push((
@@ -111,7 +118,7 @@ fn header(source: &Source<'_>) -> String {
     }
     for routine in &source.routines {
         let verb = if routine.extent == Extent::One { "Returns" } else { "Writes" };
-        let purpose = source.options.language.comment(&routine.purpose);
+        let purpose = source.options.language.comment(&routine.purpose).replace('`', "");
         let _ = write!(text, "\n/* {verb} {purpose}. */\n{};\n", declaration(source, routine));
     }
     text + &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {capitals}_H */\n")
@@ -136,8 +143,12 @@ fn usage(source: &Source<'_>) -> Vec<String> {
             "Add -ffp-contract=off for results that are the same to the last bit whether or not the processor can fuse\n\
              a*b + c."
         };
-    let end = "Files are UTF-8, C99 and C++11. Nothing is allocated and there is no state: any thread may call any function.";
-    std::iter::once("").chain(text.lines()).chain(["", end]).map(str::to_owned).collect()
+    let end = [
+        "",
+        "C99 and C++11, in UTF-8. Nothing is allocated or kept between calls. Where an expression is not defined, as",
+        "a quotient by zero, results are infinite or NaN.",
+    ];
+    std::iter::once("").chain(text.lines()).chain(end).map(str::to_owned).collect()
 }
 
 fn body(source: &Source<'_>) -> String {

@@ -6,14 +6,26 @@ use super::{EmittedFile, Extent, Routine, Source};
 
 /// Constants of the file: a local must not have the name of a constant.
 pub(super) const CONSTANTS: &[&str] = &[
-    "COORDINATES", "QUASI_VELOCITIES", "DIM", "PARAMETERS", "INTEGRALS", "OUTPUTS", "NAMES", "PARAMETER_NAMES",
-    "DEFAULT_PARAMETERS", "INTEGRAL_NAMES", "OUTPUT_NAMES", "START", "T_START", "T_END",
+    "COORDINATES",
+    "QUASI_VELOCITIES",
+    "DIM",
+    "PARAMETERS",
+    "INTEGRALS",
+    "OUTPUTS",
+    "NAMES",
+    "PARAMETER_NAMES",
+    "DEFAULT_PARAMETERS",
+    "INTEGRAL_NAMES",
+    "OUTPUT_NAMES",
+    "START",
+    "T_START",
+    "T_END",
 ];
 
 pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     let name = format!("{}.rs", source.name);
     let mut text = String::new();
-    for line in source.head().into_iter().chain(usage(source, &name)) {
+    for line in fenced(&source.head()).into_iter().chain(usage(source, &name)) {
         text += format!("//! {line}").trim_end();
         text += "\n";
     }
@@ -26,8 +38,22 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     if source.options.start.is_some() {
         text += MAIN;
     }
-    text.truncate(text.trim_end().len());
-    vec![EmittedFile { name, text: text + "\n" }]
+    vec![EmittedFile { name, text }]
+}
+
+/// Indented lines between fences: rustdoc would take them for Rust and try them.
+fn fenced(lines: &[String]) -> Vec<String> {
+    let mut fenced = Vec::new();
+    for run in lines.chunk_by(|a, b| a.starts_with("    ") == b.starts_with("    ")) {
+        if run[0].starts_with("    ") {
+            fenced.push("```text".to_owned());
+            fenced.extend(run.iter().map(|line| line.trim_start().to_owned()));
+            fenced.push("```".to_owned());
+        } else {
+            fenced.extend_from_slice(run);
+        }
+    }
+    fenced
 }
 
 fn usage(source: &Source<'_>, file: &str) -> Vec<String> {
@@ -36,7 +62,7 @@ fn usage(source: &Source<'_>, file: &str) -> Vec<String> {
     if source.options.start.is_some() {
         let _ = write!(
             text,
-            "To try it:\n```text\nrustc -O --cfg pc_main {file} && ./{module}\n```\nintegrates from [`START`] and \
+            "To try it:\n```text\nrustc -O --cfg pc_main {file} && ./{module}\n```\nThis integrates from [`START`] and \
              prints t, the state and the energy.\n\n"
         );
     }
@@ -73,7 +99,13 @@ fn constants(source: &Source<'_>, text: &mut String) {
     array("PARAMETER_NAMES", "&str", "PARAMETERS", "Names of the parameters", source.strings(names.iter()));
     let values = source.constants(values.into_iter());
     array("DEFAULT_PARAMETERS", "f64", "PARAMETERS", "Values of the parameters", values);
-    array("INTEGRAL_NAMES", "&str", "INTEGRALS", "Names of the integrals", source.strings(source.integrals.iter()));
+    array(
+        "INTEGRAL_NAMES",
+        "&str",
+        "INTEGRALS",
+        "Names of the integrals",
+        source.strings(source.integrals.iter()),
+    );
     array("OUTPUT_NAMES", "&str", "OUTPUTS", "Names of the outputs", source.strings(source.outputs.iter()));
     if let Some(start) = &source.options.start {
         array("START", "f64", "DIM", "A state to start from", source.constants(start.state.iter().copied()));
@@ -96,12 +128,20 @@ fn function(source: &Source<'_>, routine: &Routine, text: &mut String) {
     };
     let purpose = source.options.language.comment(&routine.purpose);
     let verb = if routine.extent == Extent::One { "Returns" } else { "Writes" };
-    let _ = writeln!(text, "\n/// {verb} {}.", doc(&purpose));
+    let _ = writeln!(text, "\n/// {verb} {purpose}.");
     let Routine { name, array, .. } = routine;
-    let arguments = "t: f64, y: &[f64; DIM], p: &[f64; PARAMETERS]";
-    let _ = match routine.extent {
-        Extent::One => writeln!(text, "pub fn {name}({arguments}) -> f64 {{"),
-        _ => writeln!(text, "pub fn {name}({arguments}, {array}: &mut [f64; {size}]) {{"),
+    let mut arguments =
+        vec!["t: f64".to_owned(), "y: &[f64; DIM]".to_owned(), "p: &[f64; PARAMETERS]".to_owned()];
+    let mut result = "";
+    match routine.extent {
+        Extent::One => result = " -> f64",
+        _ => arguments.push(format!("{array}: &mut [f64; {size}]")),
+    }
+    let one_line = format!("pub fn {name}({}){result} {{\n", arguments.join(", "));
+    *text += &if one_line.len() <= 100 {
+        one_line
+    } else {
+        format!("pub fn {name}(\n    {},\n){result} {{\n", arguments.join(",\n    "))
     };
     *text += &routine.body.inputs;
     if !routine.body.inputs.is_empty() {
@@ -112,11 +152,6 @@ fn function(source: &Source<'_>, routine: &Routine, text: &mut String) {
     }
     *text += &routine.body.statements;
     *text += "}\n";
-}
-
-/// Indices in brackets are no links.
-fn doc(text: &str) -> String {
-    text.replace('[', "\\[")
 }
 
 const MAIN: &str = r#"

@@ -1,0 +1,236 @@
+//! From n-ary nodes to a tape of binary operations.
+
+use rustc_hash::FxHashMap;
+
+use crate::cone::Cone;
+use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::error::ExprError;
+use crate::number::Number;
+use crate::program::{Instruction, Program, Register};
+use crate::sharing::{Factor, FactorId, SharedProduct, SharedProducts};
+
+/// Turns n-ary nodes into binary operations, each computed once.
+pub(crate) struct Lowering<'a> {
+    dag: &'a Dag,
+    program: &'a mut Program,
+    constants: FxHashMap<u64, Register>,
+    known: FxHashMap<Instruction, u32>,
+    registers: FxHashMap<NodeId, Register>,
+    products: SharedProducts,
+    factors: FxHashMap<FactorId, Register>,
+    /// Results are numbered from here on once all constants are known.
+    results: Vec<Instruction>,
+}
+
+/// While lowering, constants are numbered from 0, inputs from `INPUT`, results from `RESULT`.
+const INPUT: u32 = 1 << 29;
+const RESULT: u32 = 1 << 30;
+
+impl<'a> Lowering<'a> {
+    pub(crate) fn new(dag: &'a Dag, symbols: &[Option<NodeId>], program: &'a mut Program) -> Lowering<'a> {
+        let mut registers = FxHashMap::default();
+        for (i, symbol) in symbols.iter().enumerate() {
+            if let Some(node) = symbol {
+                registers.insert(*node, Register(INPUT + i as u32));
+            }
+        }
+        Lowering {
+            dag,
+            program,
+            constants: FxHashMap::default(),
+            known: FxHashMap::default(),
+            registers,
+            products: SharedProducts::default(),
+            factors: FxHashMap::default(),
+            results: Vec::new(),
+        }
+    }
+
+    pub(crate) fn run(mut self, outputs: &[Atom]) -> Result<(), ExprError> {
+        let cone = Cone::below(self.dag, outputs.iter().copied());
+        for &id in &cone.order {
+            if let Node::Symbol(index) = self.dag.node(id)
+                && !self.registers.contains_key(&id)
+            {
+                return Err(ExprError::UnboundSymbol { symbol: self.dag.symbol_name(index).to_owned() });
+            }
+        }
+        self.products = SharedProducts::of(self.dag, &cone);
+        let mut registers = Vec::with_capacity(outputs.len());
+        for &output in outputs {
+            registers.push(match output {
+                Atom::Constant(c) => self.constant(c),
+                Atom::Node(id) => {
+                    self.lower_below(id);
+                    self.registers[&id]
+                }
+            });
+        }
+        let first_input = self.program.constants.len() as u32;
+        let first_result = first_input + self.program.names.len() as u32;
+        let place = |register: Register| match register.0 {
+            r if r >= RESULT => Register(r - RESULT + first_result),
+            r if r >= INPUT => Register(r - INPUT + first_input),
+            _ => register,
+        };
+        self.program.outputs = registers.into_iter().map(place).collect();
+        self.program.code = self.results.iter().map(|instruction| instruction.map(place)).collect();
+        Ok(())
+    }
+
+    /// Lowers everything below a node in depth-first order, which keeps values close to their uses.
+    fn lower_below(&mut self, root: NodeId) {
+        let mut open = vec![(root, false)];
+        while let Some((id, children_done)) = open.pop() {
+            if self.registers.contains_key(&id) {
+                continue;
+            }
+            if children_done {
+                let register = self.lower(id);
+                self.registers.insert(id, register);
+            } else {
+                open.push((id, true));
+                let first = open.len();
+                self.dag.for_each_child(id, |child| open.push((child, false)));
+                open[first..].reverse();
+            }
+        }
+    }
+
+    fn lower(&mut self, id: NodeId) -> Register {
+        let dag = self.dag;
+        match dag.node(id) {
+            Node::Constant(c) => self.constant(c),
+            Node::Symbol(_) => unreachable!("every symbol of the cone is an input"),
+            Node::Call { function, args } => {
+                let mut registers = [Register(0); 3];
+                for (register, arg) in registers.iter_mut().zip(Dag::args(function, &args)) {
+                    *register = self.registers[arg];
+                }
+                for i in function.arity()..3 {
+                    registers[i] = registers[0];
+                }
+                self.emit(Instruction::Call(function, registers))
+            }
+            Node::Product { .. } => self.lower_product(id),
+            Node::Sum { constant, terms } => self.lower_sum(constant, dag.terms(terms)),
+        }
+    }
+
+    fn lower_product(&mut self, id: NodeId) -> Register {
+        let SharedProduct { factors, divisors } = self.products.product(id).clone();
+        let numerator = self.multiply(&factors);
+        match (numerator, self.multiply(&divisors)) {
+            (Some(product), None) => product,
+            (numerator, Some(divisor)) => {
+                let dividend = numerator.unwrap_or_else(|| self.constant(Number::ONE));
+                self.emit(Instruction::Divide(dividend, divisor))
+            }
+            (None, None) => self.constant(Number::ONE),
+        }
+    }
+
+    fn multiply(&mut self, factors: &[FactorId]) -> Option<Register> {
+        let mut product = None;
+        for &factor in factors {
+            let register = self.factor(factor);
+            product = Some(match product {
+                None => register,
+                Some(product) => self.emit(Instruction::Multiply(product, register)),
+            });
+        }
+        product
+    }
+
+    fn factor(&mut self, id: FactorId) -> Register {
+        if let Some(&register) = self.factors.get(&id) {
+            return register;
+        }
+        let register = match self.products.factor(id) {
+            Factor::Power(node, exponent) => self.power(self.registers[&node], exponent),
+            Factor::Reciprocal(node, exponent) => {
+                let one = self.constant(Number::ONE);
+                let reciprocal = self.emit(Instruction::Divide(one, self.registers[&node]));
+                self.power(reciprocal, exponent)
+            }
+            Factor::Pair(first, second) => {
+                let (first, second) = (self.factor(first), self.factor(second));
+                self.emit(Instruction::Multiply(first, second))
+            }
+        };
+        self.factors.insert(id, register);
+        register
+    }
+
+    fn power(&mut self, base: Register, exponent: u32) -> Register {
+        if exponent <= 1 {
+            return base;
+        }
+        let root = self.power(base, exponent / 2);
+        let square = self.emit(Instruction::Multiply(root, root));
+        if exponent.is_multiple_of(2) { square } else { self.emit(Instruction::Multiply(square, base)) }
+    }
+
+    fn lower_sum(&mut self, constant: Number, terms: &[(NodeId, Number)]) -> Register {
+        let mut sum = (!constant.is_zero()).then(|| self.constant(constant));
+        // Positive terms first, so that a sum begins with a negation only if all its terms are negative.
+        let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(_, q)| q.is_negative());
+        for (node, q) in positive {
+            let term = self.scaled(self.registers[&node], q);
+            sum = Some(match sum {
+                None => term,
+                Some(sum) => self.emit(Instruction::Add(sum, term)),
+            });
+        }
+        for (node, q) in negative {
+            let register = self.registers[&node];
+            sum = Some(match sum {
+                None if (-q).is_one() => self.emit(Instruction::Negate(register)),
+                None => self.scaled(register, q),
+                Some(sum) => {
+                    let term = self.scaled(register, -q);
+                    self.emit(Instruction::Subtract(sum, term))
+                }
+            });
+        }
+        sum.unwrap_or_else(|| self.constant(Number::ZERO))
+    }
+
+    fn scaled(&mut self, register: Register, q: Number) -> Register {
+        if q.is_one() {
+            return register;
+        }
+        let coefficient = self.constant(q);
+        self.emit(Instruction::Multiply(coefficient, register))
+    }
+
+    fn constant(&mut self, c: Number) -> Register {
+        let value = c.to_f64();
+        let constants = &mut self.program.constants;
+        *self.constants.entry(value.to_bits()).or_insert_with(|| {
+            constants.push(value);
+            Register(constants.len() as u32 - 1)
+        })
+    }
+
+    fn emit(&mut self, instruction: Instruction) -> Register {
+        let ordered = |a: Register, b: Register| if a <= b { (a, b) } else { (b, a) };
+        let instruction = match instruction {
+            Instruction::Add(a, b) => {
+                let (a, b) = ordered(a, b);
+                Instruction::Add(a, b)
+            }
+            Instruction::Multiply(a, b) => {
+                let (a, b) = ordered(a, b);
+                Instruction::Multiply(a, b)
+            }
+            other => other,
+        };
+        let results = &mut self.results;
+        let index = *self.known.entry(instruction).or_insert_with(|| {
+            results.push(instruction);
+            results.len() as u32 - 1
+        });
+        Register(RESULT + index)
+    }
+}

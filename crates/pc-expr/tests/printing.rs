@@ -1,0 +1,134 @@
+//! Expressions as text: as a book would write them, and readable back.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Bounded, trees};
+use pc_expr::parse::{Ast, AstKind, Factor, Sign, parse};
+use pc_expr::{Expr, Folding, Function, Graph, Scalar};
+use proptest::prelude::*;
+
+/// The value of a syntax tree.
+fn value(ast: &Ast, name: &impl Fn(&str) -> Bounded) -> Bounded {
+    let of = |ast: &Ast| value(ast, name);
+    match &ast.kind {
+        AstKind::Number(x) => Bounded::from_f64(*x),
+        AstKind::Name(symbol) => name(symbol),
+        AstKind::Negate(x) => -of(x),
+        AstKind::Sum(terms) => terms.iter().fold(Bounded::exact(0.0), |sum, (sign, term)| {
+            sum + if *sign == Sign::Plus { of(term) } else { -of(term) }
+        }),
+        AstKind::Product(factors) => factors.iter().fold(Bounded::exact(1.0), |product, (side, factor)| {
+            let factor = of(factor);
+            product * if *side == Factor::Times { factor } else { Scalar::powi(factor, -1) }
+        }),
+        AstKind::Power(base, exponent) => {
+            let exponent = of(exponent);
+            if exponent.error == 0.0 && exponent.value.fract() == 0.0 && exponent.value.abs() < 1e9 {
+                Scalar::powi(of(base), exponent.value as i32)
+            } else {
+                Scalar::call(Function::Pow, &[of(base), exponent])
+            }
+        }
+        AstKind::Call(function, _, args) => {
+            let function = Function::ALL.into_iter().find(|f| f.name() == function).unwrap();
+            Scalar::call(function, &args.iter().map(of).collect::<Vec<_>>())
+        }
+        AstKind::Velocity(_) | AstKind::TotalDerivative(_) => unreachable!("the graph prints no {ast:?}"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 2000,
+        rng_seed: prop::test_runner::RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn what_is_printed_is_read_back(tree in trees(3), point in prop::array::uniform3(-2.0..2.0)) {
+        for folding in [Folding::ByValue, Folding::Structural] {
+            let graph = Graph::with_folding(folding);
+            let symbols = graph.symbols(["x", "y", "z"]);
+            let expr = tree.expr(&symbols);
+            let all = [expr, expr.derivative(symbols[0]), -expr, (expr - 0.5).powi(-3), expr.pow(expr)];
+            for expr in all.into_iter().filter(|e| !e.is_undefined()) {
+                let text = expr.to_string();
+                prop_assert!(!text.contains("--") && !text.contains("- -") && !text.contains("+ -"), "{text}");
+                let values: Vec<(Expr, Bounded)> =
+                    symbols.iter().zip(point).map(|(&s, x)| (s, Bounded::exact(x))).collect();
+                let ours = graph.evaluate(&[expr], &values).unwrap()[0];
+                let name = |name: &str| values.iter().find(|(s, _)| s.to_string() == name).unwrap().1;
+                let read = value(&parse(&text).unwrap(), &name);
+                if ours.size().is_finite() && read.size().is_finite() {
+                    let tolerance = 10.0 * f64::EPSILON * (ours.size() + read.size());
+                    prop_assert!((ours.value - read.value).abs() <= tolerance, "{text}: {ours:?}, read {read:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn texts() {
+    let graph = Graph::new();
+    let [m, v, x, y, z] = graph.symbols(["m", "v", "x", "y", "z"]);
+    let [a2, a3] = graph.symbols(["A2", "A3"]);
+    let table = [
+        (a2 - a3, "A2 - A3"),
+        (-(a2 - a3), "A3 - A2"),
+        (m * v * v / 2.0, "1/2*m*v^2"),
+        (-m * v * v / 2.0, "-1/2*m*v^2"),
+        (-x, "-x"),
+        (-(x + y), "-x - y"),
+        (-2.0 * (x + y), "-2*(x + y)"),
+        (2.0 * (x - y), "2*(x - y)"),
+        (x - (y - z), "x - y + z"),
+        (x / (y * z), "x/(y*z)"),
+        (x / y * z, "x*z/y"),
+        (x / y / z / 2.0, "x/(2*y*z)"),
+        (2.0 / x, "2/x"),
+        (Expr::ratio(2, 3) / x, "2/(3*x)"),
+        (-1.0 / x, "-1/x"),
+        (0.3 / x, "0.3/x"),
+        (x.powi(-2), "1/x^2"),
+        (x / 3.0, "1/3*x"),
+        (0.7 * x, "0.7*x"),
+        ((x + y).square(), "(x + y)^2"),
+        ((x + y) * (x - y) * z, "z*(x + y)*(x - y)"),
+        ((x + y) / (x - y), "(x + y)/(x - y)"),
+        (1.0 - x * x, "1 - x^2"),
+        (x * y - 0.5, "x*y - 1/2"),
+        (x / 2.0 + y, "1/2*x + y"),
+        ((x + y) / 2.0, "1/2*(x + y)"),
+        (y.powi(4) + x.square() * y + x.powi(3) - 1.0, "x^3 + x^2*y + y^4 - 1"),
+        (m * 9.81 * x.sin(), "9.81*m*sin(x)"),
+        (x * (a2 - a3) * y + z * x.cos(), "x*y*(A2 - A3) + z*cos(x)"),
+        (-x.sin() * y, "-y*sin(x)"),
+        ((-x).exp(), "exp(-x)"),
+        (x.sin().square() * y, "y*sin(x)^2"),
+        (y.sqrt() * 3.0, "3*sqrt(y)"),
+        (x.pow(1.5), "x*sqrt(x)"),
+        (x.pow(0.3), "x^0.3"),
+        (x.pow(-0.3), "x^(-0.3)"),
+        (x.pow(Expr::ratio(1, 3)), "x^(1/3)"),
+        (x.pow(y), "x^y"),
+        (x.pow(y).pow(z), "(x^y)^z"),
+        (x.pow(y.pow(z)), "x^(y^z)"),
+        ((x * y).pow(y + 1.0), "(x*y)^(y + 1)"),
+        (Expr::from(2.0).pow(x), "2^x"),
+        (Expr::from(0.5).pow(-x), "(1/2)^(-x)"),
+        (x.atan2(y), "atan2(x, y)"),
+        ((x - 1.0).step(y, 0.0), "step(x - 1, y, 0)"),
+        (1.0 / (1.0 / x + 1.0 / y), "1/(1/x + 1/y)"),
+        (6.674e-11 * x, "6.674e-11*x"),
+        (1e300 * x, "1e300*x"),
+        (x * 0.0, "0"),
+        (Expr::ratio(-1, 3), "-1/3"),
+    ];
+    for (expr, text) in table {
+        assert_eq!(expr.to_string(), text);
+    }
+}

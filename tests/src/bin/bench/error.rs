@@ -1,0 +1,50 @@
+//! Why a benchmark could not be run.
+
+use std::io;
+use std::path::PathBuf;
+
+use pc_expr::ExprError;
+use pc_mech::MechError;
+use pc_model::ModelError;
+
+/// Why a benchmark could not be run.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A built-in model was not found.
+    #[error("there is no built-in model `{name}`")]
+    NoModel { name: &'static str },
+    /// A model was refused.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A system was refused.
+    #[error(transparent)]
+    Mech(#[from] MechError),
+    /// A program could not be made.
+    #[error(transparent)]
+    Expr(#[from] ExprError),
+    /// A kernel could not be made.
+    #[error("no {kernel} for {system}: {cause}")]
+    Kernel { kernel: &'static str, system: String, cause: String },
+    /// Two variants of a right-hand side differ by more than rounding.
+    #[error("{system}: `{variant}` differs from `{reference}` in component {component} by {error:e} at {state:?}")]
+    Disagreement {
+        system: String,
+        variant: String,
+        reference: String,
+        component: usize,
+        error: f64,
+        state: Vec<f64>,
+    },
+    /// The program to be timed is not there and could not be built.
+    #[error("the program {} is missing and could not be built: {cause}", path.display())]
+    Missing { path: PathBuf, cause: String },
+    /// The program to be timed failed.
+    #[error("`{command}` failed: {message}")]
+    Failed { command: String, message: String },
+    /// A program could not be started.
+    #[error("cannot start `{command}`")]
+    Start { command: String, source: io::Error },
+    /// The report could not be written.
+    #[error("cannot write {}", path.display())]
+    Write { path: PathBuf, source: io::Error },
+}

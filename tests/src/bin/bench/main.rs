@@ -1,0 +1,58 @@
+//! The benchmarks of the workspace: `cargo xtask bench [NAME…]`.
+//!
+//! Each prints a Markdown table as it goes and leaves it in `target/bench/NAME.md`. Only the ratios between variants
+//! of one run mean anything: variants are run in turns, so that whatever slows the machine slows all of them.
+
+mod derive;
+mod error;
+mod hand;
+mod measure;
+mod report;
+mod rhs;
+mod start;
+mod systems;
+
+use std::env;
+use std::process::ExitCode;
+
+use error::Error;
+use report::Report;
+
+/// A benchmark that can be asked for by name.
+struct Benchmark {
+    name: &'static str,
+    about: &'static str,
+    run: fn(&mut Report) -> Result<(), Error>,
+}
+
+const BENCHMARKS: &[Benchmark] = &[
+    Benchmark { name: "rhs", about: "one evaluation of a right-hand side, derived and by hand", run: rhs::run },
+    Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
+    Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
+];
+
+fn main() -> ExitCode {
+    let names: Vec<String> = env::args().skip(1).collect();
+    let mut chosen = Vec::new();
+    for name in &names {
+        let Some(benchmark) = BENCHMARKS.iter().find(|benchmark| benchmark.name == name) else {
+            eprintln!("bench: there is no benchmark `{name}`; there are");
+            for Benchmark { name, about, .. } in BENCHMARKS {
+                eprintln!("  {name:8} {about}");
+            }
+            return ExitCode::from(2);
+        };
+        chosen.push(benchmark);
+    }
+    if chosen.is_empty() {
+        chosen.extend(BENCHMARKS);
+    }
+    for benchmark in chosen {
+        let mut report = Report::new(benchmark.name, benchmark.about);
+        if let Err(error) = (benchmark.run)(&mut report).and_then(|()| report.save()) {
+            eprintln!("bench {}: {error}", benchmark.name);
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,119 @@
+//! Timing variants of a computation in turns.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// How often each variant gets its turn.
+pub(crate) const ROUNDS: usize = 300;
+/// How long a turn is.
+const SLICE: Duration = Duration::from_micros(100);
+/// How much of an output is added to the next input: enough to make it wait, too little to change it.
+const NUDGE: f64 = 1e-18;
+
+/// One way to compute ẏ from y.
+pub(crate) struct Variant<'a> {
+    /// What the table calls it.
+    pub(crate) name: String,
+    /// Computes ẏ.
+    pub(crate) call: Box<dyn FnMut(&[f64], &mut [f64]) + 'a>,
+}
+
+impl<'a> Variant<'a> {
+    /// The variant of that name.
+    pub(crate) fn new(name: impl Into<String>, call: impl FnMut(&[f64], &mut [f64]) + 'a) -> Variant<'a> {
+        Variant { name: name.into(), call: Box::new(call) }
+    }
+
+    /// ẏ at y.
+    pub(crate) fn at(&mut self, y: &[f64]) -> Vec<f64> {
+        let mut dy = vec![0.0; y.len()];
+        (self.call)(y, &mut dy);
+        dy
+    }
+}
+
+/// Durations, one for each round, in the order of the rounds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Times(pub(crate) Vec<f64>);
+
+impl Times {
+    /// The shortest.
+    pub(crate) fn min(&self) -> f64 {
+        quantile(&self.0, 0.0)
+    }
+
+    /// The 10th percentile.
+    pub(crate) fn p10(&self) -> f64 {
+        quantile(&self.0, 0.1)
+    }
+
+    /// The median.
+    pub(crate) fn median(&self) -> f64 {
+        quantile(&self.0, 0.5)
+    }
+
+    /// The median of the ratios to `other` within a round: what slows a whole round drops out.
+    pub(crate) fn ratio_to(&self, other: &Times) -> f64 {
+        let ratios: Vec<f64> = self.0.iter().zip(&other.0).map(|(a, b)| a / b).collect();
+        quantile(&ratios, 0.5)
+    }
+}
+
+fn quantile(values: &[f64], fraction: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let place = (fraction * sorted.len() as f64) as usize;
+    sorted.get(place.min(sorted.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+}
+
+/// e^(mean of the logarithms)
+pub(crate) fn geometric_mean(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
+}
+
+/// Nanoseconds a call of each variant near `state`, by turns of about [`SLICE`], [`ROUNDS`] of them.
+///
+/// Each call waits for the one before: every input contains an output. Every other round goes through the variants
+/// backwards, so that none has always the same one before it.
+pub(crate) fn interleave(state: &[f64], variants: &mut [Variant<'_>]) -> Vec<Times> {
+    let calls: Vec<u32> = variants.iter_mut().map(|variant| calls_in_a_slice(state, variant)).collect();
+    let mut times = vec![Times::default(); variants.len()];
+    for round in 0..ROUNDS {
+        for turn in 0..variants.len() {
+            let i = if round % 2 == 0 { turn } else { variants.len() - 1 - turn };
+            let duration = slice(state, &mut variants[i], calls[i]);
+            times[i].0.push(duration.as_nanos() as f64 / f64::from(calls[i]));
+        }
+    }
+    times
+}
+
+fn calls_in_a_slice(state: &[f64], variant: &mut Variant<'_>) -> u32 {
+    let mut calls = 1;
+    loop {
+        // The best of three, since an interruption would end the search too early.
+        let duration = (0..3).map(|_| slice(state, variant, calls)).min().unwrap_or_default();
+        if duration >= SLICE / 2 || calls >= 1 << 20 {
+            let scale = SLICE.as_secs_f64() / duration.as_secs_f64().max(1e-9);
+            return ((f64::from(calls) * scale) as u32).max(1);
+        }
+        calls *= 2;
+    }
+}
+
+fn slice(state: &[f64], variant: &mut Variant<'_>, calls: u32) -> Duration {
+    let mut y = state.to_vec();
+    let mut dy = vec![0.0; y.len()];
+    let start = Instant::now();
+    for _ in 0..calls {
+        for i in 0..y.len() {
+            // `black_box` keeps this loop from loading pairs: what was written one number at a time comes back
+            // from the store buffer only one number at a time.
+            y[i] = state[i] + NUDGE * black_box(dy[i]);
+        }
+        (variant.call)(&y, &mut dy);
+    }
+    let duration = start.elapsed();
+    black_box(&dy);
+    duration
+}

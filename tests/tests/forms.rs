@@ -1,0 +1,10 @@
+//! The equations do not depend on the form: the same motion in two frames, in any gauge, and by Lagrange's equations
+//! for random frames and Lagrangians.
+
+mod holonomic {
+    mod harness;
+    mod jet;
+    mod random_systems;
+    mod shared;
+    mod two_frames;
+}

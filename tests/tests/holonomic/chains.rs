@@ -1,0 +1,231 @@
+//! Families of any length: the pendulum of N links and the Toda chain.
+
+use pc_mech::{Expr, Graph, Motion, System};
+
+use super::harness::{STATES, distance, integrate, normals, rates};
+use super::judge::{assert_equations, assert_motion};
+use pc_tests::classical::SplitMix64;
+
+fn names(letter: &str, count: usize) -> Vec<String> {
+    (1..=count).map(|i| format!("{letter}{i}")).collect()
+}
+
+/// Unit masses on unit links, g = 10, in the angles θ_i from the vertical.
+fn pendulum_in_angles(links: usize) -> Motion {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(names("q", links))
+        .lagrangian(|_, q, rate| {
+            let (mut across, mut up, mut height) = (Expr::ZERO, Expr::ZERO, Expr::ZERO);
+            let mut lagrangian = Expr::ZERO;
+            for i in 0..links {
+                across += q[i].cos() * rate[i];
+                up += q[i].sin() * rate[i];
+                height -= q[i].cos();
+                lagrangian += (across.square() + up.square()) / 2.0 - 10.0 * height;
+            }
+            lagrangian
+        })
+        .build()
+        .unwrap();
+    assert_eq!(system.structure().nonzero().count(), 0);
+    system.poincare().unwrap().compile().unwrap()
+}
+
+/// The same in the Cartesian coordinates x_i, y_i of its particles, with the rates of the links as quasi-velocities.
+fn pendulum_in_the_plane(links: usize) -> Motion {
+    let graph = Graph::new();
+    let coordinates = (1..=links).flat_map(|i| [format!("x{i}"), format!("y{i}")]);
+    let system = System::builder(&graph)
+        .coordinates(coordinates)
+        .quasi_velocities(names("w", links))
+        .kinematics(|_, x, rate| plane_velocities(x, rate))
+        .lagrangian(|_, x, rate| {
+            let kinetic: Expr<'_> = plane_velocities(x, rate).into_iter().map(Expr::square).sum();
+            kinetic / 2.0 - 10.0 * x.iter().skip(1).step_by(2).copied().sum::<Expr<'_>>()
+        })
+        .build()
+        .unwrap();
+    assert_eq!(system.structure().nonzero().count(), 0);
+    system.poincare().unwrap().compile().unwrap()
+}
+
+fn plane_velocities<'g>(x: &[Expr<'g>], rate: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let (mut velocities, mut velocity, mut joint) = (Vec::new(), [Expr::ZERO; 2], [Expr::ZERO; 2]);
+    for (place, &rate) in x.chunks(2).zip(rate) {
+        velocity[0] -= (place[1] - joint[1]) * rate;
+        velocity[1] += (place[0] - joint[0]) * rate;
+        joint = [place[0], place[1]];
+        velocities.extend(velocity);
+    }
+    velocities
+}
+
+fn place(angles: &[f64]) -> Vec<f64> {
+    let mut end = [0.0; 2];
+    let particles = angles.iter().flat_map(|angle| {
+        end = [end[0] + angle.sin(), end[1] - angle.cos()];
+        end
+    });
+    particles.collect()
+}
+
+/// Σ_j (N+1−max(i,j)) (cos(θ_i − θ_j) θ̈_j + sin(θ_i − θ_j) θ̇_j²) = −(N+1−i) g sin θ_i
+fn pendulum_rates(y: &[f64]) -> Vec<f64> {
+    let links = y.len() / 2;
+    let (q, rate) = y.split_at(links);
+    let hanging = |i: usize| (links - i) as f64;
+    let matrix =
+        (0..links).map(|i| (0..links).map(|j| hanging(i.max(j)) * (q[i] - q[j]).cos()).collect()).collect();
+    let force = (0..links).map(|i| {
+        let centrifugal = (0..links).map(|j| hanging(i.max(j)) * (q[i] - q[j]).sin() * rate[j] * rate[j]);
+        -10.0 * hanging(i) * q[i].sin() - centrifugal.sum::<f64>()
+    });
+    let accelerations = eliminate(matrix, force.collect());
+    rate.iter().copied().chain(accelerations).collect()
+}
+
+/// Gauss's elimination; the matrix is positive definite.
+fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+    let size = right.len();
+    for column in 0..size {
+        for row in column + 1..size {
+            let factor = matrix[row][column] / matrix[column][column];
+            for j in column..size {
+                matrix[row][j] -= factor * matrix[column][j];
+            }
+            right[row] -= factor * right[column];
+        }
+    }
+    for row in (0..size).rev() {
+        let known: f64 = (row + 1..size).map(|j| matrix[row][j] * right[j]).sum();
+        right[row] = (right[row] - known) / matrix[row][row];
+    }
+    right
+}
+
+#[test]
+fn a_pendulum_of_four_links() {
+    let mut motion = pendulum_in_angles(4);
+    assert_equations(
+        "pendulum",
+        &mut motion,
+        |_, y| pendulum_rates(y),
+        |random| (0.0, normals::<8>(random).to_vec()),
+    );
+    let start = [0.5, 0.6, 0.7, 0.8, 0.0, 0.0, 0.0, 0.0];
+    let end = [
+        -0.4475202242698896,
+        -0.5630651741839218,
+        -0.6721297247237881,
+        -0.7491466666332754,
+        0.3083085822102085,
+        0.5135834755977721,
+        0.4758239354145585,
+        0.1617467982161209,
+    ];
+    assert_motion("pendulum", &mut motion, &start, (2.0, &end), &["energy"]);
+}
+
+/// The same accelerations at random states, and the same motion, as in the angles.
+#[test]
+fn a_pendulum_of_three_links_in_redundant_coordinates() {
+    let (mut angles, mut plane) = (pendulum_in_angles(3), pendulum_in_the_plane(3));
+    let in_the_plane = |y: &[f64]| [place(&y[..3]), y[3..].to_vec()].concat();
+    let mut random = SplitMix64::new(5);
+    for _ in 0..STATES {
+        let y = normals::<6>(&mut random);
+        let expected = &rates(&mut angles, 0.0, &y)[3..];
+        let found = &rates(&mut plane, 0.0, &in_the_plane(&y))[6..];
+        assert!(distance(found, expected) < 1e-12, "{y:?}: {found:?}, not {expected:?}");
+        assert!(distance(expected, &pendulum_rates(&y)[3..]) < 1e-12, "{y:?}");
+    }
+    let (start, times) = ([0.5, 0.6, 0.7, 0.0, 0.1, -0.2], [0.5, 1.0, 1.5, 2.0]);
+    let expected = integrate(&mut angles, &start, &times);
+    let found = integrate(&mut plane, &in_the_plane(&start), &times);
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!(distance(found, &in_the_plane(expected)) < 1e-8, "{found:?}, not {expected:?}");
+    }
+}
+
+const BODIES: usize = 6;
+
+/// Sums of the first entries: the velocities q̇ of relative velocities η.
+fn sums<T: Copy + std::ops::AddAssign>(eta: &[T]) -> Vec<T> {
+    let mut sums = eta.to_vec();
+    for i in 1..sums.len() {
+        let before = sums[i - 1];
+        sums[i] += before;
+    }
+    sums
+}
+
+/// tr Λ^power of the tridiagonal matrix with the diagonal −q̇_i/2 beside e^((q_i − q_(i+1))/2)/2.
+fn trace_of_lax_power<'g>(q: &[Expr<'g>], eta: &[Expr<'g>], power: usize) -> Expr<'g> {
+    let velocity = sums(eta);
+    let entry = |i: usize, j: usize| match (i, j) {
+        _ if i == j => -velocity[i] / 2.0,
+        _ if i + 1 == j || j + 1 == i => ((q[i.min(j)] - q[i.max(j)]) / 2.0).exp() / 2.0,
+        _ => Expr::ZERO,
+    };
+    let mut product: Vec<Vec<Expr<'g>>> =
+        (0..BODIES).map(|i| (0..BODIES).map(|j| entry(i, j)).collect()).collect();
+    for _ in 1..power {
+        let next = |i: usize, j: usize| (0..BODIES).map(|m| product[i][m] * entry(m, j)).sum();
+        product = (0..BODIES).map(|i| (0..BODIES).map(|j| next(i, j)).collect()).collect();
+    }
+    (0..BODIES).map(|i| product[i][i]).sum()
+}
+
+/// q̈_i = e^(q_(i−1) − q_i) − e^(q_i − q_(i+1)), in the relative velocities η_1 = q̇_1, η_i = q̇_i − q̇_(i−1).
+#[test]
+fn an_open_toda_chain() {
+    let graph = Graph::new();
+    let mut builder = System::builder(&graph)
+        .coordinates(names("q", BODIES))
+        .quasi_velocities(names("w", BODIES))
+        .kinematics(|_, _, eta| sums(eta))
+        .lagrangian(|_, q, eta| {
+            let kinetic: Expr<'_> = sums(eta).into_iter().map(Expr::square).sum();
+            kinetic / 2.0 - q.windows(2).map(|pair| (pair[0] - pair[1]).exp()).sum::<Expr<'_>>()
+        });
+    let traces: Vec<String> = (1..=BODIES).map(|power| format!("trace {power}")).collect();
+    for (power, name) in (1..=BODIES).zip(&traces) {
+        builder = builder.integral(name, |_, q, eta| trace_of_lax_power(q, eta, power));
+    }
+    let system = builder.build().unwrap();
+    assert_eq!(system.structure().nonzero().count(), 0);
+    let mut motion = system.poincare().unwrap().compile().unwrap();
+
+    let classical = |_: f64, y: &[f64]| {
+        let (q, eta) = y.split_at(BODIES);
+        let mut pull = vec![0.0];
+        pull.extend(q.windows(2).map(|pair| (pair[0] - pair[1]).exp()));
+        pull.push(0.0);
+        let acceleration: Vec<f64> = pull.windows(2).map(|pair| pair[0] - pair[1]).collect();
+        let mut rates = sums(eta);
+        rates.push(acceleration[0]);
+        rates.extend(acceleration.windows(2).map(|pair| pair[1] - pair[0]));
+        rates
+    };
+    assert_equations("chain", &mut motion, classical, |random| (0.0, normals::<12>(random).to_vec()));
+
+    let start = [0.0, 0.5, 1.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.5, 0.0, -1.0, 0.5];
+    let end = [
+        -3.568923427304672,
+        -0.9568613071715469,
+        1.193916106272389,
+        3.828674566760227,
+        6.323452524375003,
+        8.6797415370686,
+        -1.162259008472736,
+        0.02286842264023977,
+        1.033074634740307,
+        1.224023532292371,
+        -0.063080784345197,
+        0.6810043704872663,
+    ];
+    let mut conserved: Vec<&str> = traces.iter().map(String::as_str).collect();
+    conserved.push("energy");
+    assert_motion("chain", &mut motion, &start, (6.0, &end), &conserved);
+}

@@ -1,0 +1,13 @@
+//! Holonomic systems of many forms, described by closures: derived against classical equations, end states against
+//! references of 16 digits, integrals, structure coefficients.
+
+mod holonomic {
+    mod chains;
+    mod forces;
+    mod harness;
+    mod judge;
+    mod pendulums;
+    mod rheonomic;
+    mod rigid_body;
+    mod shared;
+}
