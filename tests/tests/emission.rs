@@ -186,6 +186,31 @@ fn awkward() -> Case {
     )
 }
 
+/// A chain of pendulums, in angles from the vertical: long sums, a full mass matrix.
+fn chain(links: usize) -> Case {
+    let graph = Graph::new();
+    let gravity = graph.symbol("g");
+    let names: Vec<String> = (1..=links).map(|i| format!("θ{i}")).collect();
+    let system = System::builder(&graph)
+        .parameter(gravity, 9.81)
+        .coordinates(&names)
+        .lagrangian(|_, angle, rate| {
+            let [mut right, mut up, mut height] = [Expr::ZERO; 3];
+            let moved = angle.iter().zip(rate).map(|(&angle, &rate)| {
+                right = right + angle.cos() * rate;
+                up = up + angle.sin() * rate;
+                height = height - angle.cos();
+                (right.square() + up.square()) / 2.0 - gravity * height
+            });
+            graph.sum(moved.collect::<Vec<_>>())
+        })
+        .build()
+        .unwrap();
+    let mut random = SplitMix64::new(3);
+    let states = (0..STATES).map(|_| (0.0, (0..2 * links).map(|_| random.normal()).collect(), vec![9.81]));
+    Case::new(&system.poincare().unwrap(), |language| EmitOptions::new(language, "chain"), false, states)
+}
+
 /// A fresh directory for files of this test.
 fn directory(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("emission").join(name);
@@ -397,7 +422,7 @@ fn compile_rust(cases: &[Case], flags: &[&str], directory_name: &str) -> PathBuf
 
 fn all_cases() -> Vec<Case> {
     let fused = ["heavy-top-euler", "charged-particle-induction"].map(|name| Case::fused(name, STATES));
-    MODELS.iter().map(|name| Case::builtin(name, STATES)).chain(fused).chain([awkward()]).collect()
+    MODELS.iter().map(|name| Case::builtin(name, STATES)).chain(fused).chain([awkward(), chain(4)]).collect()
 }
 
 #[test]

@@ -139,15 +139,16 @@ fn show_table(run: &Run) {
     }
 }
 
-/// Draws the motion into `target/demo`.
+/// Draws the motion into `target/demo` of the workspace.
 fn draw(run: &Run) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
     let directory = Path::new("target").join("demo");
-    fs::create_dir_all(&directory)?;
+    fs::create_dir_all(workspace.join(&directory))?;
     let picture = Picture::of(run);
     let mut files = Vec::new();
     for name in ["heavy-top.svg", "heavy-top.png"] {
         let file = directory.join(name);
-        if let Some(destination) = Destination::plot(Some(&file))? {
+        if let Some(destination) = Destination::plot(Some(&workspace.join(&file)))? {
             destination.write_plot(&picture)?;
         }
         files.push(file);

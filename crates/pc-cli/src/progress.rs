@@ -35,13 +35,14 @@ impl Progress {
             return;
         }
         let (from, to) = self.range;
+        let done = (t - from) / (to - from);
+        let left = self.start.elapsed().as_secs_f64() * (1.0 - done).max(0.0) / done;
         let bar = self.bar.get_or_insert_with(|| {
-            let style = ProgressStyle::with_template("  {bar:50} {percent:>3} %   {msg}   {eta} left");
-            let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::new(LENGTH).with_style(style).with_elapsed(self.start.elapsed())
+            let style = ProgressStyle::with_template("  {bar:36} {percent:>3} %  {msg}");
+            ProgressBar::new(LENGTH).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        bar.set_position(((t - from) / (to - from) * LENGTH as f64) as u64);
-        bar.set_message(format!("t = {}", short(t, 5)));
+        bar.set_position((done * LENGTH as f64) as u64);
+        bar.set_message(format!("t = {}, {left:.0} s left", short(t, 5)));
     }
 }
 

@@ -142,6 +142,29 @@ impl Program {
     /// The program as the body of a function; multiply-adds are fused only where they are so in a
     /// [fused](Program::fused) program.
     ///
+    /// ```
+    /// use pc_expr::{Graph, Inputs, Language, Layout, Place, Program, Slot};
+    ///
+    /// let graph = Graph::new();
+    /// let [theta, g] = graph.symbols(["θ", "g"]);
+    /// let inputs = Inputs { time: None, state: vec![theta], parameters: vec![g] };
+    /// let program = Program::new(&graph, &inputs, &[-g * theta.sin()])?;
+    /// let layout = Layout {
+    ///     inputs: Language::C.identifiers(&["θ", "g"], &["torque"]),
+    ///     slots: vec![Slot { place: Place::Entry("*torque".into()), comment: "N m".into(), local: String::new() }],
+    ///     skip_zeros: false,
+    ///     prefix: "pendulum_".into(),
+    ///     reserved: vec!["torque".into()],
+    /// };
+    /// let body = program.emit(Language::C, &layout);
+    /// assert_eq!(
+    ///     body.inputs,
+    ///     "    const double theta = y[0]; /* θ */\n    const double g = p[0];\n    (void)t;\n"
+    /// );
+    /// assert_eq!(body.statements, "    *torque = -g*sin(theta); /* N m */\n");
+    /// # Ok::<(), pc_expr::ExprError>(())
+    /// ```
+    ///
     /// # Panics
     /// If `layout` has not as many identifiers as there are inputs without time, or not as many slots as outputs.
     pub fn emit(&self, language: Language, layout: &Layout) -> Body {

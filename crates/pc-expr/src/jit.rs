@@ -3,7 +3,10 @@
 //! A program becomes machine code in three steps, one file each: `plan` decides what is computed when and what waits
 //! in memory, `emit` writes that down as Cranelift's intermediate code with `circle` writing sines and cosines in
 //! line, and `host` knows the processor and owns the code that results.
-#![expect(unsafe_code, reason = "compiled code is entered through a function pointer, and its memory is freed by hand")]
+#![expect(
+    unsafe_code,
+    reason = "compiled code is entered through a function pointer, and its memory is freed by hand"
+)]
 
 mod circle;
 mod emit;
@@ -26,10 +29,10 @@ const MOST_REGISTERS: usize = i32::MAX as usize / 16;
 
 /// What compiled code is called through: t, the state, the parameters, where the outputs go, scratch memory.
 ///
-/// The pointers lead to as many numbers as [`Jit::program_lengths`](Jit::state_len) say, scratch to
-/// [`Jit::scratch_len`]; a pointer to no numbers may be anything. Outputs and scratch are written and overlap nothing
-/// else; an output may be written before the last input is read. The code keeps no state: any number of threads may
-/// run it at once, each with its own outputs and scratch.
+/// The pointers lead to as many numbers as [`Jit`] says, those of scratch to [`Jit::scratch_len`]; a pointer to no
+/// numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
+/// the last input is read. The code keeps no state, so any number of threads may run it at once, each with its own
+/// outputs and scratch.
 pub type Entry = unsafe extern "C" fn(
     t: f64,
     state: *const f64,
@@ -174,7 +177,11 @@ impl Kernel for Jit {
     /// # Panics
     /// If a slice has not the length that the program says: the code would read or write beyond it.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
-        assert_eq!([state.len(), parameters.len(), outputs.len()], self.lengths, "state, parameters, outputs");
+        assert_eq!(
+            [state.len(), parameters.len(), outputs.len()],
+            self.lengths,
+            "state, parameters, outputs"
+        );
         let entry = self.code.entry();
         // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked and within
         // `scratch_len` numbers of scratch, and exclusive borrows keep outputs and scratch apart from the rest.

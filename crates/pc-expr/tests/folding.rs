@@ -1,7 +1,6 @@
 //! What a graph takes to be the same expression, and what it must not.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
-#![expect(clippy::eq_op, reason = "x − x and x/x are what is tested")]
 
 mod common;
 

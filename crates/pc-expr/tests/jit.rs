@@ -5,7 +5,8 @@
 use std::sync::Arc;
 
 use pc_expr::{
-    Expr, Folding, Function, Graph, Inputs, Instruction, Interpreter, Jit, JitOptions, Kernel, Program, Register,
+    Expr, Folding, Function, Graph, Inputs, Instruction, Interpreter, Jit, JitOptions, Kernel, Program,
+    Register,
 };
 use proptest::prelude::*;
 
@@ -94,7 +95,8 @@ fn random_program(random: &mut Random, size: usize, smooth: bool) -> Program {
             values.push(value);
         }
     }
-    let outputs: Vec<Expr<'_>> = (0..1 + random.below(8)).map(|i| values[(values.len() - 1).saturating_sub(3 * i)]).collect();
+    let outputs: Vec<Expr<'_>> =
+        (0..1 + random.below(8)).map(|i| values[(values.len() - 1).saturating_sub(3 * i)]).collect();
     let inputs = Inputs { time: Some(t), state, parameters };
     Program::new(&graph, &inputs, &outputs).unwrap()
 }
@@ -182,7 +184,8 @@ fn with_bounds(program: &Program, inputs: &(f64, [f64; STATE], [f64; PARAMETERS]
                 let (a, b) = (get(a), get(b));
                 let value = a.value / b.value;
                 let least = b.value.abs() - b.error;
-                let error = if least > 0.0 { (a.error + value.abs() * b.error) / least } else { f64::INFINITY };
+                let error =
+                    if least > 0.0 { (a.error + value.abs() * b.error) / least } else { f64::INFINITY };
                 Bounded { value, error: error + value.abs() * f64::EPSILON }
             }
             Instruction::Negate(a) => Bounded { value: -get(a).value, error: get(a).error },
@@ -425,7 +428,8 @@ fn forks_outlive_their_original() {
     assert_eq!(evaluate(&mut *fork, &inputs, program.outputs_len()), expected);
     let mut second = fork.fork();
     drop(fork);
-    let found = std::thread::spawn(move || evaluate(&mut *second, &inputs, program.outputs_len())).join().unwrap();
+    let found =
+        std::thread::spawn(move || evaluate(&mut *second, &inputs, program.outputs_len())).join().unwrap();
     assert_eq!(found, expected);
 }
 

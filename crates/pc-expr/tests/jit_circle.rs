@@ -166,7 +166,8 @@ fn zeros_keep_their_sign() {
 #[test]
 fn arguments_out_of_range_take_the_library() {
     let (mut single, mut double) = kernels();
-    let far = [100_000.000_000_1, -2e5, 1e9, 1e22, -1e300, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    let far =
+        [100_000.000_000_1, -2e5, 1e9, 1e22, -1e300, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
     let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
     for x in far {
         let mut one = [7.0; 2];
@@ -189,7 +190,8 @@ fn arguments_out_of_range_take_the_library() {
 fn registers_survive_the_library() {
     let graph = Graph::new();
     let state = graph.symbols(["a", "b", "c", "d", "e", "f"]).to_vec();
-    let sum = |s: f64| graph.sum(state.iter().enumerate().map(|(i, &x)| (x * (s + i as f64)).sin() * (x + s)));
+    let sum =
+        |s: f64| graph.sum(state.iter().enumerate().map(|(i, &x)| (x * (s + i as f64)).sin() * (x + s)));
     let outputs: Vec<_> = (1..6).map(|i| sum(f64::from(i)) * sum(0.5) + state[0]).collect();
     let inputs = Inputs { time: None, state, parameters: vec![] };
     let program = Program::new(&graph, &inputs, &outputs).unwrap();

@@ -1,7 +1,5 @@
 //! Random sequences of operations on shared nodes, rich in hidden identities, against direct evaluation.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 mod common;
 
 use common::{Bounded, call};

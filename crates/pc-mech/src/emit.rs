@@ -120,6 +120,23 @@ impl<'g> Equations<'g> {
     /// system gives the same text, and the values are bit for bit those of [`compile`](Equations::compile) where the
     /// mathematical library is the same and operations are not fused.
     ///
+    /// ```
+    /// use pc_mech::{EmitOptions, Graph, Language, System};
+    ///
+    /// let graph = Graph::new();
+    /// let g = graph.symbol("g");
+    /// let pendulum = System::builder(&graph)
+    ///     .parameter(g, 9.81)
+    ///     .coordinates(["θ"])
+    ///     .lagrangian(|_, x, v| v[0].square() / 2.0 + g * x[0].cos())
+    ///     .build()?;
+    /// let options = EmitOptions::new(Language::C, "pendulum").start(0.0, &[1.0, 0.0], 10.0);
+    /// let files = pendulum.poincare()?.emit(&options)?;
+    /// assert_eq!([&files[0].name, &files[1].name], ["pendulum.h", "pendulum.c"]);
+    /// assert!(files[1].text.contains("    ydot[1] = -g*sin(theta); /* θ'' */\n"));
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MechError::Shape`] if the start state has the wrong length,
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared

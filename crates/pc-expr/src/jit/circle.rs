@@ -11,7 +11,8 @@
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
-    AbiParam, BlockArg, ConstantData, InstBuilder, MemFlagsData, Signature, StackSlotData, StackSlotKind, Type, Value, types,
+    AbiParam, BlockArg, ConstantData, InstBuilder, MemFlagsData, Signature, StackSlotData, StackSlotKind,
+    Type, Value, types,
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
@@ -29,21 +30,21 @@ const HALF_PI: [f64; 3] =
     [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
 /// (sin r − r)/r³ in powers of r².
 const SIN: [f64; 6] = [
-    -1.666_666_666_666_663_07e-1,
-    8.333_333_333_322_118_59e-3,
-    -1.984_126_982_958_953_86e-4,
-    2.755_731_362_138_572_45e-6,
-    -2.505_074_776_285_780_73e-8,
-    1.589_623_015_765_465_68e-10,
+    -1.666_666_666_666_663e-1,
+    8.333_333_333_322_118e-3,
+    -1.984_126_982_958_954e-4,
+    2.755_731_362_138_572_2e-6,
+    -2.505_074_776_285_780_7e-8,
+    1.589_623_015_765_465_6e-10,
 ];
 /// (cos r − 1 + r²/2)/r⁴ in powers of r².
 const COS: [f64; 6] = [
-    4.166_666_666_666_659_29e-2,
-    -1.388_888_888_887_305_64e-3,
-    2.480_158_728_885_170_45e-5,
-    -2.755_731_417_929_673_88e-7,
-    2.087_570_084_197_473_17e-9,
-    -1.135_853_652_138_768_17e-11,
+    4.166_666_666_666_659_5e-2,
+    -1.388_888_888_887_305_6e-3,
+    2.480_158_728_885_170_4e-5,
+    -2.755_731_417_929_674e-7,
+    2.087_570_084_197_473e-9,
+    -1.135_853_652_138_768_2e-11,
 ];
 
 /// Writes (sin x, cos x) of one or two arguments.

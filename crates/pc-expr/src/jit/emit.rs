@@ -168,7 +168,19 @@ impl<'a> Emitter<'a> {
     ) -> Emitter<'a> {
         let arguments = open(&mut b);
         let [t, state, parameters, outputs, scratch] = [0, 1, 2, 3, 4].map(|i| arguments[i]);
-        Emitter { host, program, plan, values, b, t, state, parameters, outputs, scratch, start: start as u32 }
+        Emitter {
+            host,
+            program,
+            plan,
+            values,
+            b,
+            t,
+            state,
+            parameters,
+            outputs,
+            scratch,
+            start: start as u32,
+        }
     }
 
     fn finish(self) {
@@ -211,7 +223,8 @@ impl<'a> Emitter<'a> {
             Step::Circles(first, second) => {
                 let circles = [Some(first), second];
                 let circles = || circles.iter().flatten();
-                let arguments: Vec<Value> = circles().map(|circle| self.value(circle.argument, now)).collect();
+                let arguments: Vec<Value> =
+                    circles().map(|circle| self.value(circle.argument, now)).collect();
                 let results = circle::emit(&mut self.b, self.host, &arguments);
                 self.free(now);
                 for (circle, (sin, cos)) in circles().zip(results) {
@@ -362,8 +375,7 @@ impl<'a> Emitter<'a> {
                 self.b.ins().select(positive, one, rest)
             }
             Function::Min | Function::Max => {
-                let better =
-                    if function == Function::Min { FloatCC::LessThan } else { FloatCC::GreaterThan };
+                let better = if function == Function::Min { FloatCC::LessThan } else { FloatCC::GreaterThan };
                 let second = self.b.ins().fcmp(better, y, x);
                 let value = self.b.ins().select(second, y, x);
                 self.unless_unordered(x, y, value)

@@ -43,10 +43,9 @@ impl Host {
         flags.set("is_pic", "false")?;
         flags.set("probestack_strategy", "inline")?;
         let isa = cranelift_native::builder()?.finish(settings::Flags::new(flags))?;
-        let fma = match std::env::consts::ARCH {
-            "x86_64" => isa.isa_flags().iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true)),
-            _ => true,
-        };
+        let flags = isa.isa_flags();
+        let fma = cfg!(target_arch = "aarch64") // always there
+            || flags.iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
         let mut host = Host { isa, fma, far_circle: None };
         if fma {
             host.far_circle = Some(circle::compile_far(&host)?);

@@ -179,7 +179,8 @@ fn with_circles(program: &Program, order: &[u32]) -> Vec<Step> {
     // By instruction: its circle.
     let mut circle_of = vec![u32::MAX; program.code().len()];
     for &i in order {
-        let Instruction::Call(function @ (Function::Sin | Function::Cos), [argument, ..]) = program.code()[i as usize]
+        let Instruction::Call(function @ (Function::Sin | Function::Cos), [argument, ..]) =
+            program.code()[i as usize]
         else {
             continue;
         };

@@ -26,7 +26,9 @@ pub(crate) enum Error {
     #[error("no {kernel} for {system}: {cause}")]
     Kernel { kernel: &'static str, system: String, cause: String },
     /// Two variants of a right-hand side differ by more than rounding.
-    #[error("{system}: `{variant}` differs from `{reference}` in component {component} by {error:e} at {state:?}")]
+    #[error(
+        "{system}: `{variant}` differs from `{reference}` in component {component} by {error:e} at {state:?}"
+    )]
     Disagreement {
         system: String,
         variant: String,

@@ -26,7 +26,11 @@ struct Benchmark {
 }
 
 const BENCHMARKS: &[Benchmark] = &[
-    Benchmark { name: "rhs", about: "one evaluation of a right-hand side, derived and by hand", run: rhs::run },
+    Benchmark {
+        name: "rhs",
+        about: "one evaluation of a right-hand side, derived and by hand",
+        run: rhs::run,
+    },
     Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];

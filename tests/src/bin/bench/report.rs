@@ -34,7 +34,8 @@ impl Report {
     /// Adds a table's heading.
     pub(crate) fn columns(&mut self, names: &[&str]) {
         self.line(format!("| {} |", names.join(" | ")));
-        let rules: Vec<&str> = names.iter().enumerate().map(|(i, _)| if i == 0 { "---" } else { "---:" }).collect();
+        let rules: Vec<&str> =
+            names.iter().enumerate().map(|(i, _)| if i == 0 { "---" } else { "---:" }).collect();
         self.line(format!("| {} |", rules.join(" | ")));
     }
 

@@ -1,8 +1,9 @@
 //! `bench rhs`: one evaluation of ẏ = f(y), derived and by hand.
 
+use std::hint::black_box;
 use std::sync::Arc;
 
-use pc_expr::{Inputs, Interpreter, Kernel, Program};
+use pc_expr::{Inputs, Interpreter, Jit, Kernel, Program};
 use pc_mech::{Equations, Graph, VectorField};
 use pc_tests::classical::SplitMix64;
 
@@ -24,10 +25,19 @@ struct KernelKind {
 }
 
 /// Every kernel is timed alike.
-const KERNELS: &[KernelKind] = &[KernelKind {
-    name: "interpreter",
-    make: |program| Ok(Box::new(Interpreter::new(Arc::new(program.clone())))),
-}];
+const KERNELS: &[KernelKind] = &[
+    KernelKind {
+        name: "interpreter",
+        make: |program| Ok(Box::new(Interpreter::new(Arc::new(program.clone())))),
+    },
+    KernelKind {
+        name: "jit",
+        make: |program| match Jit::new(program) {
+            Ok(jit) => Ok(Box::new(jit)),
+            Err(error) => Err(error.to_string()),
+        },
+    },
+];
 
 /// A kernel with its parameters against the code by hand: one ratio for each system.
 struct Comparison {
@@ -77,11 +87,8 @@ struct Entry<'a> {
 }
 
 fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) -> Result<(), Error> {
-    let mut entries = vec![Entry {
-        variant: Variant::new("empty", |y: &[f64], dy: &mut [f64]| dy.copy_from_slice(y)),
-        operations: None,
-        comparison: None,
-    }];
+    let mut entries =
+        vec![Entry { variant: Variant::new("empty", empty), operations: None, comparison: None }];
     for &(name, hand) in &case.hand {
         entries.push(Entry { variant: Variant::new(name, hand), operations: None, comparison: None });
     }
@@ -96,7 +103,9 @@ fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) ->
             let parameters = parameters.clone();
             let name = if bound { format!("{}, bound", kind.name) } else { kind.name.to_owned() };
             entries.push(Entry {
-                variant: Variant::new(name, move |y: &[f64], dy: &mut [f64]| kernel.eval(0.0, y, &parameters, dy)),
+                variant: Variant::new(name, move |y: &[f64], dy: &mut [f64]| {
+                    kernel.eval(0.0, y, &parameters, dy)
+                }),
                 operations: Some(program.code().len()),
                 comparison: comparisons.iter().position(|c| c.kernel == kind.name && c.bound == bound),
             });
@@ -160,6 +169,13 @@ fn program(equations: &Equations<'_>) -> Result<(Program, Vec<f64>), Error> {
     let mut outputs = equations.velocities().to_vec();
     outputs.extend(equations.accelerations());
     Ok((Program::new(system.graph(), &inputs, &outputs)?, values))
+}
+
+/// ẏ = y, number by number.
+fn empty(y: &[f64], dy: &mut [f64]) {
+    for (dy, y) in dy.iter_mut().zip(y) {
+        *dy = black_box(*y);
+    }
 }
 
 /// Compares all variants but the empty one with the first by hand.

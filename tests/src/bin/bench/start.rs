@@ -20,7 +20,8 @@ const COMMAND_LINES: [&[&str]; 2] =
 /// [`Error::Missing`] where there is no program and none can be built.
 pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     let program = program()?;
-    report.line(format!("ms from start to exit, {RUNS} runs of each command in turns, output thrown away.\n"));
+    report
+        .line(format!("ms from start to exit, {RUNS} runs of each command in turns, output thrown away.\n"));
     let mut times = [Times::default(), Times::default()];
     for _ in 0..RUNS {
         for (arguments, times) in COMMAND_LINES.iter().zip(&mut times) {

@@ -7,6 +7,11 @@ use pc_tests::classical::{SplitMix64, sample};
 use crate::error::Error;
 use crate::hand::{self, Hand};
 
+/// Draws a state.
+type Draw = dyn Fn(&mut SplitMix64) -> Vec<f64>;
+/// Derives a case in a graph.
+type Derive = fn(&Graph) -> Result<Case<'_>, Error>;
+
 /// A system with its equations derived and written by hand.
 pub(crate) struct Case<'g> {
     /// What the table calls it.
@@ -16,11 +21,11 @@ pub(crate) struct Case<'g> {
     /// The equations by hand; the first is what the others are compared with.
     pub(crate) hand: Vec<(&'static str, Hand)>,
     /// A random state at which they are regular.
-    pub(crate) state: Box<dyn Fn(&mut SplitMix64) -> Vec<f64>>,
+    pub(crate) state: Box<Draw>,
 }
 
 /// All of them.
-pub(crate) const SYSTEMS: &[fn(&Graph) -> Result<Case<'_>, Error>] = &[
+pub(crate) const SYSTEMS: &[Derive] = &[
     top_in_poisson_variables,
     top_in_euler_angles,
     top_with_quaternion,

@@ -68,11 +68,7 @@ fn in_quaternion<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
     dy[2] = fma::<FMA>(q0, h2, fma::<FMA>(q3, h1, -(q1 * h3)));
     dy[3] = fma::<FMA>(q0, h3, fma::<FMA>(q1, h2, -(q2 * h1)));
     let (p1, p2) = (fma::<FMA>(q1, q3, -(q0 * q2)), fma::<FMA>(q2, q3, q0 * q1));
-    let vertical = [
-        p1 + p1,
-        p2 + p2,
-        fma::<FMA>(q0, q0, q3 * q3) - fma::<FMA>(q1, q1, q2 * q2),
-    ];
+    let vertical = [p1 + p1, p2 + p2, fma::<FMA>(q0, q0, q3 * q3) - fma::<FMA>(q1, q1, q2 * q2)];
     let mut omega = [0.0; 3];
     acceleration::<FMA>(vertical, [w1, w2, w3], &mut omega);
     dy[4..].copy_from_slice(&omega);
