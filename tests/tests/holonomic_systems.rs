@@ -3,6 +3,7 @@
 
 mod holonomic {
     mod chains;
+    mod closed_forms;
     mod forces;
     mod harness;
     mod judge;

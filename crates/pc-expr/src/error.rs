@@ -9,6 +9,9 @@ pub enum ExprError {
         /// Text of the dividend.
         dividend: String,
     },
+    /// An expression that no value of the symbols gives a value to, such as log(−1).
+    #[error("an expression is undefined: a constant in it has no finite value")]
+    Undefined,
     /// A symbol that is neither an input of the program nor given a value.
     #[error("the symbol `{symbol}` has no value")]
     UnboundSymbol {

@@ -82,14 +82,17 @@ impl Graph {
         self.with(|dag| dag.zero_divisions().len())
     }
 
-    /// The first division by an expression that is identically zero, if there was one.
+    /// Whether all expressions are defined.
     ///
     /// # Errors
-    /// [`ExprError::DivisionByZero`] with the dividend.
-    pub fn check(&self) -> Result<(), ExprError> {
-        let dividend = self.with(|dag| dag.zero_divisions().first().copied());
-        match dividend {
-            None => Ok(()),
+    /// If not, [`ExprError::DivisionByZero`] with the dividend of the first division by an expression that is
+    /// identically zero, or [`ExprError::Undefined`] if there was none.
+    pub fn check<'g>(&'g self, expressions: &[Expr<'g>]) -> Result<(), ExprError> {
+        if !expressions.iter().any(|x| x.is_undefined()) {
+            return Ok(());
+        }
+        match self.with(|dag| dag.zero_divisions().first().copied()) {
+            None => Err(ExprError::Undefined),
             Some(atom) => Err(ExprError::DivisionByZero { dividend: self.expr(atom).to_string() }),
         }
     }

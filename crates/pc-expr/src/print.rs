@@ -5,11 +5,15 @@ use crate::expr::Expr;
 use crate::function::Function;
 use crate::number::Number;
 
+mod latex;
+
 /// How an expression is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// The expression language, which the parser reads back.
     Text,
+    /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
+    Latex,
 }
 
 /// Sub-expressions nested deeper than this, or longer than `LONG` when written out, are abbreviated to `…`.
@@ -41,12 +45,68 @@ impl Piece {
 }
 
 pub(crate) fn print(expr: Expr<'_>, style: Style) -> String {
-    let Style::Text = style;
     match (expr.graph(), expr.atom()) {
-        (_, Atom::Constant(c)) => number(c).text,
+        (_, Atom::Constant(c)) => style.number(c).text,
         (None, Atom::Node(_)) => "?".to_owned(),
-        (Some(graph), Atom::Node(id)) => graph.with(|dag| piece(dag, id, 0).text),
+        (Some(graph), Atom::Node(id)) => graph.with(|dag| Printer { dag, style }.piece(id, 0).text),
     }
+}
+
+impl Style {
+    fn number(self, c: Number) -> Piece {
+        match self {
+            Style::Text => number(c),
+            Style::Latex => latex::number(c),
+        }
+    }
+
+    fn symbol(self, name: &str) -> Piece {
+        Piece::atom(match self {
+            Style::Text => name.to_owned(),
+            Style::Latex => latex::symbol(name),
+        })
+    }
+
+    fn call(self, function: Function, args: Vec<Piece>) -> Piece {
+        match self {
+            Style::Text => {
+                let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
+                Piece::atom(format!("{}({})", function.name(), args.join(", ")))
+            }
+            Style::Latex => latex::call(function, args),
+        }
+    }
+
+    fn power(self, base: Piece, exponent: Piece) -> Piece {
+        let text = match self {
+            Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
+            Style::Latex => latex::power(base, &exponent.text),
+        };
+        Piece { text, binding: Binding::Power }
+    }
+
+    fn product(self, factors: Vec<Piece>) -> String {
+        let factors: Vec<String> = factors.into_iter().map(|p| p.at_least(Binding::Product)).collect();
+        match self {
+            Style::Text => factors.join("*"),
+            Style::Latex => latex::juxtaposed(&factors),
+        }
+    }
+
+    fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
+        match self {
+            Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
+            Style::Text if below.len() == 1 => {
+                format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
+            }
+            Style::Text => format!("{}/({})", self.product(above), self.product(below)),
+        }
+    }
+}
+
+struct Printer<'d> {
+    dag: &'d Dag,
+    style: Style,
 }
 
 pub(crate) fn number(c: Number) -> Piece {
@@ -61,59 +121,106 @@ pub(crate) fn number(c: Number) -> Piece {
     Piece { text, binding }
 }
 
-fn piece(dag: &Dag, id: NodeId, depth: usize) -> Piece {
-    if depth > DEEP || (depth > 0 && dag.cost(id) > LONG) {
-        return Piece::atom("…");
-    }
-    match dag.node(id) {
-        Node::Constant(c) => number(c),
-        Node::Symbol(index) => Piece::atom(dag.symbol_name(index)),
-        Node::Call { function, args } => match function {
-            Function::Pow => {
-                let [base, exponent] = [args[0], args[1]].map(|arg| piece(dag, arg, depth + 1));
-                let [base, exponent] = [base, exponent].map(|piece| piece.at_least(Binding::Atom));
-                Piece { text: format!("{base}^{exponent}"), binding: Binding::Power }
+impl Printer<'_> {
+    fn piece(&self, id: NodeId, depth: usize) -> Piece {
+        if depth > DEEP || (depth > 0 && self.dag.cost(id) > LONG) {
+            return Piece::atom("…");
+        }
+        match self.dag.node(id) {
+            Node::Constant(c) => self.style.number(c),
+            Node::Symbol(index) => self.style.symbol(self.dag.symbol_name(index)),
+            Node::Call { function, args } => {
+                let mut args: Vec<Piece> =
+                    Dag::args(function, &args).iter().map(|&arg| self.piece(arg, depth + 1)).collect();
+                match function {
+                    Function::Pow => {
+                        let exponent = args.remove(1);
+                        self.style.power(args.remove(0), exponent)
+                    }
+                    _ => self.style.call(function, args),
+                }
             }
-            _ => {
-                let args: Vec<String> =
-                    Dag::args(function, &args).iter().map(|&arg| piece(dag, arg, depth + 1).text).collect();
-                Piece::atom(format!("{}({})", function.name(), args.join(", ")))
+            Node::Product { .. } => self.monomial(Number::ONE, id, depth),
+            Node::Sum { constant, terms } => {
+                let mut signed = Vec::new();
+                self.signed_terms(Number::ONE, constant, self.dag.terms(terms), depth, &mut signed);
+                join(signed)
             }
-        },
-        Node::Product { .. } => monomial(dag, Number::ONE, id, depth),
-        Node::Sum { constant, terms } => {
-            let mut signed = Vec::new();
-            signed_terms(dag, Number::ONE, constant, dag.terms(terms), depth, &mut signed);
-            join(signed)
         }
     }
-}
 
-/// The terms of q·(c + Σ…), each with its sign taken out; a scaled sum in brackets stays one term.
-fn signed_terms(
-    dag: &Dag,
-    q: Number,
-    constant: Number,
-    terms: &[(NodeId, Number)],
-    depth: usize,
-    out: &mut Vec<(bool, Piece)>,
-) {
-    let mut terms: Vec<(NodeId, Number)> = terms.to_vec();
-    terms.sort_by_cached_key(|&(node, _)| order_key(dag, node));
-    for (node, coefficient) in terms {
-        let coefficient = coefficient * q;
-        match dag.node(node) {
-            Node::Sum { constant, terms }
-                if depth <= DEEP && opens(coefficient, constant, dag.terms(terms)) =>
-            {
-                signed_terms(dag, coefficient, constant, dag.terms(terms), depth + 1, out);
+    /// The terms of q·(c + Σ…), each with its sign taken out; a scaled sum in brackets stays one term.
+    fn signed_terms(
+        &self,
+        q: Number,
+        constant: Number,
+        terms: &[(NodeId, Number)],
+        depth: usize,
+        out: &mut Vec<(bool, Piece)>,
+    ) {
+        let mut terms: Vec<(NodeId, Number)> = terms.to_vec();
+        terms.sort_by_cached_key(|&(node, _)| order_key(self.dag, node));
+        for (node, coefficient) in terms {
+            let coefficient = coefficient * q;
+            match self.dag.node(node) {
+                Node::Sum { constant, terms }
+                    if depth <= DEEP && opens(coefficient, constant, self.dag.terms(terms)) =>
+                {
+                    self.signed_terms(coefficient, constant, self.dag.terms(terms), depth + 1, out);
+                }
+                _ => out.push((coefficient.is_negative(), self.monomial(coefficient.abs(), node, depth))),
             }
-            _ => out.push((coefficient.is_negative(), monomial(dag, coefficient.abs(), node, depth))),
+        }
+        let constant = constant * q;
+        if !constant.is_zero() {
+            out.push((constant.is_negative(), self.style.number(constant.abs())));
         }
     }
-    let constant = constant * q;
-    if !constant.is_zero() {
-        out.push((constant.is_negative(), number(constant.abs())));
+
+    /// q·n as a product of factors over a product of divisors.
+    fn monomial(&self, q: Number, node: NodeId, depth: usize) -> Piece {
+        let single = [(node, 1)];
+        let mut factors = match self.dag.node(node) {
+            Node::Product { factors } => self.dag.factors(factors).to_vec(),
+            _ => single.to_vec(),
+        };
+        factors.sort_by_cached_key(|&(factor, _)| factor_key(self.dag, factor));
+        let power = |factor: NodeId, e: i32| {
+            let base = self.piece(factor, depth + 1);
+            if e == 1 && matches!(self.dag.node(factor), Node::Sum { .. }) {
+                let alone = factors.len() == 1 && q.is_one();
+                if alone { base } else { Piece::atom(base.at_least(Binding::Power)) }
+            } else if e == 1 {
+                base
+            } else {
+                self.style.power(base, Piece::atom(e.to_string()))
+            }
+        };
+        let collect = |sign: i32| -> Vec<Piece> {
+            factors
+                .iter()
+                .filter(|(_, e)| e.signum() == sign)
+                .map(|&(factor, e)| power(factor, e.abs()))
+                .collect()
+        };
+        let (mut above, mut below) = (collect(1), collect(-1));
+        let mut front = q;
+        if let Number::Rational { num, den } = q
+            && !below.is_empty()
+            && number(q).binding == Binding::Product
+        {
+            front = Number::ratio(num, 1);
+            below.insert(0, self.style.number(Number::ratio(den, 1)));
+        }
+        if !front.is_one() || above.is_empty() {
+            above.insert(0, self.style.number(front));
+        }
+        if above.len() == 1 && below.is_empty() {
+            return above.remove(0);
+        }
+        let text =
+            if below.is_empty() { self.style.product(above) } else { self.style.quotient(above, below) };
+        Piece { text, binding: Binding::Product }
     }
 }
 
@@ -146,62 +253,6 @@ fn join(mut signed: Vec<(bool, Piece)>) -> Piece {
         text.push_str(&if alone && !negative { piece.text } else { piece.at_least(Binding::Product) });
     }
     Piece { text, binding }
-}
-
-/// q·n as a product of factors over a product of divisors.
-fn monomial(dag: &Dag, q: Number, node: NodeId, depth: usize) -> Piece {
-    let single = [(node, 1)];
-    let mut factors = match dag.node(node) {
-        Node::Product { factors } => dag.factors(factors).to_vec(),
-        _ => single.to_vec(),
-    };
-    factors.sort_by_cached_key(|&(factor, _)| factor_key(dag, factor));
-    let power = |factor: NodeId, e: i32| {
-        let base = piece(dag, factor, depth + 1);
-        if e == 1 && matches!(dag.node(factor), Node::Sum { .. }) {
-            let alone = factors.len() == 1 && q.is_one();
-            if alone { base } else { Piece::atom(base.at_least(Binding::Power)) }
-        } else if e == 1 {
-            base
-        } else {
-            Piece { text: format!("{}^{e}", base.at_least(Binding::Atom)), binding: Binding::Power }
-        }
-    };
-    let collect = |sign: i32| -> Vec<Piece> {
-        factors
-            .iter()
-            .filter(|(_, e)| e.signum() == sign)
-            .map(|&(factor, e)| power(factor, e.abs()))
-            .collect()
-    };
-    let (mut above, mut below) = (collect(1), collect(-1));
-    let mut front = q;
-    if let Number::Rational { num, den } = q
-        && !below.is_empty()
-        && number(q).binding == Binding::Product
-    {
-        front = Number::ratio(num, 1);
-        below.insert(0, number(Number::ratio(den, 1)));
-    }
-    if !front.is_one() || above.is_empty() {
-        above.insert(0, number(front));
-    }
-    if above.len() == 1 && below.is_empty() {
-        return above.remove(0);
-    }
-    let product = |pieces: Vec<Piece>| {
-        pieces.into_iter().map(|p| p.at_least(Binding::Product)).collect::<Vec<String>>().join("*")
-    };
-    let mut text = product(above);
-    match below.len() {
-        0 => {}
-        1 => {
-            text.push('/');
-            text.extend(below.into_iter().map(|p| p.at_least(Binding::Power)));
-        }
-        _ => text.push_str(&format!("/({})", product(below))),
-    }
-    Piece { text, binding: Binding::Product }
 }
 
 /// Symbols in the order of their making, then calls, then sums.

@@ -114,9 +114,7 @@ impl Program {
         inputs: &Inputs<'g>,
         outputs: &[Expr<'g>],
     ) -> Result<Program, ExprError> {
-        if outputs.iter().any(|x| x.is_undefined()) {
-            graph.check()?;
-        }
+        graph.check(outputs)?;
         let symbols: Vec<Option<NodeId>> = std::iter::once(inputs.time.map(|t| t.symbol_in(graph)))
             .chain(inputs.state.iter().chain(&inputs.parameters).map(|s| Some(s.symbol_in(graph))))
             .collect();

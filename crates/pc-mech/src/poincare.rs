@@ -72,7 +72,8 @@ impl<'g> System<'g> {
             .collect();
 
         let energy = graph.dot(momenta.iter().copied(), eta.iter().copied()) - system.lagrangian;
-        graph.check()?;
+        graph.check(&right)?;
+        graph.check(mass.entries())?;
 
         // Collected by products of quasi-velocities, then by parameters, the equations are those of a book.
         let order = system.collecting_order();

@@ -321,7 +321,10 @@ impl<'g> SystemBuilder<'g> {
         if forces.len() != k {
             return Err(MechError::Shape { what: "the list of forces", found: forces.len(), expected: k });
         }
-        self.graph.check()?;
+        self.graph.check(&[lagrangian])?;
+        self.graph.check(&forces)?;
+        self.graph.check(frame.b().entries())?;
+        self.graph.check(frame.b0())?;
         Ok(System {
             frame,
             structure,

@@ -1,6 +1,6 @@
 //! Generalised forces (8), and the power they and the changing of the frame give (10).
 
-use pc_mech::{Expr, Graph, System};
+use pc_mech::{Expr, Folding, Graph, System};
 use pc_tests::classical::SplitMix64;
 use pc_tests::closed_form::damped_oscillator;
 
@@ -174,8 +174,9 @@ fn power_and_the_canonical_equations() {
         ("oscillator", oscillator),
         ("scaled oscillator", SCALED_OSCILLATOR),
     ];
-    for (name, description) in described {
-        let graph = Graph::new();
+    let foldings = [Folding::ByValue, Folding::Structural];
+    for ((name, description), folding) in described.into_iter().flat_map(|d| foldings.map(|f| (d, f))) {
+        let graph = Graph::with_folding(folding);
         let system = description
             .builder(&graph)
             .forces(|t, x, eta| {

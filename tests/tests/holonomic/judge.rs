@@ -5,8 +5,8 @@ use pc_tests::classical::SplitMix64;
 
 use super::harness::{STATES, distance, integrate, rates};
 
-/// Some dozens of products of numbers of order one to ten, divided by mass matrices of condition below 1000: a few
-/// thousand units of rounding.
+/// Some dozens of products of numbers of order one to ten, divided by mass matrices of condition below 1000: at most a
+/// few thousand units of rounding.
 const ROUNDING: f64 = 1e-12;
 /// An integration at rtol = 1e-12 makes errors near 1e-10; the motions magnify those of the start up to 100 times.
 const ARRIVAL: f64 = 1e-8;

@@ -6,9 +6,9 @@ use pc_tests::classical::SplitMix64;
 use super::harness::rates;
 use super::jet::{Jet, VARIABLES, solve};
 
-/// Sums of some dozens of terms and the solution of systems of condition below 100: some thousand units of rounding
-/// of the largest term, with room for cancellation within the terms.
-const TOLERANCE: f64 = 1e-10;
+/// Sums of some dozens of terms and the solution of two systems of condition below 10: at most a few thousand units
+/// of rounding of the largest term. A forgotten or turned term makes an error of order one.
+const TOLERANCE: f64 = 1e-12;
 const POINTS: usize = 5;
 
 /// How quasi-velocities are described.
@@ -273,22 +273,22 @@ fn two_velocities_in_a_random_frame() {
 
 #[test]
 fn three_velocities_in_a_random_frame() {
-    assert_lagrange(100..132, 3, Form::Velocities, Folding::ByValue);
+    assert_lagrange(100..164, 3, Form::Velocities, Folding::ByValue);
 }
 
 #[test]
 fn two_velocities_by_random_definitions() {
-    assert_lagrange(200..232, 2, Form::Definitions, Folding::ByValue);
+    assert_lagrange(200..264, 2, Form::Definitions, Folding::ByValue);
 }
 
 #[test]
 fn three_velocities_by_random_definitions() {
-    assert_lagrange(300..308, 3, Form::Definitions, Folding::ByValue);
+    assert_lagrange(300..332, 3, Form::Definitions, Folding::ByValue);
 }
 
 #[test]
 fn two_velocities_and_a_redundant_coordinate() {
-    assert_lagrange(400..432, 2, Form::Redundant, Folding::ByValue);
+    assert_lagrange(400..464, 2, Form::Redundant, Folding::ByValue);
 }
 
 #[test]

@@ -1,0 +1,166 @@
+//! The words of LaTeX for the pieces of an expression.
+
+use super::{Binding, Piece};
+use crate::function::Function;
+use crate::number::Number;
+
+/// Greek letters by the names that LaTeX has for them.
+const GREEK: &[(char, &str)] = &[
+    ('α', "alpha"),
+    ('β', "beta"),
+    ('γ', "gamma"),
+    ('δ', "delta"),
+    ('ε', "varepsilon"),
+    ('ζ', "zeta"),
+    ('η', "eta"),
+    ('θ', "theta"),
+    ('ι', "iota"),
+    ('κ', "kappa"),
+    ('λ', "lambda"),
+    ('μ', "mu"),
+    ('ν', "nu"),
+    ('ξ', "xi"),
+    ('π', "pi"),
+    ('ρ', "rho"),
+    ('ς', "varsigma"),
+    ('σ', "sigma"),
+    ('τ', "tau"),
+    ('υ', "upsilon"),
+    ('φ', "varphi"),
+    ('χ', "chi"),
+    ('ψ', "psi"),
+    ('ω', "omega"),
+    ('Γ', "Gamma"),
+    ('Δ', "Delta"),
+    ('Θ', "Theta"),
+    ('Λ', "Lambda"),
+    ('Ξ', "Xi"),
+    ('Π', "Pi"),
+    ('Σ', "Sigma"),
+    ('Υ', "Upsilon"),
+    ('Φ', "Phi"),
+    ('Ψ', "Psi"),
+    ('Ω', "Omega"),
+];
+
+/// `ω1` is \omega_{1}, `x'` is \dot{x}, `x''` is \ddot{x}; a name of several letters is set upright, unless it is
+/// the name of a Greek letter.
+pub(super) fn symbol(name: &str) -> String {
+    let bare = name.trim_end_matches('\'');
+    let accent = match name.len() - bare.len() {
+        0 => None,
+        1 => Some("dot"),
+        _ => Some("ddot"),
+    };
+    let (stem, index) = match bare.split_once('_') {
+        Some((stem, index)) if !stem.is_empty() && !index.is_empty() => (stem, index),
+        _ => bare.split_at(bare.trim_end_matches(|c: char| c.is_ascii_digit()).len()),
+    };
+    let stem = letters(stem);
+    let stem = accent.map_or(stem.clone(), |accent| format!("\\{accent}{{{stem}}}"));
+    if index.is_empty() { stem } else { format!("{stem}_{{{}}}", letters(index)) }
+}
+
+fn letters(text: &str) -> String {
+    let mut chars = text.chars();
+    if let (Some(letter), None) = (chars.next(), chars.next()) {
+        let named = GREEK.iter().find(|(greek, _)| *greek == letter);
+        return named.map_or_else(|| letter.to_string(), |(_, name)| format!("\\{name}"));
+    }
+    if let Some((_, name)) = GREEK.iter().find(|(_, name)| *name == text || name.strip_prefix("var") == Some(text)) {
+        return format!("\\{name}");
+    }
+    if text.chars().all(|c| c.is_ascii_digit()) {
+        return text.to_owned();
+    }
+    let spelt: String = text
+        .chars()
+        .map(|c| match GREEK.iter().find(|(greek, _)| *greek == c) {
+            Some((_, name)) => format!("$\\{name}$"),
+            None if c == '_' => "\\_".to_owned(),
+            None => c.to_string(),
+        })
+        .collect();
+    format!("\\text{{{spelt}}}")
+}
+
+pub(super) fn number(c: Number) -> Piece {
+    let text = c.to_string();
+    let (sign, size) = text.strip_prefix('-').map_or(("", text.as_str()), |size| ("-", size));
+    let size = match (size.split_once('/'), size.split_once('e')) {
+        (Some((num, den)), _) => format!("\\frac{{{num}}}{{{den}}}"),
+        (None, Some((mantissa, exponent))) => format!("{mantissa} \\cdot 10^{{{exponent}}}"),
+        (None, None) => size.to_owned(),
+    };
+    let binding = if sign.is_empty() { Binding::Product } else { Binding::Sum };
+    Piece { text: format!("{sign}{size}"), binding }
+}
+
+pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
+    let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
+    let listed = args.join(", ");
+    let text = match function {
+        Function::Sqrt => format!("\\sqrt{{{listed}}}"),
+        Function::Abs => format!("\\left|{listed}\\right|"),
+        Function::Exp => return Piece { text: format!("e^{{{listed}}}"), binding: Binding::Power },
+        Function::Step => format!("\\operatorname{{step}}\\left({listed}\\right)"),
+        Function::Sign => format!("\\operatorname{{sgn}}\\left({listed}\\right)"),
+        Function::Atan2 => format!("\\operatorname{{atan2}}\\left({listed}\\right)"),
+        Function::Asin | Function::Acos | Function::Atan => {
+            format!("\\arc{}\\left({listed}\\right)", &function.name()[1..])
+        }
+        _ if is_simple(&listed) => format!("\\{} {listed}", function.name()),
+        _ => format!("\\{}\\left({listed}\\right)", function.name()),
+    };
+    Piece::atom(text)
+}
+
+/// A single symbol needs no brackets behind \sin.
+fn is_simple(argument: &str) -> bool {
+    !argument.contains([' ', '+', '-', '(']) && !argument.contains("\\frac")
+}
+
+pub(super) fn power(base: Piece, exponent: &str) -> String {
+    // (\sin x)^2 is written \sin^2 x
+    for function in ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh"] {
+        if base.binding == Binding::Atom
+            && let Some(rest) = base.text.strip_prefix(function)
+            && (rest.starts_with(' ') || rest.starts_with("\\left"))
+        {
+            return format!("{function}^{{{exponent}}}{rest}");
+        }
+    }
+    match base.binding {
+        Binding::Atom => format!("{}^{{{exponent}}}", base.text),
+        _ => format!("\\left({}\\right)^{{{exponent}}}", base.text),
+    }
+}
+
+/// Factors side by side, two numbers kept apart by a dot.
+pub(super) fn juxtaposed(factors: &[String]) -> String {
+    let mut text = String::new();
+    for factor in factors {
+        let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+        if digit(text.chars().last()) && digit(factor.chars().next()) {
+            text.push_str(" \\cdot ");
+        } else if !text.is_empty() {
+            text.push(' ');
+        }
+        let bracketed = factor.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
+        match bracketed {
+            Some(inner) => text.push_str(&format!("\\left({inner}\\right)")),
+            None => text.push_str(factor),
+        }
+    }
+    text
+}
+
+/// What stands above or below a fraction bar: a single sum needs no brackets there.
+pub(super) fn alone(mut factors: Vec<Piece>) -> String {
+    if factors.len() == 1 {
+        let text = factors.remove(0).text;
+        let bracketed = text.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
+        return bracketed.filter(|inner| !inner.contains(['(', ')'])).map_or(text.clone(), str::to_owned);
+    }
+    juxtaposed(&factors.into_iter().map(|p| p.at_least(Binding::Product)).collect::<Vec<String>>())
+}

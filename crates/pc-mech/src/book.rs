@@ -1,0 +1,39 @@
+//! The equations as a book prints them: sums of products of quasi-velocities with collected coefficients.
+
+use pc_expr::{Expr, Folding, Graph, Style};
+
+use crate::poincare::Equations;
+
+impl<'g> Equations<'g> {
+    /// The left and right sides of M η̇ = r, one pair of texts an equation.
+    ///
+    /// A right side that is a polynomial in the quasi-velocities is written as a sum of their products; the compiled
+    /// equations nest them where that saves operations.
+    pub fn balance(&self, style: Style) -> Vec<(String, String)> {
+        let graph = self.system.graph();
+        let rates = self.system.accelerations();
+        (0..self.right.len())
+            .map(|s| {
+                let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
+                (left.display(style), self.expanded(self.right[s], style))
+            })
+            .collect()
+    }
+
+    /// An expression as a sum of products of quasi-velocities, if it is a polynomial in them.
+    fn expanded(&self, expression: Expr<'g>, style: Style) -> String {
+        let graph = self.system.graph();
+        let eta = &self.system.quasi_velocities;
+        let parameters: Vec<Expr<'g>> = self.system.parameters.iter().map(|&(symbol, _)| symbol).collect();
+        let Some(mut polynomial) = graph.polynomial(expression, eta) else { return expression.display(style) };
+        for (_, coefficient) in &mut polynomial.terms {
+            *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
+        }
+        // Written in a graph of its own, which merges nothing back to the nested form; symbols in book order.
+        let page = Graph::with_folding(Folding::Structural);
+        for symbol in parameters.iter().chain(self.system.frame.coordinates()).chain(eta) {
+            page.symbol(&symbol.symbol_name().unwrap_or_default());
+        }
+        polynomial.expanded(graph, &page).display(style)
+    }
+}
