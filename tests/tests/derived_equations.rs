@@ -1,6 +1,8 @@
 //! Derived equations of every built-in model against the classical ones, coded by hand.
 
-use pc_mech::{Folding, Graph, VectorField};
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use pc_mech::{Backend, Folding, Graph, VectorField};
 use pc_model::{Builtin, Model};
 use pc_tests::classical::{MODELS, SplitMix64, classical, sample};
 
@@ -8,13 +10,13 @@ use pc_tests::classical::{MODELS, SplitMix64, classical, sample};
 const TOLERANCE: f64 = 1e-12;
 const STATES: usize = 1000;
 
-fn compare(folding: Folding) {
+fn compare(folding: Folding, backend: Backend) {
     for &name in MODELS {
         let builtin = Builtin::named(name).unwrap_or_else(|| panic!("{name} is not built in"));
         let model = Model::new(builtin.document().unwrap());
         let graph = Graph::with_folding(folding);
         let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
-        let mut motion = assembly.system.poincare().unwrap().compile().unwrap();
+        let mut motion = assembly.system.poincare().unwrap().compile_for(backend).unwrap();
         let classical = classical(name).unwrap();
         let mut random = SplitMix64::new(7);
         for _ in 0..STATES {
@@ -33,10 +35,11 @@ fn compare(folding: Folding) {
 
 #[test]
 fn derived_equations_are_the_classical_ones() {
-    compare(Folding::ByValue);
+    compare(Folding::ByValue, Backend::Interpreter);
+    compare(Folding::ByValue, Backend::Fastest);
 }
 
 #[test]
 fn without_folding_they_are_the_same() {
-    compare(Folding::Structural);
+    compare(Folding::Structural, Backend::Interpreter);
 }

@@ -112,7 +112,8 @@ fn both_forms_of_the_structure_coefficients_agree() {
     let graph = Graph::new();
     let [t, x, y, z, u, v, w] = graph.symbols(["t", "x", "y", "z", "u", "v", "w"]);
     let symbols = [x, y, z];
-    let rates = [u * (x * y).exp() + v * t, v * (2.0 + z.sin()) + x * w + t * y, w * (3.0 + (t * x).cos()) + u * y];
+    let rates =
+        [u * (x * y).exp() + v * t, v * (2.0 + z.sin()) + x * w + t * y, w * (3.0 + (t * x).cos()) + u * y];
     let frame = Frame::from_velocities(&graph, t, symbols.to_vec(), &[u, v, w], &rates).unwrap();
     let near = Neighbourhood::default();
     let c = frame.structure_coefficients(&near).unwrap();
@@ -135,7 +136,9 @@ fn both_forms_of_the_structure_coefficients_agree() {
         for s in 0..4 {
             for m in 1..4 {
                 let second = graph.sum((0..4).flat_map(|i| (0..4).map(move |j| (i, j))).map(|(i, j)| {
-                    (a[(m, j)].derivative(extended[i]) - a[(m, i)].derivative(extended[j])) * b[(j, r)] * b[(i, s)]
+                    (a[(m, j)].derivative(extended[i]) - a[(m, i)].derivative(extended[j]))
+                        * b[(j, r)]
+                        * b[(i, s)]
                 }));
                 assert!((c.get(r, s, m) - second).is_zero(), "c_{r}{s}^{m}");
             }

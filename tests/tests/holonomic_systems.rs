@@ -1,6 +1,8 @@
 //! Holonomic systems of many forms, described by closures: derived against classical equations, end states against
 //! references of 16 digits, integrals, structure coefficients.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 mod holonomic {
     mod chains;
     mod closed_forms;

@@ -1,5 +1,7 @@
 //! Malformed models are refused with the right category, at the right line, naming what is wrong.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use pc_mech::Graph;
 use pc_model::{Category, Document, Model, ModelError};
 use pc_tests::malformed::{MALFORMED, Malformed, deeply_nested};
@@ -41,7 +43,9 @@ fn complaints(case: &Malformed) -> Vec<String> {
 fn malformed_models_are_refused() {
     let found: Vec<String> = MALFORMED
         .iter()
-        .flat_map(|case| complaints(case).into_iter().map(move |c| format!("{} ({}): {c}", case.file, case.fault)))
+        .flat_map(|case| {
+            complaints(case).into_iter().map(move |c| format!("{} ({}): {c}", case.file, case.fault))
+        })
         .collect();
     assert!(found.is_empty(), "{} complaints:\n\n{}", found.len(), found.join("\n\n"));
 }

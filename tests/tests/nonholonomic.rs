@@ -1,5 +1,7 @@
 //! Equations (30): constraints η_α = 0 put in after differentiation.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use pc_mech::{Equations, Expr, Graph, System};
 use pc_solve::{Options, solve};
 
@@ -18,7 +20,12 @@ fn reaches(equations: &Equations<'_>, start: &[f64], t_end: f64, reference: &[f6
     let (before, after) = (watch.observe(0.0, start), watch.observe(t_end, end));
     for (i, name) in watch.observable_names().iter().enumerate() {
         if conserved.contains(&name.as_str()) {
-            assert!((before[i] - after[i]).abs() <= TOLERANCE, "{name} drifts from {} to {}", before[i], after[i]);
+            assert!(
+                (before[i] - after[i]).abs() <= TOLERANCE,
+                "{name} drifts from {} to {}",
+                before[i],
+                after[i]
+            );
         }
     }
 }
@@ -47,7 +54,10 @@ fn sleigh(graph: &Graph) -> System<'_> {
 fn the_chaplygin_sleigh_turns_round() {
     let graph = Graph::new();
     let equations = sleigh(&graph).poincare_constrained(2).unwrap();
-    assert_eq!(equations.right_hand_side().iter().map(Expr::to_string).collect::<Vec<_>>(), ["m*a*w^2", "-m*a*v*w"]);
+    assert_eq!(
+        equations.right_hand_side().iter().map(Expr::to_string).collect::<Vec<_>>(),
+        ["m*a*w^2", "-m*a*v*w"]
+    );
     let reference =
         [-2.076459013951296, 2.306638548235811, 3.036242321872673, 1.092780100402684, 0.2113417179146603];
     reaches(&equations, &[0.0, 0.0, 0.0, 0.0, 1.0], 5.0, &reference, &["energy"]);
@@ -66,7 +76,9 @@ fn a_constraint_put_into_the_lagrangian_gives_the_wrong_motion() {
             let (s, c) = (x[2].sin(), x[2].cos());
             [eta[0] * c - eta[2] * s, eta[0] * s + eta[2] * c, eta[1]]
         })
-        .lagrangian(|_, _, eta| m * (eta[0].square() + (a * eta[1]).square()) / 2.0 + j * eta[1].square() / 2.0)
+        .lagrangian(|_, _, eta| {
+            m * (eta[0].square() + (a * eta[1]).square()) / 2.0 + j * eta[1].square() / 2.0
+        })
         .build()
         .unwrap()
         .poincare_constrained(2)
@@ -79,7 +91,8 @@ fn a_constraint_put_into_the_lagrangian_gives_the_wrong_motion() {
 fn disk(graph: &Graph) -> System<'_> {
     let [m, a, c, r, g] = graph.symbols(["m", "A", "C", "r", "g"]);
     let numbers = [(m, 1.0), (a, 0.25), (c, 0.5), (r, 1.0), (g, 10.0)];
-    let builder = numbers.into_iter().fold(System::builder(graph), |b, (symbol, value)| b.parameter(symbol, value));
+    let builder =
+        numbers.into_iter().fold(System::builder(graph), |b, (symbol, value)| b.parameter(symbol, value));
     builder
         .coordinates(["X", "Y", "psi", "theta", "phi"])
         .quasi_velocities(["w1", "w2", "w3", "u", "v"])
@@ -143,8 +156,26 @@ fn voronets_coefficients<'g>(affine: bool, t: Expr<'g>, x: &[Expr<'g>]) -> [Expr
 fn the_rheonomic_voronets_system_reaches_its_reference() {
     let graph = Graph::new();
     let cases = [
-        (false, [7.652529543655616, -2.799001626851772, -1.542307483484538, 2.399046385940416, -0.3223853032925174]),
-        (true, [5.772359768745835, -3.38367175217733, -1.441281591163689, 1.924512584414301, -0.6578079305316382]),
+        (
+            false,
+            [
+                7.652529543655616,
+                -2.799001626851772,
+                -1.542307483484538,
+                2.399046385940416,
+                -0.3223853032925174,
+            ],
+        ),
+        (
+            true,
+            [
+                5.772359768745835,
+                -3.38367175217733,
+                -1.441281591163689,
+                1.924512584414301,
+                -0.6578079305316382,
+            ],
+        ),
     ];
     for (affine, reference) in cases {
         let system = System::builder(&graph)
@@ -157,7 +188,9 @@ fn the_rheonomic_voronets_system_reaches_its_reference() {
             .lagrangian(|t, x, eta| {
                 let [a, b, d] = voronets_coefficients(affine, t, x);
                 let vz = a * eta[0] + b * eta[1] + eta[2] + d;
-                (eta[0].square() + eta[1].square() + vz.square()) / 2.0 - x[2].square() / 2.0 - x[0] * x[2] / 4.0
+                (eta[0].square() + eta[1].square() + vz.square()) / 2.0
+                    - x[2].square() / 2.0
+                    - x[0] * x[2] / 4.0
             })
             .build()
             .unwrap();

@@ -1,5 +1,7 @@
 //! End states and drifts of every built-in model, integrated with CVODE, against references of 16 digits.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use pc_mech::Graph;
 use pc_model::{Builtin, Model};
 use pc_solve::{Method, Options, solve};

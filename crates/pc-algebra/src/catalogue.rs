@@ -11,7 +11,8 @@ pub struct Entry {
     pub name: &'static str,
     /// What it is, with the order and signs of its basis.
     pub description: &'static str,
-    make: fn() -> Vec<(usize, usize, usize, i32)>,
+    /// [X_r, X_s] = value·X_m as (r, s, m, value), from 0.
+    brackets: &'static [(usize, usize, usize, i32)],
     dim: usize,
 }
 
@@ -19,7 +20,7 @@ pub struct Entry {
 pub const CATALOGUE: &[Entry] = &[Entry {
     name: "so3",
     description: "rotations of space, basis of body angular velocities: [X1,X2] = X3 and cyclically",
-    make: || vec![(0, 1, 2, 1), (1, 2, 0, 1), (2, 0, 1, 1)],
+    brackets: &[(0, 1, 2, 1), (1, 2, 0, 1), (2, 0, 1, 1)],
     dim: 3,
 }];
 
@@ -43,7 +44,7 @@ impl LieAlgebra {
             let known = CATALOGUE.iter().map(|entry| entry.name).collect();
             return Err(AlgebraError::UnknownAlgebra { name: name.to_owned(), known });
         };
-        let brackets: Vec<_> = (entry.make)().into_iter().map(|(r, s, m, c)| (r, s, m, c.into())).collect();
+        let brackets: Vec<_> = entry.brackets.iter().map(|&(r, s, m, c)| (r, s, m, c.into())).collect();
         LieAlgebra::from_brackets(entry.dim, &brackets)
     }
 }

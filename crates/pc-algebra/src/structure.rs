@@ -52,7 +52,10 @@ impl<'g> StructureCoefficients<'g> {
     /// The coefficients passed through `f`.
     #[must_use]
     pub fn map(&self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
-        StructureCoefficients { operators: self.operators, upper: self.upper.iter().copied().map(f).collect() }
+        StructureCoefficients {
+            operators: self.operators,
+            upper: self.upper.iter().copied().map(f).collect(),
+        }
     }
 
     /// Number k of operators, time not counted.

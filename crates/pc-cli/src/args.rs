@@ -30,6 +30,8 @@ pub enum Command {
     Derive(DeriveArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
     Run(RunArguments),
+    /// Write the equations as C or Rust source that needs nothing of this program
+    Emit(EmitArguments),
     /// List the models that come with the program
     Models(ModelsArguments),
 }
@@ -59,8 +61,8 @@ pub struct CheckArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// How to print: text or json
-    #[arg(long, default_value = "text", value_parser = format)]
+    /// How to print
+    #[arg(long, default_value = "text")]
     pub format: Format,
 }
 
@@ -73,9 +75,9 @@ pub struct DeriveArguments {
     /// Form of the equations: poincare
     #[arg(long, value_parser = form)]
     pub form: Option<Form>,
-    /// How to print: text or json
-    #[arg(long, default_value = "text", value_parser = format)]
-    pub format: Format,
+    /// How to print
+    #[arg(long, default_value = "text")]
+    pub format: Page,
 }
 
 /// Arguments of `pc run`.
@@ -110,6 +112,29 @@ pub struct RunArguments {
     pub plot: Option<PathBuf>,
 }
 
+/// Arguments of `pc emit`.
+#[derive(Clone, Debug, Args)]
+pub struct EmitArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Language of the source
+    #[arg(long)]
+    pub lang: Lang,
+    /// Directory to write into; it is made if it is not there
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+}
+
+/// Languages of emitted source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Lang {
+    /// C99, which is also C++: a header and a source.
+    C,
+    /// Rust: one file.
+    Rust,
+}
+
 /// Arguments of `pc models`.
 #[derive(Clone, Debug, Args)]
 pub struct ModelsArguments {
@@ -123,6 +148,17 @@ pub struct ModelsArguments {
 pub enum Format {
     /// For people.
     Text,
+    /// For programs.
+    Json,
+}
+
+/// How equations are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Page {
+    /// For people.
+    Text,
+    /// For a paper.
+    Latex,
     /// For programs.
     Json,
 }
@@ -141,10 +177,6 @@ pub enum Method {
     Adams,
     /// Backward differentiation formulas.
     Bdf,
-}
-
-fn format(text: &str) -> Result<Format, String> {
-    choice(text, &["latex"])
 }
 
 fn form(text: &str) -> Result<Form, String> {

@@ -2,12 +2,13 @@
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Cost, ExprError, Inputs, Program};
-use pc_mech::{Equations, Expr, Graph, MechError};
+use pc_mech::{Equations, Expr, Graph, MechError, Style};
 use serde_json::{Map, Value, json};
 
-use crate::args::{DeriveArguments, Format};
+use crate::args::{DeriveArguments, Page};
 use crate::error::CliError;
 use crate::input;
+use crate::latex;
 use crate::text::{columns, combination, print};
 
 /// Prints the equations of a model.
@@ -22,8 +23,9 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
         Operations::of(&equations).map_err(|error| model.derivation_error(MechError::from(error)))?;
     let title = input::title(&model);
     print(|out| match arguments.format {
-        Format::Text => write!(out, "{}\n\n{}", heading(title), text(&equations, &operations)),
-        Format::Json => writeln!(out, "{:#}", object(title, &equations, &operations)),
+        Page::Text => write!(out, "{}\n\n{}", heading(title), text(&equations, &operations)),
+        Page::Latex => write!(out, "{}", latex::page(title, &equations)),
+        Page::Json => writeln!(out, "{:#}", object(title, &equations, &operations)),
     })
 }
 
@@ -101,14 +103,8 @@ pub fn kinematics(equations: &Equations<'_>) -> Vec<String> {
 
 /// M η̇ = r, a line an equation.
 pub fn balance(equations: &Equations<'_>) -> Vec<String> {
-    let system = equations.system();
-    let accelerations = system.accelerations();
-    let mass = equations.mass_matrix();
-    let left: Vec<String> = (0..mass.rows())
-        .map(|s| system.graph().dot(mass.row(s).iter().copied(), accelerations.iter().copied()).to_string())
-        .collect();
-    let right: Vec<String> = equations.right_hand_side().iter().map(Expr::to_string).collect();
-    aligned(left.iter().zip(&right))
+    let sides = equations.balance(Style::Text);
+    aligned(sides.iter().map(|(left, right)| (left, right)))
 }
 
 /// Left = right, the equals signs under each other unless a left side is long.

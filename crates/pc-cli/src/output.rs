@@ -1,6 +1,6 @@
 //! Where results go: standard output, or a file that is there whole or not at all.
 
-mod atomic;
+pub(crate) mod atomic;
 mod csv;
 mod json;
 mod npz;

@@ -201,7 +201,7 @@ fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
     refuses(&["run", "euler-top", "--t-end", "0"], 2, "nothing to integrate");
     refuses(&["run", "euler-top", "--method", "taylor"], 2, "not supported yet");
     refuses(&["run", "euler-top", "--form", "canonical"], 2, "not supported yet");
-    refuses(&["derive", "euler-top", "--format", "latex"], 2, "not supported yet");
+    refuses(&["derive", "euler-top", "--format", "html"], 2, "possible values: text, latex, json");
     refuses(&["sweep", "euler-top"], 2, "sweep");
     refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json or .npz");
     refuses(&["run", "euler-top", "--plot", "motion.pdf"], 2, ".svg or .png");
@@ -341,4 +341,19 @@ fn models_and_algebras_are_listed() {
     }
     let text = stdout(&run(&["models", "--algebras"]));
     assert!(text.contains("so3") && text.contains("[X1,X2] = X3"));
+}
+
+#[test]
+fn source_is_emitted_into_a_directory() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("new").display().to_string();
+    for (language, files) in [("c", ["euler_top.h", "euler_top.c"].as_slice()), ("rust", &["euler_top.rs"])] {
+        let output = run(&["emit", "euler-top", "--lang", language, "-o", &path]);
+        assert_eq!(code(&output), 0);
+        for file in files {
+            let text = std::fs::read_to_string(directory.path().join("new").join(file)).expect(file);
+            assert!(text.contains("euler_top") && text.contains("omega1"), "{text}");
+        }
+    }
+    refuses(&["emit", "euler-top", "--lang", "fortran", "-o", &path], 2, "possible values: c, rust");
 }

@@ -79,7 +79,8 @@ impl Graph {
                 break;
             }
             // The derivatives of a polynomial become shorter; where they grow there is none to be found.
-            let growing = next.tree_cost() > derivatives[derivatives.len() - 1].tree_cost().saturating_mul(2) + 8;
+            let growing =
+                next.tree_cost() > derivatives[derivatives.len() - 1].tree_cost().saturating_mul(2) + 8;
             if derivatives.len() > MAX_DEGREE || growing {
                 return None;
             }
@@ -106,9 +107,11 @@ impl Graph {
                 continue;
             }
             // A form with a vanishing denominator or another value is not taken: try the next point.
-            for (sin, cos) in [(0, 1), (1, 0)].map(|(s, c)| (Number::integer(s), Number::integer(c))).into_iter().chain(
-                [(Number::ratio(3, 5), Number::ratio(4, 5))],
-            ) {
+            for (sin, cos) in [(0, 1), (1, 0)]
+                .map(|(s, c)| (Number::integer(s), Number::integer(c)))
+                .into_iter()
+                .chain([(Number::ratio(3, 5), Number::ratio(4, 5))])
+            {
                 let candidate = self.at_point(short, z, sin, cos);
                 if self.is_same_value(candidate, e) {
                     short = candidate;

@@ -33,6 +33,13 @@ pub enum ExprError {
 }
 
 fn at(t: f64, state: &[(String, f64)]) -> String {
-    let state: String = state.iter().map(|(name, value)| format!(", {name} = {value}")).collect();
-    format!(" at t = {t}{state}")
+    let state: String =
+        state.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect();
+    format!(" at t = {}{state}", readable(t))
+}
+
+/// A number of a message: with an exponent where it would be long without.
+pub fn readable(value: f64) -> String {
+    let usual = value == 0.0 || (1e-4..1e15).contains(&value.abs()) || !value.is_finite();
+    if usual { value.to_string() } else { format!("{value:e}") }
 }

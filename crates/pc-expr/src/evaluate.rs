@@ -67,11 +67,10 @@ pub(crate) fn evaluate<S: Scalar>(
             Node::Symbol(index) => {
                 return Err(ExprError::UnboundSymbol { symbol: dag.symbol_name(index).to_owned() });
             }
-            Node::Sum { constant, terms } => {
-                dag.terms(terms).iter().fold(S::constant(constant), |sum, (child, q)| {
-                    sum + S::constant(*q) * values[child]
-                })
-            }
+            Node::Sum { constant, terms } => dag
+                .terms(terms)
+                .iter()
+                .fold(S::constant(constant), |sum, (child, q)| sum + S::constant(*q) * values[child]),
             Node::Product { factors } => dag
                 .factors(factors)
                 .iter()

@@ -1,9 +1,12 @@
 //! What runs a program.
 
+mod tape;
+
 use std::sync::Arc;
 
 use crate::error::ExprError;
 use crate::program::{Instruction, Program, Register};
+use tape::Tape;
 
 /// Something that computes the outputs of a [`Program`]; all kernels of a program give the same values.
 pub trait Kernel: Send {
@@ -25,19 +28,22 @@ pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     Box::new(Interpreter::new(program))
 }
 
-/// The reference kernel: walks the tape.
+/// The reference kernel: takes one operation after the other.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     program: Arc<Program>,
+    /// None for a program that is too long for it or rounds several operations at once.
+    tape: Option<Arc<Tape>>,
     registers: Vec<f64>,
 }
 
 impl Interpreter {
     /// A kernel for `program`.
     pub fn new(program: Arc<Program>) -> Interpreter {
-        let mut registers = vec![0.0; program.registers_len()];
-        registers[..program.constants().len()].copy_from_slice(program.constants());
-        Interpreter { program, registers }
+        match Tape::new(&program) {
+            Some(tape) => Interpreter { program, registers: tape.registers(), tape: Some(Arc::new(tape)) },
+            None => Interpreter { registers: vec![0.0; program.registers_len()], program, tape: None },
+        }
     }
 
     /// The program.
@@ -45,42 +51,18 @@ impl Interpreter {
         &self.program
     }
 
-    fn run(&mut self, t: f64, state: &[f64], parameters: &[f64]) {
-        let program = &*self.program;
-        let inputs = program.first_input();
-        let first = program.first_result();
-        let registers = &mut self.registers[..program.registers_len()];
-        registers[inputs] = t;
-        registers[inputs + 1..inputs + 1 + state.len()].copy_from_slice(state);
-        registers[inputs + 1 + state.len()..first].copy_from_slice(parameters);
-        for (i, instruction) in program.code().iter().enumerate() {
-            let get = |r: Register| registers[r.index()];
-            registers[first + i] = match *instruction {
-                Instruction::Add(a, b) => get(a) + get(b),
-                Instruction::Subtract(a, b) => get(a) - get(b),
-                Instruction::Multiply(a, b) => get(a) * get(b),
-                Instruction::Divide(a, b) => get(a) / get(b),
-                Instruction::Negate(a) => -get(a),
-                Instruction::MultiplyAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
-                Instruction::MultiplySubtract(a, b, c) => get(a).mul_add(get(b), -get(c)),
-                Instruction::NegateMultiplyAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
-                Instruction::NegateMultiplySubtract(a, b, c) => (-get(a)).mul_add(get(b), -get(c)),
-                Instruction::Call(function, args) => function.eval(&args.map(get)),
-            };
-        }
-    }
-
     /// Runs the program and answers the innermost expression whose value is not finite, if there is one.
     ///
     /// The slices have the lengths that the program says.
     pub fn diagnose(&mut self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
-        self.run(t, state, parameters);
-        let culprit = self.registers.iter().position(|value| !value.is_finite())?;
         let program = &self.program;
+        let mut registers = vec![0.0; program.registers_len()];
+        walk(program, &mut registers, t, state, parameters);
+        let culprit = registers.iter().position(|value| !value.is_finite())?;
         let names = program.input_names()[1..].iter().cloned();
         Some(ExprError::NotFinite {
             expression: program.describe(Register(culprit as u32)),
-            value: self.registers[culprit],
+            value: registers[culprit],
             t,
             state: names.zip(state.iter().copied()).collect(),
         })
@@ -89,7 +71,10 @@ impl Interpreter {
 
 impl Kernel for Interpreter {
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
-        self.run(t, state, parameters);
+        if let Some(tape) = &self.tape {
+            return tape.run(&mut self.registers, t, state, parameters, outputs);
+        }
+        walk(&self.program, &mut self.registers, t, state, parameters);
         for (output, register) in outputs.iter_mut().zip(self.program.outputs()) {
             *output = self.registers[register.index()];
         }
@@ -97,5 +82,30 @@ impl Kernel for Interpreter {
 
     fn fork(&self) -> Box<dyn Kernel> {
         Box::new(self.clone())
+    }
+}
+
+/// Computes all registers of a program, which may hold anything before.
+fn walk(program: &Program, registers: &mut [f64], t: f64, state: &[f64], parameters: &[f64]) {
+    let inputs = program.first_input();
+    let first = program.first_result();
+    registers[..inputs].copy_from_slice(program.constants());
+    registers[inputs] = t;
+    registers[inputs + 1..inputs + 1 + state.len()].copy_from_slice(state);
+    registers[inputs + 1 + state.len()..first].copy_from_slice(parameters);
+    for (i, instruction) in program.code().iter().enumerate() {
+        let get = |r: Register| registers[r.index()];
+        registers[first + i] = match *instruction {
+            Instruction::Add(a, b) => get(a) + get(b),
+            Instruction::Subtract(a, b) => get(a) - get(b),
+            Instruction::Multiply(a, b) => get(a) * get(b),
+            Instruction::Divide(a, b) => get(a) / get(b),
+            Instruction::Negate(a) => -get(a),
+            Instruction::MultiplyAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
+            Instruction::MultiplySubtract(a, b, c) => get(a).mul_add(get(b), -get(c)),
+            Instruction::NegateMultiplyAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
+            Instruction::NegateMultiplySubtract(a, b, c) => (-get(a)).mul_add(get(b), -get(c)),
+            Instruction::Call(function, args) => function.eval(&args.map(get)),
+        };
     }
 }

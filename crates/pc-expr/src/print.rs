@@ -80,7 +80,7 @@ impl Style {
     fn power(self, base: Piece, exponent: Piece) -> Piece {
         let text = match self {
             Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
-            Style::Latex => latex::power(base, &exponent.text),
+            Style::Latex => latex::power(&base, &exponent.text),
         };
         Piece { text, binding: Binding::Power }
     }

@@ -117,7 +117,8 @@ impl SharedProducts {
             let has_both = |product: &SharedProduct| {
                 product.factors.contains(&first) && product.factors.contains(&second)
             };
-            let products: Vec<usize> = products.into_iter().filter(|&p| has_both(&self.products[p])).collect();
+            let products: Vec<usize> =
+                products.into_iter().filter(|&p| has_both(&self.products[p])).collect();
             if products.len() < 2 {
                 continue;
             }

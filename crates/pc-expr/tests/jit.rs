@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use pc_expr::{
     Expr, Folding, Function, Graph, Inputs, Instruction, Interpreter, Jit, JitOptions, Kernel, Program,
-    Register,
+    Register, compile,
 };
 use proptest::prelude::*;
 
@@ -431,6 +431,17 @@ fn forks_outlive_their_original() {
     let found =
         std::thread::spawn(move || evaluate(&mut *second, &inputs, program.outputs_len())).join().unwrap();
     assert_eq!(found, expected);
+}
+
+#[test]
+fn compile_gives_a_kernel_of_the_program() {
+    let program = Arc::new(long_program(50));
+    let inputs = (0.7, [0.4, -0.3, 0.2, 0.9], [0.5, -0.25, 0.125]);
+    let expected = evaluate(&mut Interpreter::new(program.clone()), &inputs, program.outputs_len());
+    let found = evaluate(&mut *compile(program.clone()), &inputs, program.outputs_len());
+    for (e, f) in expected.iter().zip(&found) {
+        assert!((e - f).abs() <= 1e-13 * e.abs().max(1.0), "{f} for {e}");
+    }
 }
 
 #[test]

@@ -25,7 +25,9 @@ impl<'g> Equations<'g> {
         let graph = self.system.graph();
         let eta = &self.system.quasi_velocities;
         let parameters: Vec<Expr<'g>> = self.system.parameters.iter().map(|&(symbol, _)| symbol).collect();
-        let Some(mut polynomial) = graph.polynomial(expression, eta) else { return expression.display(style) };
+        let Some(mut polynomial) = graph.polynomial(expression, eta) else {
+            return expression.display(style);
+        };
         for (_, coefficient) in &mut polynomial.terms {
             *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
         }

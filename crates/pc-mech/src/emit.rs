@@ -117,8 +117,9 @@ impl<'g> Equations<'g> {
     /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments.
     ///
     /// C comes as a header and a source file, Rust as one file. Both say at their head how they are used. The same
-    /// system gives the same text, and the values are bit for bit those of [`compile`](Equations::compile) where the
-    /// mathematical library is the same and operations are not fused.
+    /// system in a new graph gives the same text. Its operations are those of a [`Program`](pc_expr::Program) of the
+    /// same expressions, so that the values are those of the interpreter to the last bit where the mathematical library
+    /// is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};

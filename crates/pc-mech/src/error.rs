@@ -1,7 +1,7 @@
 //! What can be wrong with a mechanical system.
 
 use pc_algebra::AlgebraError;
-use pc_expr::ExprError;
+use pc_expr::{ExprError, readable};
 
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,5 +64,5 @@ fn undetermined(names: &[String]) -> String {
 }
 
 fn listed(values: &[(String, f64)]) -> String {
-    values.iter().map(|(name, value)| format!(", {name} = {value}")).collect()
+    values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
 }

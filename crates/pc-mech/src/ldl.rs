@@ -59,7 +59,8 @@ impl<'g> Ldl<'g> {
         let mut order = Vec::with_capacity(k);
         while !open.is_empty() {
             let entries = |p: usize| open.iter().filter(|&&i| !schur[(i, p)].is_zero()).count();
-            let pivot = open.iter().copied().filter(|&p| !schur[(p, p)].is_zero()).min_by_key(|&p| entries(p))?;
+            let pivot =
+                open.iter().copied().filter(|&p| !schur[(p, p)].is_zero()).min_by_key(|&p| entries(p))?;
             open.retain(|&i| i != pivot);
             order.push(pivot);
             diagonal[pivot] = schur[(pivot, pivot)];

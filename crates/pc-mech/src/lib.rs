@@ -37,6 +37,6 @@ pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
 pub use motion::Motion;
 pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-pub use pc_expr::{Expr, ExprError, Folding, Graph, Language, Number, Style, VectorField};
+pub use pc_expr::{Backend, Expr, ExprError, Folding, Graph, Language, Number, Style, VectorField};
 pub use poincare::Equations;
 pub use system::{System, SystemBuilder};

@@ -1,8 +1,6 @@
 //! Compiled equations of motion: a vector field with its Jacobian, and the quantities watched along it.
 
-use std::sync::Arc;
-
-use pc_expr::{Cost, Expr, ExprError, Failure, Inputs, Interpreter, Kernel, Program, VectorField};
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Failure, Inputs, Program, VectorField};
 
 use crate::error::MechError;
 use crate::ldl::Factors;
@@ -12,15 +10,16 @@ use crate::poincare::Equations;
 const VANISHING_PIVOT: f64 = 1e-14;
 
 /// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
+#[derive(Clone, Debug)]
 pub struct Motion {
     /// n coordinates, then k quasi-velocities.
     names: Vec<String>,
     coordinates: usize,
     parameters: Vec<f64>,
     /// Outputs: ẋ, η̇, the pivots D of M, the diagonal of M.
-    rhs: Interpreter,
-    jacobian: Interpreter,
-    observables: Interpreter,
+    rhs: Evaluator,
+    jacobian: Evaluator,
+    observables: Evaluator,
     observable_names: Vec<String>,
     conserved: usize,
     outputs: Vec<f64>,
@@ -32,13 +31,21 @@ impl<'g> Equations<'g> {
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
     pub fn compile(&self) -> Result<Motion, MechError> {
+        self.compile_for(Backend::Fastest)
+    }
+
+    /// Compiles as [`compile`](Equations::compile) does, for the kernel chosen.
+    ///
+    /// # Errors
+    /// As [`compile`](Equations::compile).
+    pub fn compile_for(&self, backend: Backend) -> Result<Motion, MechError> {
         let system = &self.system;
         let graph = system.graph();
-        let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
+        let x = system.frame.coordinates();
         let inputs = self.inputs();
         let state = inputs.state.clone();
-        let compile = |outputs: &[Expr<'g>]| -> Result<Interpreter, ExprError> {
-            Ok(Interpreter::new(Arc::new(Program::new(graph, &inputs, outputs)?)))
+        let compile = |outputs: &[Expr<'g>], backend| -> Result<Evaluator, ExprError> {
+            Ok(Evaluator::new(Program::new(graph, &inputs, outputs)?, backend))
         };
         let factors = Factors::of(graph, &self.mass);
         let accelerations = self.solve(&factors);
@@ -54,15 +61,15 @@ impl<'g> Equations<'g> {
         let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
         let observed = graph.substitute(&observed, &rates);
 
-        let rhs = compile(&outputs)?;
+        let rhs = compile(&outputs, backend)?;
         Ok(Motion {
             names: state.iter().map(Expr::to_string).collect(),
             coordinates: x.len(),
             parameters: system.parameters.iter().map(|&(_, value)| value).collect(),
             outputs: vec![0.0; rhs.program().outputs_len()],
             rhs,
-            jacobian: compile(&self.jacobian(&factors, &accelerations))?,
-            observables: compile(&observed)?,
+            jacobian: compile(&self.jacobian(&factors, &accelerations), backend)?,
+            observables: compile(&observed, Backend::Interpreter)?,
             observable_names,
             conserved: system.integrals.len() + 1,
         })

@@ -94,9 +94,11 @@ impl<'g> System<'g> {
         let graph = self.graph();
         let dropped = &self.quasi_velocities[free..];
         let rates = self.accelerations();
-        let zeros: Vec<_> = dropped.iter().chain(&rates[free..]).map(|&symbol| (symbol, Expr::ZERO)).collect();
+        let zeros: Vec<_> =
+            dropped.iter().chain(&rates[free..]).map(|&symbol| (symbol, Expr::ZERO)).collect();
         let put = |x: Expr<'g>| graph.substitute(&[x], &zeros)[0];
-        let named = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
+        let named =
+            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
         System {
             frame: self.frame.restricted(free),
             structure: self.structure.clone(),
@@ -164,7 +166,8 @@ impl<'g> Equations<'g> {
         for (s, acceleration) in accelerations.iter_mut().enumerate() {
             let row = self.mass.row(s);
             let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());
-            let is_parameter = |symbol: &Expr<'g>| self.system.parameters.iter().any(|(known, _)| known == symbol);
+            let is_parameter =
+                |symbol: &Expr<'g>| self.system.parameters.iter().any(|(known, _)| known == symbol);
             if decoupled && !graph.symbols_of(&[row[s]]).iter().all(is_parameter) {
                 *acceleration = graph.shorten(&[*acceleration], &order)[0];
             }

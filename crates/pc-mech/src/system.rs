@@ -1,6 +1,6 @@
 //! A mechanical system: frame, Lagrangian, forces, and what is watched of its motion.
 
-use pc_algebra::{AlgebraError, Frame, LieAlgebra, Neighbourhood, StructureCoefficients};
+use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
 use crate::error::MechError;
@@ -105,7 +105,8 @@ impl<'g> System<'g> {
         let numbers: Vec<(Expr<'g>, Expr<'g>)> =
             self.parameters.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
         let bind = |x: Expr<'g>| graph.substitute(&[x], &numbers)[0];
-        let named = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), bind(*x))).collect();
+        let named =
+            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), bind(*x))).collect();
         System {
             frame: self.frame.map(bind),
             structure: self.structure.map(bind),
@@ -293,6 +294,10 @@ impl<'g> SystemBuilder<'g> {
         let eta = self.eta();
         let k = eta.len();
         let frame = match self.kinematics {
+            Kinematics::Coordinate if self.coordinates.is_empty() => {
+                let b = Matrix::from_fn(0, k, |_, _| Expr::ZERO); // equations on an algebra alone
+                Frame::new(self.graph, self.time, Vec::new(), b, Vec::new())?
+            }
             Kinematics::Coordinate => Frame::coordinate(self.graph, self.time, self.coordinates),
             Kinematics::Velocities(velocities) => {
                 Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?

@@ -95,7 +95,9 @@ pub enum Fault {
         coordinates: usize,
     },
     /// Definitions that are dependent.
-    #[error("the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere")]
+    #[error(
+        "the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere"
+    )]
     DependentDefinitions,
     /// A catalogue name that does not exist.
     #[error("there is no algebra named `{name}`")]
@@ -180,7 +182,8 @@ pub enum Fault {
     /// A singular mass matrix.
     #[error(
         "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank {rank} of {size}, so {} not \
-         determined", undetermined_text(undetermined)
+         determined",
+        undetermined_text(undetermined)
     )]
     Degenerate {
         /// Rank.

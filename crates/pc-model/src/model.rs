@@ -2,11 +2,11 @@
 
 use pc_expr::Graph;
 use pc_mech::{
-    AlgebraError, Equations, Expr, Frame, LieAlgebra, MechError, Motion, Number, StructureCoefficients, System,
-    VectorField,
+    AlgebraError, Equations, Expr, Frame, LieAlgebra, MechError, Motion, Number, StructureCoefficients,
+    System, VectorField,
 };
 
-use crate::document::{AlgebraDefinition, Bracket, Document, Method, Form, NamedExpression};
+use crate::document::{AlgebraDefinition, Bracket, Document, Form, Method, NamedExpression};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
 use crate::scope::{Scope, Stage, entry};
@@ -84,7 +84,12 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
-    pub fn compile(&self, equations: &Equations<'_>, t_start: f64, start: &[f64]) -> Result<Motion, ModelError> {
+    pub fn compile(
+        &self,
+        equations: &Equations<'_>,
+        t_start: f64,
+        start: &[f64],
+    ) -> Result<Motion, ModelError> {
         let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
         let mut motion = equations.compile().map_err(|error| refuse(error.to_string()))?;
         let mut rate = vec![0.0; start.len()];
@@ -143,7 +148,9 @@ impl Model {
         match (s, declared.is_empty()) {
             (0, _) => "t".to_owned(),
             (_, false) => declared.get(s - 1).map_or_else(String::new, |q| q.name.text.clone()),
-            (_, true) => self.document.coordinates.get(s - 1).map_or_else(String::new, |x| format!("{}'", x.name.text)),
+            (_, true) => {
+                self.document.coordinates.get(s - 1).map_or_else(String::new, |x| format!("{}'", x.name.text))
+            }
         }
     }
 
@@ -157,7 +164,9 @@ impl Model {
         let brackets_of = |pair: (usize, usize)| -> Place {
             let algebra = self.document.algebra.as_ref();
             let section = algebra.map_or_else(|| self.operator_place(pair.1), |a| a.place.clone());
-            let Some(AlgebraDefinition::Brackets(brackets)) = algebra.map(|a| &a.definition) else { return section };
+            let Some(AlgebraDefinition::Brackets(brackets)) = algebra.map(|a| &a.definition) else {
+                return section;
+            };
             let [r, s] = names(pair);
             let matches = |b: &&Bracket| {
                 (b.left.text == r && b.right.text == s) || (b.left.text == s && b.right.text == r)
@@ -165,9 +174,10 @@ impl Model {
             brackets.iter().find(matches).map_or(section, |b| b.left.place.clone())
         };
         match error {
-            AlgebraError::RankDeficient { rank, operators, pair } => {
-                self.error(&self.operator_place(pair.1), Fault::RankDeficient { rank, operators, pair: names(pair) })
-            }
+            AlgebraError::RankDeficient { rank, operators, pair } => self.error(
+                &self.operator_place(pair.1),
+                Fault::RankDeficient { rank, operators, pair: names(pair) },
+            ),
             AlgebraError::NotClosed { pair, residual } => {
                 self.error(&self.operator_place(pair.1), Fault::NotClosed { pair: names(pair), residual })
             }
@@ -199,11 +209,17 @@ impl<'g> Assembler<'g, '_> {
         let start = self.start(&parameters)?;
         let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
         let frame = self.frame()?;
-        let eta = if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
+        let eta =
+            if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
 
         let velocities = frame.velocities(&eta);
-        let x_dot: Vec<(Expr<'g>, Expr<'g>)> =
-            self.scope.velocities().into_iter().zip(velocities).filter(|(symbol, value)| symbol != value).collect();
+        let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self
+            .scope
+            .velocities()
+            .into_iter()
+            .zip(velocities)
+            .filter(|(symbol, value)| symbol != value)
+            .collect();
         let lagrangian = self.lagrangian(&x_dot)?;
         let forces = self.forces(&frame, &eta, &x_dot)?;
         let integrals = self.observed(&document.integrals, &x_dot)?;
@@ -299,14 +315,16 @@ impl<'g> Assembler<'g, '_> {
     fn frame(&mut self) -> Result<Frame<'g>, ModelError> {
         let document = &self.model.document;
         let (time, x) = (self.graph.symbol("t"), self.scope.coordinates());
-        if let Some(stray) = document.kinematics.iter().find(|k| entry(&document.coordinates, &k.name.text).is_none()) {
+        if let Some(stray) =
+            document.kinematics.iter().find(|k| entry(&document.coordinates, &k.name.text).is_none())
+        {
             return Err(self.not_a_coordinate(&stray.name));
         }
         let defined = document.quasi_velocities.iter().find(|q| q.is.is_some());
         match (defined, document.kinematics.first()) {
-            (Some(defined), Some(_)) => {
-                Err(self.model.error(&defined.name.place, Fault::TwoKinematics { name: defined.name.text.clone() }))
-            }
+            (Some(defined), Some(_)) => Err(self
+                .model
+                .error(&defined.name.place, Fault::TwoKinematics { name: defined.name.text.clone() })),
             (Some(_), None) => self.frame_of_definitions(time, x),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
             (None, None) if self.is_lagrangian_form() => Ok(Frame::coordinate(self.graph, time, x)),
@@ -328,7 +346,9 @@ impl<'g> Assembler<'g, '_> {
         for coordinate in &document.coordinates {
             let Some(kinematics) = entry(&document.kinematics, &coordinate.name.text) else {
                 let coordinate = coordinate.name.text.clone();
-                return Err(self.model.error(&document.kinematics[0].name.place, Fault::KinematicsMissing { coordinate }));
+                return Err(self
+                    .model
+                    .error(&document.kinematics[0].name.place, Fault::KinematicsMissing { coordinate }));
             };
             velocities.push(self.scope.resolve(&kinematics.expression, Stage::Kinematics)?);
         }
@@ -339,7 +359,9 @@ impl<'g> Assembler<'g, '_> {
                     let fault = |text| Fault::NotAffine { text, variables: "quasi-velocities" };
                     self.scope.error(expression, expression.ast.span, fault)
                 }
-                None => self.model.algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() }),
+                None => {
+                    self.model.algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() })
+                }
             },
             other => self.model.algebra_error(other),
         })
@@ -419,7 +441,9 @@ impl<'g> Assembler<'g, '_> {
                     let quasi_velocities = document.quasi_velocities.iter().map(|q| q.name.text.clone());
                     let coordinates = document.coordinates.iter().map(|c| c.name.text.clone());
                     let known = quasi_velocities.chain(coordinates).collect();
-                    return Err(self.model.error(&name.place, Fault::NothingToPush { name: name.text.clone(), known }));
+                    return Err(self
+                        .model
+                        .error(&name.place, Fault::NothingToPush { name: name.text.clone(), known }));
                 }
             }
         }
@@ -504,7 +528,8 @@ impl<'g> Assembler<'g, '_> {
                 Some(s) => Ok(s + 1),
                 None if name.text == "t" => Ok(0),
                 None => {
-                    let known = declared.iter().map(|q| q.name.text.clone()).chain(["t".to_owned()]).collect();
+                    let known =
+                        declared.iter().map(|q| q.name.text.clone()).chain(["t".to_owned()]).collect();
                     let fault = Fault::UnknownName { name: name.text.clone(), known };
                     Err(self.model.error(&name.place, fault))
                 }

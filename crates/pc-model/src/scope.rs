@@ -102,7 +102,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(value)
     }
 
-    pub(crate) fn error(&self, expression: &Expression, span: Span, fault: impl FnOnce(String) -> Fault) -> ModelError {
+    pub(crate) fn error(
+        &self,
+        expression: &Expression,
+        span: Span,
+        fault: impl FnOnce(String) -> Fault,
+    ) -> ModelError {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
         self.document.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
     }
@@ -174,10 +179,17 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(product)
     }
 
-    fn name(&mut self, expression: &Expression, span: Span, name: &str, stage: Stage) -> Result<Expr<'g>, ModelError> {
+    fn name(
+        &mut self,
+        expression: &Expression,
+        span: Span,
+        name: &str,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
         let document = self.document;
         let refuse = |scope: &Self| {
-            let fault = |_| Fault::NotHere { name: name.to_owned(), place: stage.place(), allowed: stage.allowed() };
+            let fault =
+                |_| Fault::NotHere { name: name.to_owned(), place: stage.place(), allowed: stage.allowed() };
             Err(scope.error(expression, span, fault))
         };
         if name == "pi" {
@@ -208,7 +220,8 @@ impl<'g, 'd> Scope<'g, 'd> {
     }
 
     fn definition(&mut self, index: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
-        if let Some(&(.., value)) = self.definitions.iter().find(|known| (known.0, known.1) == (index, stage)) {
+        if let Some(&(.., value)) = self.definitions.iter().find(|known| (known.0, known.1) == (index, stage))
+        {
             return Ok(value);
         }
         let value = self.resolve(&self.document.definitions[index].expression, stage)?;
@@ -218,7 +231,8 @@ impl<'g, 'd> Scope<'g, 'd> {
 
     /// Whether definition number `index` stands before `expression`, which may itself be a definition.
     fn is_defined_before(&self, expression: &Expression, index: usize) -> bool {
-        let position = self.document.definitions.iter().position(|d| std::ptr::eq(&raw const d.expression, expression));
+        let position =
+            self.document.definitions.iter().position(|d| std::ptr::eq(&raw const d.expression, expression));
         position.is_none_or(|own| index < own)
     }
 
@@ -269,8 +283,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             Stage::Definition | Stage::Dynamics | Stage::Observation => false,
         };
         if refused {
-            let fault =
-                |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
+            let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;

@@ -28,7 +28,8 @@ impl<'g> Constrained<'g> {
                 return Err(NonholoError::Twice { name });
             }
         }
-        let (fixed, free): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&s| vanishing.contains(&all[s]));
+        let (fixed, free): (Vec<usize>, Vec<usize>) =
+            (0..all.len()).partition(|&s| vanishing.contains(&all[s]));
         let order: Vec<usize> = free.iter().chain(&fixed).copied().collect();
         let system = system.permuted(&order);
         let equations = system.poincare_constrained(free.len())?;

@@ -12,6 +12,7 @@ const ARRIVAL: f64 = 1e-9;
 fn free_top(graph: &Graph) -> SystemBuilder<'_> {
     System::builder(graph)
         .quasi_velocities(["w1", "w2", "w3"])
+        .kinematics(|_, _, _| [])
         .lagrangian(|_, _, w| (w[0].square() + 2.0 * w[1].square() + 3.0 * w[2].square()) / 2.0)
 }
 

@@ -72,6 +72,7 @@ impl Sub for Jet {
 
 impl Mul for Jet {
     type Output = Jet;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule has sums")]
     fn mul(self, other: Jet) -> Jet {
         let (u, v) = (self, other);
         Jet {

@@ -121,7 +121,7 @@ fn sample(graph: &Graph, seed: u64, k: usize, form: Form) -> Sample<'_> {
         velocities.push(graph.sum(along) + constraint.derivative(t));
         functions.x.push(graph.symbol("z"));
     }
-    let quadratic = functions.random.next_bits() % 3 == 0;
+    let quadratic = functions.random.next_bits().is_multiple_of(3);
     let lagrangian = functions.lagrangian(&eta, quadratic);
     let forces: Vec<Expr<'_>> =
         (0..k).map(|s| functions.function() + functions.function() * eta[(s + 1) % k]).collect();

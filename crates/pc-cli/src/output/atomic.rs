@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::Builder;
 
 /// Whether a file can be at `path`: its directory is there, and it is not a directory itself.
-pub(super) fn look(path: &Path) -> io::Result<()> {
+pub(crate) fn look(path: &Path) -> io::Result<()> {
     if path.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
     }
@@ -22,7 +22,7 @@ pub(super) fn look(path: &Path) -> io::Result<()> {
 }
 
 /// Puts what `write` writes at `path`. Until all of it is on disk, `path` is what it was.
-pub(super) fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+pub(crate) fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let path = followed(path);
     let mut builder = Builder::new();
     let builder = builder.prefix(".pc-").suffix(".part");

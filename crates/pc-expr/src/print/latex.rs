@@ -67,7 +67,9 @@ fn letters(text: &str) -> String {
         let named = GREEK.iter().find(|(greek, _)| *greek == letter);
         return named.map_or_else(|| letter.to_string(), |(_, name)| format!("\\{name}"));
     }
-    if let Some((_, name)) = GREEK.iter().find(|(_, name)| *name == text || name.strip_prefix("var") == Some(text)) {
+    if let Some((_, name)) =
+        GREEK.iter().find(|(_, name)| *name == text || name.strip_prefix("var") == Some(text))
+    {
         return format!("\\{name}");
     }
     if text.chars().all(|c| c.is_ascii_digit()) {
@@ -120,7 +122,7 @@ fn is_simple(argument: &str) -> bool {
     !argument.contains([' ', '+', '-', '(']) && !argument.contains("\\frac")
 }
 
-pub(super) fn power(base: Piece, exponent: &str) -> String {
+pub(super) fn power(base: &Piece, exponent: &str) -> String {
     // (\sin x)^2 is written \sin^2 x
     for function in ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh"] {
         if base.binding == Binding::Atom

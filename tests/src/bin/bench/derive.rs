@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use pc_mech::{Graph, System};
+use pc_mech::{Graph, System, VectorField};
 use pc_model::{BUILTIN, Builtin, Model};
 
 use crate::error::Error;
@@ -10,11 +10,13 @@ use crate::measure::Times;
 use crate::report::{Report, triple};
 use crate::systems;
 
+/// Links of the pendulum.
+const PENDULUM: usize = 16;
 /// Most runs of a derivation.
 const RUNS: usize = 150;
 /// It gets no more runs once they took so long together.
 const PATIENCE: Duration = Duration::from_secs(10);
-const STAGES: [&str; 4] = ["parse", "assemble", "poincare", "compile"];
+const STAGES: [&str; 5] = ["parse", "assemble", "poincare", "compile", "first calls"];
 
 /// One derivation: milliseconds of each stage, and what came out.
 struct Run {
@@ -49,18 +51,20 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     report.line(format!(
         "ms, as minimum / 10th percentile / median of up to {RUNS} runs ({} s at most), the models taking turns.\n\
          `parse`: text to document, `assemble`: to a system with its structure coefficients, `poincare`: to equations, \
-         `compile`: to programs of right-hand side, Jacobian and observables.\n`nodes` were made in the graph by all \
-         of it; `operations` is the cost of the right-hand side.\n",
+         `compile`: to programs of right-hand side, Jacobian and observables, `first calls`: of right-hand side and \
+         Jacobian, for which machine code is made.\n`nodes` were made in the graph by all of it; `operations` is the \
+         cost of the right-hand side.\n",
         PATIENCE.as_secs()
     ));
     let mut derivations: Vec<Derivation> =
         BUILTIN.iter().map(|model| Derivation::new(model.name, || derive_model(model))).collect();
-    derivations.push(Derivation::new("pendulum of 16 links (builder)", || {
+    derivations.push(Derivation::new(format!("pendulum of {PENDULUM} links (builder)"), || {
         let graph = Graph::new();
         let mut clock = Clock::new();
-        let system = systems::pendulum(&graph, 16)?;
+        let system = systems::pendulum(&graph, PENDULUM)?;
         let assemble = clock.lap();
-        derive(&system, [0.0, assemble], clock)
+        let start: Vec<f64> = (0..2 * PENDULUM).map(|i| 0.1 * i as f64).collect();
+        derive(&system, [0.0, assemble], 0.0, &start, clock)
     }));
     for _ in 0..RUNS {
         for derivation in &mut derivations {
@@ -72,8 +76,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         }
     }
 
-    let [parse, assemble, poincare, compile] = STAGES;
-    report.columns(&["model", "runs", "nodes", "operations", parse, assemble, poincare, compile, "total"]);
+    let columns: Vec<&str> =
+        ["model", "runs", "nodes", "operations"].into_iter().chain(STAGES).chain(["total"]).collect();
+    report.columns(&columns);
     for derivation in &derivations {
         let last = derivation.runs.last();
         let mut cells = vec![
@@ -113,16 +118,27 @@ fn derive_model(builtin: &Builtin) -> Result<Run, Error> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
     let assemble = clock.lap();
-    derive(&assembly.system, [parse, assemble], clock)
+    derive(&assembly.system, [parse, assemble], assembly.t_start, &assembly.start, clock)
 }
 
-fn derive(system: &System<'_>, [parse, assemble]: [f64; 2], mut clock: Clock) -> Result<Run, Error> {
+fn derive(
+    system: &System<'_>,
+    [parse, assemble]: [f64; 2],
+    t: f64,
+    start: &[f64],
+    mut clock: Clock,
+) -> Result<Run, Error> {
     let equations = system.poincare()?;
     let poincare = clock.lap();
-    let motion = equations.compile()?;
+    let mut motion = equations.compile()?;
     let compile = clock.lap();
+    let mut rates = vec![0.0; start.len()];
+    let mut jacobian = vec![0.0; start.len() * start.len()];
+    motion.rhs(t, start, &mut rates)?;
+    motion.jacobian(t, start, &mut jacobian)?;
+    let first_calls = clock.lap();
     Ok(Run {
-        stages: [parse, assemble, poincare, compile],
+        stages: [parse, assemble, poincare, compile, first_calls],
         nodes: system.graph().len(),
         operations: motion.cost().total(),
     })

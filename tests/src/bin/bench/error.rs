@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use pc_expr::ExprError;
+use pc_expr::{ExprError, Failure};
 use pc_mech::MechError;
 use pc_model::ModelError;
 
@@ -22,6 +22,9 @@ pub(crate) enum Error {
     /// A program could not be made.
     #[error(transparent)]
     Expr(#[from] ExprError),
+    /// A motion could not be evaluated.
+    #[error(transparent)]
+    Failure(#[from] Failure),
     /// A kernel could not be made.
     #[error("no {kernel} for {system}: {cause}")]
     Kernel { kernel: &'static str, system: String, cause: String },

@@ -104,9 +104,9 @@ fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) ->
             let name = if bound { format!("{}, bound", kind.name) } else { kind.name.to_owned() };
             entries.push(Entry {
                 variant: Variant::new(name, move |y: &[f64], dy: &mut [f64]| {
-                    kernel.eval(0.0, y, &parameters, dy)
+                    kernel.eval(0.0, y, &parameters, dy);
                 }),
-                operations: Some(program.code().len()),
+                operations: Some(program.cost().total()),
                 comparison: comparisons.iter().position(|c| c.kernel == kind.name && c.bound == bound),
             });
         }

@@ -1,0 +1,48 @@
+//! `pc emit`: the equations as source of other languages.
+
+use std::fs;
+use std::path::Path;
+
+use pc_mech::{EmitOptions, Graph, Language};
+
+use crate::args::{EmitArguments, Lang};
+use crate::error::CliError;
+use crate::input;
+use crate::output::atomic;
+use crate::text::say;
+
+/// Writes the source of a model into a directory, one file after the other, each whole.
+///
+/// # Errors
+/// [`CliError`].
+pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
+    let model = input::open(&arguments.model)?;
+    let graph = Graph::new();
+    let (assembly, equations) = input::derive(&model, &graph)?;
+    let language = match arguments.lang {
+        Lang::C => Language::C,
+        Lang::Rust => Language::Rust,
+    };
+    let mut options = EmitOptions::new(language, name(model.document().source.name()));
+    options = options.title(input::title(&model));
+    if let Some(t_end) = &model.document().simulation.t_end {
+        options = options.start(assembly.t_start, &assembly.start, t_end.value);
+    }
+    let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
+
+    let directory = &arguments.output;
+    let cannot = |path: &Path, source| CliError::Write { path: path.display().to_string(), source };
+    fs::create_dir_all(directory).map_err(|source| cannot(directory, source))?;
+    for file in files {
+        let path = directory.join(&file.name);
+        atomic::write(&path, |out| out.write_all(file.text.as_bytes()))
+            .map_err(|source| cannot(&path, source))?;
+        say(format_args!("{}\n", path.display()));
+    }
+    Ok(())
+}
+
+/// The name of a model file without directory and ending.
+fn name(file: &str) -> &str {
+    Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or("model").trim_matches(['<', '>'])
+}

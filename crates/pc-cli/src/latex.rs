@@ -1,0 +1,63 @@
+//! The equations for a paper: displays of LaTeX with amsmath.
+
+use std::fmt::Write as _;
+
+use pc_mech::{Equations, Expr, Style};
+
+/// One display for each part of the equations, with a comment above it.
+pub fn page(title: &str, equations: &Equations<'_>) -> String {
+    let mut page = format!("% {title}: Poincaré's equations (needs amsmath)\n");
+    for (part, lines) in [
+        ("Kinematics", kinematics(equations)),
+        ("Brackets", brackets(equations)),
+        ("Equations", equations.balance(Style::Latex)),
+        ("Energy", vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
+    ] {
+        display(&mut page, part, &lines);
+    }
+    page
+}
+
+fn display(page: &mut String, part: &str, lines: &[(String, String)]) {
+    if lines.is_empty() {
+        return;
+    }
+    let lines: Vec<String> = lines.iter().map(|(left, right)| format!("  {left} &= {right}")).collect();
+    // Writing to a string cannot fail.
+    let _ = write!(page, "\n% {part}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
+}
+
+fn kinematics(equations: &Equations<'_>) -> Vec<(String, String)> {
+    let system = equations.system();
+    let graph = system.graph();
+    let rate = |x: &Expr<'_>| graph.symbol(&format!("{x}'"));
+    let velocities = system.frame().coordinates().iter().zip(equations.velocities());
+    velocities
+        .filter(|(x, velocity)| rate(x) != **velocity)
+        .map(|(x, velocity)| (rate(x).display(Style::Latex), velocity.display(Style::Latex)))
+        .collect()
+}
+
+fn brackets(equations: &Equations<'_>) -> Vec<(String, String)> {
+    let system = equations.system();
+    let structure = system.structure();
+    let graph = system.graph();
+    let k = structure.operators();
+    let operator = |s: usize| match s.checked_sub(1).and_then(|s| system.quasi_velocities().get(s)) {
+        Some(eta) => format!("X_{{{}}}", eta.display(Style::Latex)),
+        None => format!("X_{{{s}}}"),
+    };
+    let mut lines = Vec::new();
+    for (r, s) in (0..=k).flat_map(|r| (r + 1..=k).map(move |s| (r, s))) {
+        // The operators stand in for symbols of a sum, so that signs and brackets are set as in any other.
+        let placeholders: Vec<Expr<'_>> = (1..=k).map(|m| graph.symbol(&format!("X_{m}"))).collect();
+        let sum = graph.dot((1..=k).map(|m| structure.get(r, s, m)), placeholders.iter().copied());
+        if !sum.is_zero() {
+            let text = (1..=k)
+                .rev()
+                .fold(sum.display(Style::Latex), |text, m| text.replace(&format!("X_{{{m}}}"), &operator(m)));
+            lines.push((format!("[{}, {}]", operator(r), operator(s)), text));
+        }
+    }
+    lines
+}

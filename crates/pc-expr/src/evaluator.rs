@@ -1,0 +1,66 @@
+//! A program with the kernel that runs it.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::ExprError;
+use crate::kernel::{Interpreter, Kernel, compile};
+use crate::program::Program;
+
+/// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// Machine code where the host allows it, else the interpreter.
+    #[default]
+    Fastest,
+    /// The interpreter, which needs no compiling.
+    Interpreter,
+}
+
+/// A program and its kernel, made when it is first needed.
+pub struct Evaluator {
+    program: Arc<Program>,
+    backend: Backend,
+    kernel: Option<Box<dyn Kernel>>,
+}
+
+impl fmt::Debug for Evaluator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Evaluator").field("backend", &self.backend).finish_non_exhaustive()
+    }
+}
+
+impl Clone for Evaluator {
+    /// An independent evaluator of the same code, for another thread.
+    fn clone(&self) -> Evaluator {
+        let kernel = self.kernel.as_ref().map(|kernel| kernel.fork());
+        Evaluator { program: Arc::clone(&self.program), backend: self.backend, kernel }
+    }
+}
+
+impl Evaluator {
+    /// An evaluator of `program`.
+    pub fn new(program: Program, backend: Backend) -> Evaluator {
+        Evaluator { program: Arc::new(program), backend, kernel: None }
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// Computes the outputs at (t, state, parameters), as [`Kernel::eval`] does.
+    pub fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
+        let (program, backend) = (&self.program, self.backend);
+        let kernel = self.kernel.get_or_insert_with(|| match backend {
+            Backend::Fastest => compile(Arc::clone(program)),
+            Backend::Interpreter => Box::new(Interpreter::new(Arc::clone(program))),
+        });
+        kernel.eval(t, state, parameters, outputs);
+    }
+
+    /// The innermost expression whose value is not finite at (t, state, parameters), if there is one.
+    pub fn diagnose(&self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
+        Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
+    }
+}
