@@ -101,7 +101,7 @@ pub enum AlgebraError {
         triple: (usize, usize, usize),
         /// The operator along which the defect was found.
         component: usize,
-        /// [[X_r,X_s],X_u] + cyclic, that component.
+        /// The component of \[\[X_r,X_s\],X_u\] + cyclic.
         defect: String,
     },
     /// An algebra of the wrong dimension.

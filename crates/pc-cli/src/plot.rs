@@ -116,11 +116,14 @@ impl Curve {
         Curve { name: name.to_owned(), points: thinned(&points) }
     }
 
-    /// log₁₀ |I(t) − I(0)|/|I(0)|; where I(0) is 0, the largest |I| stands for it if that is above 1.
+    /// log₁₀ |I(t) − I(0)|/|I(0)|; where I(0) is no larger than the drift, the largest |I| stands for it if that is
+    /// above 1.
     fn drift(table: &Table, j: usize) -> Curve {
         let start = table.column(j).next().unwrap_or(0.0);
-        let scale =
-            if start == 0.0 { table.column(j).fold(1.0f64, |a, b| a.max(b.abs())) } else { start.abs() };
+        let scale = match table.drift(j).relative {
+            Some(_) => start.abs(),
+            None => table.column(j).fold(1.0f64, |a, b| a.max(b.abs())),
+        };
         let drift = table.column(j).map(|value| ((value - start).abs() / scale).log10().max(FLOOR));
         Curve::new(&table.columns()[j], table.column(0).zip(drift))
     }

@@ -58,9 +58,10 @@ fn drifts(run: &Run) -> Vec<String> {
     let drifts = table.conserved().map(|j| {
         let name = &table.columns()[j];
         let drift = table.drift(j);
-        let relative = drift
-            .relative
-            .map_or_else(|| "(starts at 0)".to_owned(), |relative| format!("relative {}", small(relative)));
+        let relative = drift.relative.map_or_else(
+            || "(starts no larger)".to_owned(),
+            |relative| format!("relative {}", small(relative)),
+        );
         let note = if j + 1 == table.conserved().end && !run.keeps_energy {
             "   (not an integral here)"
         } else {

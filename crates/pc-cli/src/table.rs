@@ -84,7 +84,8 @@ impl Table {
             let change = (value - start).abs();
             if change > worst || change.is_nan() { change } else { worst }
         });
-        Drift { absolute, relative: (start != 0.0).then(|| absolute / start.abs()) }
+        // Against a start that is itself no larger than the drift a ratio says nothing.
+        Drift { absolute, relative: (absolute < start.abs()).then(|| absolute / start.abs()) }
     }
 }
 
@@ -93,6 +94,6 @@ impl Table {
 pub struct Drift {
     /// max |I(t) − I(t_start)|
     pub absolute: f64,
-    /// The same, divided by |I(t_start)| unless that is 0.
+    /// The same, divided by |I(t_start)| where that is larger.
     pub relative: Option<f64>,
 }

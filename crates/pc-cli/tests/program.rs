@@ -352,7 +352,7 @@ fn source_is_emitted_into_a_directory() {
         assert_eq!(code(&output), 0);
         for file in files {
             let text = std::fs::read_to_string(directory.path().join("new").join(file)).expect(file);
-            assert!(text.contains("euler_top") && text.contains("omega1"), "{text}");
+            assert!(text.contains("euler_top") && text.contains("ω1"), "{text}");
         }
     }
     refuses(&["emit", "euler-top", "--lang", "fortran", "-o", &path], 2, "possible values: c, rust");
