@@ -72,6 +72,10 @@ impl Graph {
 
     /// The coefficients c_i = (1/i!) ∂ⁱe/∂zⁱ at z = 0 of a polynomial in z, if e is one of moderate degree.
     fn powers<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Vec<Expr<'g>>> {
+        let (symbol, output) = (z.symbol_in(self), e.atom_in(self));
+        if self.with(|dag| dag.is_below_a_call(symbol, output)) {
+            return None; // four derivatives of a root would show the same
+        }
         let mut derivatives = vec![e];
         loop {
             let next = derivatives[derivatives.len() - 1].derivative(z);

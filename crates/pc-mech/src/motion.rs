@@ -9,6 +9,10 @@ use crate::poincare::Equations;
 /// A pivot this small against the largest diagonal entry of M is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;
 
+/// A Jacobian of more operations is interpreted: integrators ask for it once in dozens of steps, and machine code for
+/// it would take longer to make than a run.
+const LONG_JACOBIAN: usize = 5000;
+
 /// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
 #[derive(Clone, Debug)]
 pub struct Motion {
@@ -68,11 +72,23 @@ impl<'g> Equations<'g> {
             parameters: system.parameters.iter().map(|&(_, value)| value).collect(),
             outputs: vec![0.0; rhs.program().outputs_len()],
             rhs,
-            jacobian: compile(&self.jacobian(&factors, &accelerations), backend)?,
+            jacobian: self.compile_jacobian(&inputs, &factors, &accelerations, backend)?,
             observables: compile(&observed, Backend::Interpreter)?,
             observable_names,
             conserved: system.integrals.len() + 1,
         })
+    }
+
+    fn compile_jacobian(
+        &self,
+        inputs: &Inputs<'g>,
+        factors: &Factors<'g>,
+        accelerations: &[Expr<'g>],
+        backend: Backend,
+    ) -> Result<Evaluator, ExprError> {
+        let program = Program::new(self.system.graph(), inputs, &self.jacobian(factors, accelerations))?;
+        let long = program.code().len() > LONG_JACOBIAN;
+        Ok(Evaluator::new(program, if long { Backend::Interpreter } else { backend }))
     }
 
     /// What the compiled programs read.
