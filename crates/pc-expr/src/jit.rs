@@ -11,6 +11,7 @@
 mod circle;
 mod emit;
 mod host;
+mod memory;
 mod plan;
 mod shim;
 
@@ -50,15 +51,17 @@ pub struct JitOptions {
     pub fma: bool,
     /// Compute sines and cosines in line, to 2 units in the last place, where the processor has fused multiply-add.
     pub inline_trig: bool,
-    /// A value that is not used for so many instructions waits in memory.
-    pub spill_distance: u32,
+    /// How many values are held in machine registers; the others wait in memory.
+    pub registers: u32,
     /// Instructions in a function, for programs of more than 50 000 instructions.
     pub chunk: usize,
 }
 
 impl Default for JitOptions {
     fn default() -> JitOptions {
-        JitOptions { fma: true, inline_trig: true, spill_distance: 32, chunk: 1000 }
+        // Of 16 or 32 registers, some hold what an instruction or the generator is about.
+        let registers = if cfg!(target_arch = "x86_64") { 14 } else { 28 };
+        JitOptions { fma: true, inline_trig: true, registers, chunk: 1000 }
     }
 }
 

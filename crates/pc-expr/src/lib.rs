@@ -22,6 +22,7 @@
 //! # Ok::<(), pc_expr::ExprError>(())
 //! ```
 
+mod angles;
 mod collect;
 mod cone;
 mod dag;

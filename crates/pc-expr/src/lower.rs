@@ -2,9 +2,11 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::angles::{Compositions, SignedAngle, compositions};
 use crate::cone::Cone;
 use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::error::ExprError;
+use crate::function::Function;
 use crate::number::Number;
 use crate::program::{Instruction, Program, Register};
 use crate::sharing::{Factor, FactorId, SharedProduct, SharedProducts};
@@ -17,6 +19,7 @@ pub(crate) struct Lowering<'a> {
     known: FxHashMap<Instruction, u32>,
     registers: FxHashMap<NodeId, Register>,
     products: SharedProducts,
+    compositions: Compositions,
     factors: FxHashMap<FactorId, Register>,
     /// Results are numbered from here on once all constants are known.
     results: Vec<Instruction>,
@@ -41,6 +44,7 @@ impl<'a> Lowering<'a> {
             known: FxHashMap::default(),
             registers,
             products: SharedProducts::default(),
+            compositions: Compositions::default(),
             factors: FxHashMap::default(),
             results: Vec::new(),
         }
@@ -56,6 +60,7 @@ impl<'a> Lowering<'a> {
             }
         }
         self.products = SharedProducts::of(self.dag, &cone);
+        self.compositions = compositions(self.dag, &cone);
         let mut registers = Vec::with_capacity(outputs.len());
         for &output in outputs {
             registers.push(match output {
@@ -91,7 +96,10 @@ impl<'a> Lowering<'a> {
             } else {
                 open.push((id, true));
                 let first = open.len();
-                self.dag.for_each_child(id, |child| open.push((child, false)));
+                match self.composition(id) {
+                    Some((_, angles)) => open.extend(angles.map(|(angle, _)| (angle, false))),
+                    None => self.dag.for_each_child(id, |child| open.push((child, false))),
+                }
                 open[first..].reverse();
             }
         }
@@ -99,6 +107,9 @@ impl<'a> Lowering<'a> {
 
     fn lower(&mut self, id: NodeId) -> Register {
         let dag = self.dag;
+        if let Some((function, angles)) = self.composition(id) {
+            return self.lower_composition(function, angles);
+        }
         match dag.node(id) {
             Node::Constant(c) => self.constant(c),
             Node::Symbol(_) => unreachable!("every symbol of the cone is an input"),
@@ -114,6 +125,45 @@ impl<'a> Lowering<'a> {
             }
             Node::Product { .. } => self.lower_product(id),
             Node::Sum { constant, terms } => self.lower_sum(constant, dag.terms(terms)),
+        }
+    }
+
+    /// The sine or cosine of a sum of two angles, if it is to be computed from those of the angles.
+    fn composition(&self, id: NodeId) -> Option<(Function, [SignedAngle; 2])> {
+        match self.dag.node(id) {
+            Node::Call { function, args } if matches!(function, Function::Sin | Function::Cos) => {
+                self.compositions.get(&args[0]).map(|angles| (function, *angles))
+            }
+            _ => None,
+        }
+    }
+
+    fn lower_composition(
+        &mut self,
+        function: Function,
+        [(a, minus_a), (b, minus_b)]: [SignedAngle; 2],
+    ) -> Register {
+        let [a, b] = [a, b].map(|angle| {
+            let angle = [self.registers[&angle]; 3];
+            [Function::Sin, Function::Cos].map(|call| self.emit(Instruction::Call(call, angle)))
+        });
+        let mut multiply = |x, y| self.emit(Instruction::Multiply(x, y));
+        if function == Function::Cos {
+            let (cosines, sines) = (multiply(a[1], b[1]), multiply(a[0], b[0]));
+            return self.emit(match minus_a == minus_b {
+                true => Instruction::Subtract(cosines, sines),
+                false => Instruction::Add(cosines, sines),
+            });
+        }
+        let (first, second) = (multiply(a[0], b[1]), multiply(a[1], b[0]));
+        match (minus_a, minus_b) {
+            (false, false) => self.emit(Instruction::Add(first, second)),
+            (false, true) => self.emit(Instruction::Subtract(first, second)),
+            (true, false) => self.emit(Instruction::Subtract(second, first)),
+            (true, true) => {
+                let sum = self.emit(Instruction::Add(first, second));
+                self.emit(Instruction::Negate(sum))
+            }
         }
     }
 

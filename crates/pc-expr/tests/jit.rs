@@ -11,7 +11,7 @@ use pc_expr::{
 use proptest::prelude::*;
 
 /// Options under which compiled code gives what the interpreter gives, bit for bit.
-const EXACT: JitOptions = JitOptions { fma: false, inline_trig: false, spill_distance: 32, chunk: 1000 };
+const EXACT: JitOptions = JitOptions { fma: false, inline_trig: false, registers: 14, chunk: 1000 };
 const STATE: usize = 4;
 const PARAMETERS: usize = 3;
 
@@ -132,8 +132,8 @@ fn exact_options_give_the_interpreters_bits() {
         for program in [program.clone(), program.fused()] {
             seen.extend(program.cost().iter().map(|(kind, _)| kind));
             let mut interpreter = Interpreter::new(Arc::new(program.clone()));
-            let distance = [0, 1, 4, 32, u32::MAX][round % 5];
-            let options = JitOptions { spill_distance: distance, ..EXACT };
+            let registers = [0, 1, 4, 14, u32::MAX][round % 5];
+            let options = JitOptions { registers, ..EXACT };
             let mut jit = Jit::with_options(&program, &options).unwrap();
             for _ in 0..100 {
                 let inputs = random_inputs(&mut random);
@@ -458,11 +458,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_option_gives_the_same_values(seed: u64, size in 10_usize..200, distance in 0_u32..80, far in -1e7..1e7) {
+    fn any_option_gives_the_same_values(seed: u64, size in 10_usize..200, registers in 0_u32..40, far in -1e7..1e7) {
         let mut random = Random(seed);
         let program = random_program(&mut random, size, true);
         let mut reference = Jit::new(&program).unwrap();
-        let options = JitOptions { spill_distance: distance, ..JitOptions::default() };
+        let options = JitOptions { registers, ..JitOptions::default() };
         let mut other = Jit::with_options(&program, &options).unwrap();
         let mut inputs = random_inputs(&mut random);
         inputs.1[1] = far; // some sines take the library, some do not

@@ -117,7 +117,7 @@ pub(super) fn compile_far(host: &Host) -> Result<Code, JitError> {
     close(b, host);
     let mut assembly = Assembly::new(host);
     let id = assembly.define(&mut context)?;
-    assembly.finish(id)
+    assembly.finish(id, Box::default())
 }
 
 /// Arithmetic on vectors of two numbers.

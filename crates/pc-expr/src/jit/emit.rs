@@ -2,19 +2,21 @@
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
-use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
+use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::FuncId;
 
 use super::JitError;
 use super::host::{Assembly, Code, Host};
-use super::plan::{Plan, Step};
+use super::memory::{Area, Memory};
+use super::plan::{Plan, Stay, Step};
 use super::{circle, shim};
 use crate::function::Function;
 use crate::program::{Instruction, Program, Register};
 
 /// Compiles a program; answers how many numbers of scratch memory it needs, too.
 pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Code, usize), JitError> {
+    let constants: Box<[f64]> = program.constants().into();
     let mut assembly = Assembly::new(host);
     let mut values = Values::new(program, plan);
     let mut context = Context::new();
@@ -22,10 +24,11 @@ pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Co
     let mut parts = Vec::new();
     let mut start = 0_usize;
     loop {
-        let end = plan.steps.len().min(start.saturating_add(plan.reach.chunk));
+        let end = plan.steps.len().min(start.saturating_add(plan.chunk));
         context.func.signature = host.entry_signature();
-        let builder = FunctionBuilder::new(&mut context.func, &mut frontend);
-        let mut emitter = Emitter::new(host, program, plan, &mut values, builder, start);
+        let mut b = FunctionBuilder::new(&mut context.func, &mut frontend);
+        let memory = Memory::open(&mut b, &constants);
+        let mut emitter = Emitter { host, program, plan, values: &mut values, memory, b };
         if start == 0 {
             emitter.keep_time();
         }
@@ -48,7 +51,7 @@ pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Co
     } else {
         call_all(host, &mut assembly, &mut context, &mut frontend, &parts)?
     };
-    Ok((assembly.finish(entry)?, values.slots as usize))
+    Ok((assembly.finish(entry, constants)?, values.slots as usize))
 }
 
 /// A function that calls the parts one after another.
@@ -97,8 +100,10 @@ enum Home {
 
 /// What is known of the registers' values while the steps are written down.
 struct Values {
-    /// The value in a machine register, and the step that touched it last.
-    live: Vec<Option<(Value, u32)>>,
+    /// The value in a machine register, as far as the plan holds it there.
+    live: Vec<Option<Value>>,
+    /// How many operands have been read.
+    read: usize,
     home: Vec<Home>,
     free: Vec<u32>,
     slots: u32,
@@ -125,6 +130,7 @@ impl Values {
         debug_assert_eq!(plan.waits.len(), home.len());
         Values {
             live: vec![None; program.registers_len()],
+            read: 0,
             home,
             free: Vec::new(),
             slots: 0,
@@ -147,68 +153,39 @@ struct Emitter<'a> {
     program: &'a Program,
     plan: &'a Plan,
     values: &'a mut Values,
+    memory: Memory,
     b: FunctionBuilder<'a>,
-    t: Value,
-    state: Value,
-    parameters: Value,
-    outputs: Value,
-    scratch: Value,
-    /// First step of this function.
-    start: u32,
 }
 
-impl<'a> Emitter<'a> {
-    fn new(
-        host: &'a Host,
-        program: &'a Program,
-        plan: &'a Plan,
-        values: &'a mut Values,
-        mut b: FunctionBuilder<'a>,
-        start: usize,
-    ) -> Emitter<'a> {
-        let arguments = open(&mut b);
-        let [t, state, parameters, outputs, scratch] = [0, 1, 2, 3, 4].map(|i| arguments[i]);
-        Emitter {
-            host,
-            program,
-            plan,
-            values,
-            b,
-            t,
-            state,
-            parameters,
-            outputs,
-            scratch,
-            start: start as u32,
-        }
-    }
-
-    fn finish(self) {
-        close(self.b, self.host);
+impl Emitter<'_> {
+    fn finish(mut self) {
+        self.b.ins().return_(&[]);
+        self.memory.close(&mut self.b);
+        self.b.seal_all_blocks();
+        self.b.finalize(self.host.frontend_config());
     }
 
     /// Time is the one input that comes in a register: where it is needed later, it waits in a slot of its own.
     fn keep_time(&mut self) {
         let time = self.program.first_input();
-        self.values.live[time] = Some((self.t, 0));
+        self.values.live[time] = Some(self.memory.t);
         if self.plan.waits[time] {
             let slot = self.values.slot();
             self.values.home[time] = Home::Slot(slot);
-            self.store(self.t, self.scratch, slot);
+            self.store(self.memory.t, Area::Scratch, slot);
         }
     }
 
     /// Outputs that are constants or inputs.
     fn copy_outputs(&mut self) {
-        let now = self.plan.steps.len() as u32;
         for (i, &output) in self.program.outputs().iter().enumerate() {
             if output.index() < self.program.first_result() {
                 let value = if output.index() == self.program.first_input() {
-                    self.t
+                    self.memory.t
                 } else {
-                    self.value(output, now)
+                    self.load_value(output.index())
                 };
-                self.store(value, self.outputs, i as u32);
+                self.store(value, Area::Outputs, i as u32);
             }
         }
     }
@@ -216,21 +193,20 @@ impl<'a> Emitter<'a> {
     fn step(&mut self, now: u32) {
         match self.plan.steps[now as usize] {
             Step::One(register, instruction) => {
-                let value = self.instruction(instruction, now);
+                let value = self.instruction(instruction);
                 self.free(now);
-                self.set(register, value, now);
+                self.set(register, value);
             }
             Step::Circles(first, second) => {
                 let circles = [Some(first), second];
                 let circles = || circles.iter().flatten();
-                let arguments: Vec<Value> =
-                    circles().map(|circle| self.value(circle.argument, now)).collect();
+                let arguments: Vec<Value> = circles().map(|circle| self.value(circle.argument)).collect();
                 let results = circle::emit(&mut self.b, self.host, &arguments);
                 self.free(now);
                 for (circle, (sin, cos)) in circles().zip(results) {
                     for (register, value) in [(circle.sin, sin), (circle.cos, cos)] {
                         if let Some(register) = register {
-                            self.set(register, value, now);
+                            self.set(register, value);
                         }
                     }
                 }
@@ -238,43 +214,50 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// The value of a register for use at step `now`, loaded where it is not in a machine register.
-    fn value(&mut self, register: Register, now: u32) -> Value {
+    /// The operand to be read next, loaded where it is not in a machine register, and whether it stays in one.
+    fn operand(&mut self, register: Register) -> (Value, bool) {
         let r = register.index();
+        let Stay { held, dies } = self.plan.stays[self.values.read];
+        self.values.read += 1;
         let value = match self.values.live[r] {
-            Some((value, touched)) if touched >= self.start && self.plan.reach.keeps(touched, now) => value,
+            Some(value) if held => value,
             _ => self.load_value(r),
         };
-        self.values.live[r] = Some((value, now));
-        value
+        self.values.live[r] = Some(value);
+        (value, !dies)
+    }
+
+    /// The value of the operand to be read next.
+    fn value(&mut self, register: Register) -> Value {
+        self.operand(register).0
     }
 
     fn load_value(&mut self, r: usize) -> Value {
         let program = self.program;
         if r < program.first_input() {
-            return self.b.ins().f64const(program.constants()[r]);
+            return self.load(Area::Constants, r as u32);
         }
         match (self.values.home[r], r.checked_sub(program.first_input() + 1)) {
-            (Home::Slot(slot), _) => self.load(self.scratch, slot),
-            (Home::Output(output), _) => self.load(self.outputs, output),
-            (Home::None, Some(i)) if i < program.state_len() => self.load(self.state, i as u32),
-            (Home::None, Some(i)) => self.load(self.parameters, (i - program.state_len()) as u32),
-            (Home::None, None) => self.t,
+            (Home::Slot(slot), _) => self.load(Area::Scratch, slot),
+            (Home::Output(output), _) => self.load(Area::Outputs, output),
+            (Home::None, Some(i)) if i < program.state_len() => self.load(Area::State, i as u32),
+            (Home::None, Some(i)) => self.load(Area::Parameters, (i - program.state_len()) as u32),
+            (Home::None, None) => self.memory.t,
         }
     }
 
     /// Notes the result of a step, and stores it if it is an output or must wait.
-    fn set(&mut self, register: Register, value: Value, now: u32) {
+    fn set(&mut self, register: Register, value: Value) {
         let r = register.index();
-        self.values.live[r] = Some((value, now));
+        self.values.live[r] = Some(value);
         let mut output = self.values.first_output[r];
         if output == NONE && self.plan.waits[r] {
             let slot = self.values.slot();
             self.values.home[r] = Home::Slot(slot);
-            self.store(value, self.scratch, slot);
+            self.store(value, Area::Scratch, slot);
         }
         while output != NONE {
-            self.store(value, self.outputs, output);
+            self.store(value, Area::Outputs, output);
             output = self.values.next_output[output as usize];
         }
     }
@@ -292,57 +275,44 @@ impl<'a> Emitter<'a> {
         });
     }
 
-    fn load(&mut self, base: Value, index: u32) -> Value {
-        self.b.ins().load(types::F64, MemFlagsData::trusted(), base, (index * 8) as i32)
+    fn load(&mut self, area: Area, index: u32) -> Value {
+        self.memory.load(&mut self.b, area, index)
     }
 
-    fn store(&mut self, value: Value, base: Value, index: u32) {
-        self.b.ins().store(MemFlagsData::trusted(), value, base, (index * 8) as i32);
+    fn store(&mut self, value: Value, area: Area, index: u32) {
+        self.memory.store(&mut self.b, value, area, index);
     }
 
-    fn instruction(&mut self, instruction: Instruction, now: u32) -> Value {
-        let mut get = |r: Register| self.value(r, now);
+    fn instruction(&mut self, instruction: Instruction) -> Value {
         match instruction {
             Instruction::Add(a, b) => {
-                let (a, b) = (get(a), get(b));
+                let (a, b) = (self.value(a), self.value(b));
                 self.b.ins().fadd(a, b)
             }
             Instruction::Subtract(a, b) => {
-                let (a, b) = (get(a), get(b));
+                let (a, b) = (self.value(a), self.value(b));
                 self.b.ins().fsub(a, b)
             }
             Instruction::Multiply(a, b) => {
-                let (a, b) = (get(a), get(b));
+                let (a, b) = (self.value(a), self.value(b));
                 self.b.ins().fmul(a, b)
             }
             Instruction::Divide(a, b) => {
-                let (a, b) = (get(a), get(b));
+                let (a, b) = (self.value(a), self.value(b));
                 self.b.ins().fdiv(a, b)
             }
             Instruction::Negate(a) => {
-                let a = get(a);
+                let a = self.value(a);
                 self.b.ins().fneg(a)
             }
-            Instruction::MultiplyAdd(a, b, c) => {
-                let abc = [get(a), get(b), get(c)];
-                self.multiply_add(abc, false, false)
-            }
-            Instruction::MultiplySubtract(a, b, c) => {
-                let abc = [get(a), get(b), get(c)];
-                self.multiply_add(abc, false, true)
-            }
-            Instruction::NegateMultiplyAdd(a, b, c) => {
-                let abc = [get(a), get(b), get(c)];
-                self.multiply_add(abc, true, false)
-            }
-            Instruction::NegateMultiplySubtract(a, b, c) => {
-                let abc = [get(a), get(b), get(c)];
-                self.multiply_add(abc, true, true)
-            }
+            Instruction::MultiplyAdd(a, b, c) => self.multiply_add([a, b, c], false, false),
+            Instruction::MultiplySubtract(a, b, c) => self.multiply_add([a, b, c], false, true),
+            Instruction::NegateMultiplyAdd(a, b, c) => self.multiply_add([a, b, c], true, false),
+            Instruction::NegateMultiplySubtract(a, b, c) => self.multiply_add([a, b, c], true, true),
             Instruction::Call(function, registers) => {
-                let mut args = registers.map(|_| self.t);
+                let mut args = registers.map(|_| self.memory.t);
                 for (arg, &register) in args.iter_mut().zip(&registers[..function.arity()]) {
-                    *arg = self.value(register, now);
+                    *arg = self.value(register);
                 }
                 self.function(function, args)
             }
@@ -350,7 +320,10 @@ impl<'a> Emitter<'a> {
     }
 
     /// ±a·b ± c, rounded once.
-    fn multiply_add(&mut self, [a, b, c]: [Value; 3], negate_product: bool, negate_term: bool) -> Value {
+    fn multiply_add(&mut self, abc: [Register; 3], negate_product: bool, negate_term: bool) -> Value {
+        let [(a, a_stays), (b, b_stays), (c, _)] = abc.map(|r| self.operand(r));
+        // The result takes the place of the first operand: if that is not used again, nothing need be copied.
+        let (a, b) = if a_stays && !b_stays { (b, a) } else { (a, b) };
         let a = if negate_product { self.b.ins().fneg(a) } else { a };
         let c = if negate_term { self.b.ins().fneg(c) } else { c };
         if self.host.has_fma() {

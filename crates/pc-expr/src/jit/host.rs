@@ -111,11 +111,11 @@ impl Assembly {
         name
     }
 
-    /// Makes the code executable, to be entered at a function.
-    pub(super) fn finish(mut self, entry: FuncId) -> Result<Code, JitError> {
+    /// Makes the code executable, to be entered at a function; `constants` are what it reads by address.
+    pub(super) fn finish(mut self, entry: FuncId, constants: Box<[f64]>) -> Result<Code, JitError> {
         self.0.finalize_definitions()?;
         let address = self.0.get_finalized_function(entry) as usize;
-        Ok(Code { address, _assembly: Mutex::new(self) })
+        Ok(Code { address, _assembly: Mutex::new(self), _constants: constants })
     }
 }
 
@@ -132,6 +132,8 @@ pub(super) struct Code {
     address: usize,
     /// Owned, never looked at; the mutex makes it `Sync`.
     _assembly: Mutex<Assembly>,
+    /// Read by the code.
+    _constants: Box<[f64]>,
 }
 
 impl Code {

@@ -2,7 +2,8 @@
 //!
 //! Straight-line code of thousands of operations does not fit sixteen registers, and register allocators spill it
 //! badly. So the order is chosen here: depth first from the outputs, the operand that needs more registers first. And
-//! a value that is idle for long is stored once and loaded again at its next use, instead of holding a register.
+//! so are the values that wait in memory instead of holding a register: whenever there are too many, the one whose next
+//! use is furthest away (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code loads least often.
 
 use crate::function::Function;
 use crate::program::{Instruction, Program, Register};
@@ -68,54 +69,165 @@ pub(super) struct Plan {
     pub(super) steps: Vec<Step>,
     /// By register: the last step that reads it.
     pub(super) last_use: Vec<u32>,
-    /// By register: whether it is needed again after a time idle.
+    /// By register: whether it is needed again after it has left the machine's registers.
     pub(super) waits: Vec<bool>,
-    pub(super) reach: Reach,
-}
-
-/// How long a value stays in a register.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reach {
-    /// Steps without use.
-    distance: u32,
+    /// By operand, in the order of the steps.
+    pub(super) stays: Vec<Stay>,
     /// Steps in a function.
     pub(super) chunk: usize,
 }
 
-impl Reach {
-    /// Whether a value used or made at step `before` is still in a register at step `now`.
-    pub(super) fn keeps(self, before: u32, now: u32) -> bool {
-        now - before <= self.distance && before as usize / self.chunk == now as usize / self.chunk
-    }
+/// An operand's stay in the machine's registers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stay {
+    /// Whether it is there already.
+    pub(super) held: bool,
+    /// Whether it does not stay for a further use.
+    pub(super) dies: bool,
 }
+
+/// No further use.
+const NEVER: u32 = u32::MAX;
 
 impl Plan {
     pub(super) fn new(program: &Program, options: &JitOptions) -> Plan {
         let order = depth_first(program);
         let steps = if options.inline_trig { with_circles(program, &order) } else { plain(program, &order) };
         let chunk = if steps.len() > WHOLE { options.chunk.max(1) } else { usize::MAX };
+        let uses = NextUses::of(program, &steps);
         let mut plan = Plan {
             steps,
-            last_use: vec![0; program.registers_len()],
+            last_use: uses.last_use.clone(),
             waits: vec![false; program.registers_len()],
-            reach: Reach { distance: options.spill_distance, chunk },
+            stays: Vec::with_capacity(uses.after_operand.len()),
+            chunk,
         };
-        plan.find_idle();
+        plan.hold(
+            &uses,
+            Held::new(options.registers as usize, program.registers_len()),
+            program.first_input(),
+        );
         plan
     }
 
-    fn find_idle(&mut self) {
-        // Before the first step there are constants and inputs: at step 0, as good as anywhere.
-        let mut touched = vec![0; self.waits.len()];
-        for (now, step) in (0..).zip(&self.steps) {
+    fn hold(&mut self, uses: &NextUses, mut held: Held, time: usize) {
+        held.keep(time, uses.at_start[time]);
+        let mut results = uses.after_result.iter();
+        for (now, step) in self.steps.iter().enumerate() {
+            if now > 0 && now.is_multiple_of(self.chunk) {
+                held.clear();
+            }
             step.for_each_operand(|r| {
-                let r = r.index();
-                self.waits[r] |= !self.reach.keeps(touched[r], now);
-                touched[r] = now;
-                self.last_use[r] = now;
+                let (r, operand) = (r.index(), self.stays.len());
+                let is_held = held.has(r) || held.was_read_at(now, r);
+                if is_held && let Some(stay) = self.stays.get_mut(held.read_last[r]) {
+                    stay.dies = false;
+                }
+                self.waits[r] |= !is_held;
+                self.stays.push(Stay { held: is_held, dies: true });
+                (held.read_at[r], held.read_last[r]) = (now, operand);
+                held.keep(r, uses.after_operand[operand]);
             });
-            step.for_each_result(|r| touched[r.index()] = now);
+            step.for_each_result(|r| {
+                if let Some(&next) = results.next() {
+                    held.keep(r.index(), next);
+                }
+            });
         }
+    }
+}
+
+/// When values are used next.
+struct NextUses {
+    /// By register: the first step that reads it.
+    at_start: Vec<u32>,
+    /// By operand, in the order of the steps.
+    after_operand: Vec<u32>,
+    /// By result, in the order of the steps.
+    after_result: Vec<u32>,
+    /// By register.
+    last_use: Vec<u32>,
+}
+
+impl NextUses {
+    fn of(program: &Program, steps: &[Step]) -> NextUses {
+        let mut next = vec![NEVER; program.registers_len()];
+        let mut last_use = vec![0; program.registers_len()];
+        let (mut after_operand, mut after_result) = (Vec::new(), Vec::new());
+        let mut registers = Vec::new();
+        for (now, step) in steps.iter().enumerate().rev() {
+            let now = now as u32;
+            step.for_each_result(|r| registers.push(r.index()));
+            after_result.extend(registers.drain(..).rev().map(|r| next[r]));
+            step.for_each_operand(|r| registers.push(r.index()));
+            // An operand that is read twice in a step has the same next use both times.
+            after_operand.extend(registers.iter().rev().map(|&r| next[r]));
+            for r in registers.drain(..) {
+                last_use[r] = last_use[r].max(now);
+                next[r] = now;
+            }
+        }
+        after_operand.reverse();
+        after_result.reverse();
+        NextUses { at_start: next, after_operand, after_result, last_use }
+    }
+}
+
+/// The values in machine registers.
+struct Held {
+    room: usize,
+    values: Vec<usize>,
+    /// By register of the program: its next use, if it is held.
+    next: Vec<u32>,
+    /// By register of the program: the step and the operand that read it last.
+    read_at: Vec<usize>,
+    read_last: Vec<usize>,
+}
+
+impl Held {
+    fn new(room: usize, registers: usize) -> Held {
+        Held {
+            room: room.max(1),
+            values: Vec::new(),
+            next: vec![NEVER; registers],
+            read_at: vec![usize::MAX; registers],
+            read_last: vec![usize::MAX; registers],
+        }
+    }
+
+    fn has(&self, value: usize) -> bool {
+        self.next[value] != NEVER
+    }
+
+    fn was_read_at(&self, step: usize, value: usize) -> bool {
+        self.read_at[value] == step
+    }
+
+    fn clear(&mut self) {
+        for r in self.values.drain(..) {
+            self.next[r] = NEVER;
+        }
+    }
+
+    /// Keeps `value`, which is used next at step `next`, if there is room or a value is used later still.
+    fn keep(&mut self, value: usize, next: u32) {
+        if let Some(place) = self.values.iter().position(|&r| r == value) {
+            self.next[value] = next;
+            if next == NEVER {
+                self.values.swap_remove(place);
+            }
+            return;
+        }
+        if next == NEVER {
+            return;
+        }
+        if self.values.len() == self.room {
+            let latest = (0..self.room).max_by_key(|&i| self.next[self.values[i]]);
+            let Some(place) = latest.filter(|&i| self.next[self.values[i]] > next) else { return };
+            self.next[self.values.swap_remove(place)] = NEVER;
+        }
+        self.values.push(value);
+        self.next[value] = next;
     }
 }
 
