@@ -3,7 +3,10 @@
 //! Nothing here needs to be trusted: a form that is built is adopted only where its fingerprint says that it is the
 //! same function, and only where it is cheaper. With [`Folding::Structural`] expressions stay as they are.
 
-use crate::dag::{Atom, Dag, Folding, NodeId};
+use rustc_hash::FxHashMap;
+
+use crate::cone::Cone;
+use crate::dag::{Atom, Dag, Folding, Node, NodeId};
 use crate::expr::Expr;
 use crate::function::Function;
 use crate::graph::Graph;
@@ -73,8 +76,12 @@ impl Graph {
     /// The coefficients c_i = (1/i!) ∂ⁱe/∂zⁱ at z = 0 of a polynomial in z, if e is one of moderate degree.
     fn powers<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Vec<Expr<'g>>> {
         let (symbol, output) = (z.symbol_in(self), e.atom_in(self));
-        if self.with(|dag| dag.is_below_a_call(symbol, output)) {
-            return None; // four derivatives of a root would show the same
+        match self.with(|dag| dag.powers(symbol, output)) {
+            Powers::Coefficients(coefficients) => {
+                return Some(coefficients.into_iter().map(|c| self.expr(c)).collect());
+            }
+            Powers::BelowACall => return None, // four derivatives of a root would show the same
+            Powers::Unknown => {}
         }
         let mut derivatives = vec![e];
         loop {
@@ -106,7 +113,7 @@ impl Graph {
     /// e written without the symbols that it contains but does not depend on: they are put to a regular value.
     fn forget<'g>(&'g self, e: Expr<'g>) -> Expr<'g> {
         let mut short = e;
-        for z in self.symbols_of(&[e]) {
+        for z in self.repeated_symbols(e) {
             if !self.symbols_of(&[short]).contains(&z) || short.depends_on(z) {
                 continue;
             }
@@ -124,6 +131,27 @@ impl Graph {
             }
         }
         short
+    }
+
+    /// The symbols that occur more than once when e is written out: what occurs once does not cancel.
+    fn repeated_symbols<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
+        let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
+        let repeated: Vec<NodeId> = self.with(|dag| {
+            let cone = Cone::below(dag, [Atom::Node(root)]);
+            let mut occurrences: FxHashMap<NodeId, u32> = FxHashMap::default();
+            occurrences.insert(root, 1);
+            for &node in cone.order.iter().rev() {
+                let above = occurrences[&node];
+                dag.for_each_child(node, |child| {
+                    let count = occurrences.entry(child).or_insert(0);
+                    *count = count.saturating_add(above);
+                });
+            }
+            let is_repeated =
+                |node: &NodeId| matches!(dag.node(*node), Node::Symbol(_)) && occurrences[node] > 1;
+            cone.order.iter().copied().filter(is_repeated).collect()
+        });
+        repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
     /// e with z = 0, sin z and cos z as given.
@@ -146,6 +174,83 @@ impl Graph {
     /// Whether two expressions have the same fingerprint.
     fn is_same_value<'g>(&'g self, a: Expr<'g>, b: Expr<'g>) -> bool {
         (a - b).is_zero()
+    }
+}
+
+/// What is seen of an expression's powers of a symbol without differentiating.
+enum Powers {
+    /// The coefficients.
+    Coefficients(Vec<Atom>),
+    /// The symbol stands in a denominator, or its powers are high.
+    Unknown,
+    /// It is an argument of a function.
+    BelowACall,
+}
+
+impl Dag {
+    /// The powers of a symbol in sums and products, multiplied out.
+    fn powers(&mut self, symbol: NodeId, output: Atom) -> Powers {
+        let cone = Cone::below(self, [output]);
+        let active = cone.depending_on(self, &[symbol]);
+        if active.iter().any(|&node| matches!(self.node(node), Node::Call { .. })) {
+            return Powers::BelowACall;
+        }
+        let mut known: FxHashMap<NodeId, Vec<Atom>> = FxHashMap::default();
+        known.insert(symbol, vec![Atom::ZERO, Atom::ONE]);
+        for &node in cone.order.iter().filter(|&node| active.contains(node)) {
+            let powers = match self.node(node) {
+                Node::Sum { constant, terms } => {
+                    let mut sums = vec![vec![(Atom::Constant(constant), Number::ONE)]];
+                    for &(term, q) in self.terms(terms) {
+                        let own = [Atom::Node(term)];
+                        let powers = known.get(&term).map_or(&own[..], Vec::as_slice);
+                        sums.resize(sums.len().max(powers.len()), Vec::new());
+                        for (sum, &c) in sums.iter_mut().zip(powers) {
+                            sum.push((c, q));
+                        }
+                    }
+                    sums.iter().map(|terms| self.sum_of(terms)).collect()
+                }
+                Node::Product { factors } => {
+                    let (moving, fixed): (Vec<_>, Vec<_>) =
+                        self.factors(factors).iter().partition(|(factor, _)| active.contains(factor));
+                    let mut powers = vec![self.product(Number::ONE, &fixed)];
+                    for (factor, exponent) in moving {
+                        if exponent < 0 {
+                            return Powers::Unknown;
+                        }
+                        for _ in 0..exponent {
+                            powers = self.multiply_powers(&powers, &known[&factor]);
+                            if powers.len() > MAX_DEGREE + 1 {
+                                return Powers::Unknown;
+                            }
+                        }
+                    }
+                    powers
+                }
+                _ => continue,
+            };
+            known.insert(node, powers);
+        }
+        let mut powers = match output {
+            Atom::Node(node) => known.remove(&node).unwrap_or_else(|| vec![output]),
+            Atom::Constant(_) => vec![output],
+        };
+        while powers.len() > 1 && powers.last().is_some_and(|c| c.is_zero()) {
+            powers.pop();
+        }
+        Powers::Coefficients(powers)
+    }
+
+    /// The product of two polynomials given by their coefficients.
+    fn multiply_powers(&mut self, a: &[Atom], b: &[Atom]) -> Vec<Atom> {
+        let mut sums = vec![Vec::new(); a.len() + b.len() - 1];
+        for (i, &a) in a.iter().enumerate().filter(|(_, a)| !a.is_zero()) {
+            for (j, &b) in b.iter().enumerate().filter(|(_, b)| !b.is_zero()) {
+                sums[i + j].push((self.product_of(Number::ONE, &[a, b]), Number::ONE));
+            }
+        }
+        sums.iter().map(|terms| self.sum_of(terms)).collect()
     }
 }
 

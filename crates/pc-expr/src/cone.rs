@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::dag::{Atom, Dag, NodeId};
 
 /// The sub-graph below some roots: children before parents.
 pub(crate) struct Cone {
@@ -44,15 +44,6 @@ impl Cone {
             }
         }
         active
-    }
-}
-
-impl Dag {
-    /// Whether `output` contains a call of a function of `symbol`.
-    pub(crate) fn is_below_a_call(&self, symbol: NodeId, output: Atom) -> bool {
-        let cone = Cone::below(self, [output]);
-        let active = cone.depending_on(self, &[symbol]);
-        active.iter().any(|&node| matches!(self.node(node), Node::Call { .. }))
     }
 }
 

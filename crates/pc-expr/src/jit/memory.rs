@@ -72,11 +72,14 @@ impl Memory {
     fn place(&mut self, b: &mut FunctionBuilder<'_>, area: Area, index: u32) -> (Value, i32) {
         let window = (index / WINDOW).min(area.windows() - 1);
         let known = self.windows.iter().find(|&&(of, at, _)| (of, at) == (area, window));
-        let base = known.map(|&(.., base)| base).unwrap_or_else(|| {
-            let base = self.base(b, area, window);
-            self.windows.push((area, window, base));
-            base
-        });
+        let base = match known {
+            Some(&(.., base)) => base,
+            None => {
+                let base = self.base(b, area, window);
+                self.windows.push((area, window, base));
+                base
+            }
+        };
         (base, (index * 8) as i32 - middle(window))
     }
 
