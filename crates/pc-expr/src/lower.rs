@@ -59,7 +59,7 @@ impl<'a> Lowering<'a> {
                 return Err(ExprError::UnboundSymbol { symbol: self.dag.symbol_name(index).to_owned() });
             }
         }
-        self.products = SharedProducts::of(self.dag, &cone);
+        self.products = SharedProducts::of(self.dag, &cone, outputs);
         self.compositions = compositions(self.dag, &cone);
         let mut registers = Vec::with_capacity(outputs.len());
         for &output in outputs {
@@ -168,7 +168,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn lower_product(&mut self, id: NodeId) -> Register {
-        let SharedProduct { factors, divisors } = self.products.product(id).clone();
+        let SharedProduct { factors, divisors, .. } = self.products.product(id).clone();
         let numerator = self.multiply(&factors);
         match (numerator, self.multiply(&divisors)) {
             (Some(product), None) => product,
@@ -203,6 +203,7 @@ impl<'a> Lowering<'a> {
                 let reciprocal = self.emit(Instruction::Divide(one, self.registers[&node]));
                 self.power(reciprocal, exponent)
             }
+            Factor::Constant(bits) => self.number(f64::from_bits(bits)),
             Factor::Pair(first, second) => {
                 let (first, second) = (self.factor(first), self.factor(second));
                 self.emit(Instruction::Multiply(first, second))
@@ -226,19 +227,20 @@ impl<'a> Lowering<'a> {
         // Positive terms first, so that a sum begins with a negation only if all its terms are negative.
         let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(_, q)| q.is_negative());
         for (node, q) in positive {
-            let term = self.scaled(self.registers[&node], q);
+            let term = self.scaled(node, q);
             sum = Some(match sum {
                 None => term,
                 Some(sum) => self.emit(Instruction::Add(sum, term)),
             });
         }
         for (node, q) in negative {
-            let register = self.registers[&node];
             sum = Some(match sum {
-                None if (-q).is_one() => self.emit(Instruction::Negate(register)),
-                None => self.scaled(register, q),
+                None if (-q).is_one() || self.products.is_scaled(node) => {
+                    self.emit(Instruction::Negate(self.registers[&node]))
+                }
+                None => self.scaled(node, q),
                 Some(sum) => {
-                    let term = self.scaled(register, -q);
+                    let term = self.scaled(node, -q);
                     self.emit(Instruction::Subtract(sum, term))
                 }
             });
@@ -246,8 +248,10 @@ impl<'a> Lowering<'a> {
         sum.unwrap_or_else(|| self.constant(Number::ZERO))
     }
 
-    fn scaled(&mut self, register: Register, q: Number) -> Register {
-        if q.is_one() {
+    /// q·node, q not negative if the node has taken up its size.
+    fn scaled(&mut self, node: NodeId, q: Number) -> Register {
+        let register = self.registers[&node];
+        if q.is_one() || self.products.is_scaled(node) {
             return register;
         }
         let coefficient = self.constant(q);
@@ -255,7 +259,10 @@ impl<'a> Lowering<'a> {
     }
 
     fn constant(&mut self, c: Number) -> Register {
-        let value = c.to_f64();
+        self.number(c.to_f64())
+    }
+
+    fn number(&mut self, value: f64) -> Register {
         let constants = &mut self.program.constants;
         *self.constants.entry(value.to_bits()).or_insert_with(|| {
             constants.push(value);

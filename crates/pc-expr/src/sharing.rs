@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap;
 
 use crate::cone::Cone;
-use crate::dag::{Dag, Node, NodeId};
+use crate::dag::{Atom, Dag, Node, NodeId};
 
 /// Products of more factors than this are not searched for pairs.
 const LONG: usize = 32;
@@ -25,6 +25,8 @@ pub(crate) enum Factor {
     Reciprocal(NodeId, u32),
     /// Two factors that several products have in common.
     Pair(FactorId, FactorId),
+    /// The bits of a number, from the sum that alone uses the product.
+    Constant(u64),
 }
 
 /// A product, its factors over its divisors.
@@ -32,6 +34,8 @@ pub(crate) enum Factor {
 pub(crate) struct SharedProduct {
     pub(crate) factors: Vec<FactorId>,
     pub(crate) divisors: Vec<FactorId>,
+    /// Whether the size of its coefficient in the one sum that uses it is among the factors.
+    pub(crate) scaled: bool,
 }
 
 /// The products of a cone.
@@ -44,7 +48,8 @@ pub(crate) struct SharedProducts {
 }
 
 impl SharedProducts {
-    pub(crate) fn of(dag: &Dag, cone: &Cone) -> SharedProducts {
+    /// Those of the cone below `outputs`.
+    pub(crate) fn of(dag: &Dag, cone: &Cone, outputs: &[Atom]) -> SharedProducts {
         let mut shared = SharedProducts::default();
         let products = || {
             cone.order.iter().filter_map(|&id| match dag.node(id) {
@@ -56,6 +61,7 @@ impl SharedProducts {
         for (node, _) in products().flat_map(|(_, factors)| factors).filter(|(_, e)| *e < 0) {
             *divided_by.entry(*node).or_insert(0) += 1;
         }
+        let coefficients = coefficients(dag, cone, outputs);
         for (id, factors) in products() {
             let mut product = SharedProduct::default();
             for &(node, e) in factors {
@@ -68,6 +74,10 @@ impl SharedProducts {
                     product.divisors.push(shared.intern(Factor::Power(node, exponent)));
                 }
             }
+            if let Some(&size) = coefficients.get(&id).filter(|_| product.divisors.is_empty()) {
+                product.factors.push(shared.intern(Factor::Constant(size)));
+                product.scaled = true;
+            }
             shared.positions.insert(id, shared.products.len());
             shared.products.push(product);
         }
@@ -77,6 +87,11 @@ impl SharedProducts {
             }
         }
         shared
+    }
+
+    /// Whether the node is a product that has taken up the size of its coefficient in a sum.
+    pub(crate) fn is_scaled(&self, id: NodeId) -> bool {
+        self.positions.get(&id).is_some_and(|&position| self.products[position].scaled)
     }
 
     pub(crate) fn product(&self, id: NodeId) -> &SharedProduct {
@@ -132,4 +147,27 @@ impl SharedProducts {
         }
         extracted
     }
+}
+
+/// The sizes of coefficients, by their bits, of what one sum uses and nothing else.
+fn coefficients(dag: &Dag, cone: &Cone, outputs: &[Atom]) -> FxHashMap<NodeId, u64> {
+    let mut uses: FxHashMap<NodeId, u32> = FxHashMap::default();
+    for output in outputs {
+        if let Atom::Node(id) = output {
+            *uses.entry(*id).or_insert(0) += 1;
+        }
+    }
+    for &id in &cone.order {
+        dag.for_each_child(id, |child| *uses.entry(child).or_insert(0) += 1);
+    }
+    let mut coefficients = FxHashMap::default();
+    for &id in &cone.order {
+        let Node::Sum { terms, .. } = dag.node(id) else { continue };
+        for &(term, q) in dag.terms(terms) {
+            if uses[&term] == 1 && !q.abs().is_one() {
+                coefficients.insert(term, q.abs().to_f64().to_bits());
+            }
+        }
+    }
+    coefficients
 }
