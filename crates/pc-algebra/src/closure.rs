@@ -10,17 +10,17 @@ use crate::matrix::Matrix;
 use crate::sample::Neighbourhood;
 use crate::structure::StructureCoefficients;
 
-/// Residuals of closure below this, relative to the commutator, are rounding: a wrong bracket is off by order one.
-const ROUNDING: f64 = 1e-9;
+/// Residuals below this, relative to the commutator, are rounding: a wrong bracket is off by order one.
+pub(crate) const ROUNDING: f64 = 1e-9;
 /// Points at which an identity that the graph cannot decide is tried numerically.
-const TRIALS: usize = 8;
+pub(crate) const TRIALS: usize = 8;
 
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
-    /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r, X_s]. Where
-    /// rank b < k that would lose the part of c along ker b, so constant coefficients are looked for that hold at
-    /// many points at once. Either way the result must reproduce every commutator.
+    /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
+    /// X_s]. Where rank b < k that would lose the part of c along ker b, so constant coefficients are looked
+    /// for that hold at many points at once. Either way the result must reproduce every commutator.
     ///
     /// `near` says where the expressions of the frame are regular.
     ///
@@ -90,8 +90,8 @@ impl<'g> Frame<'g> {
             .fold(0.0, f64::max)
     }
 
-    /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators 0..k,
-    /// with the triple it belongs to.
+    /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators
+    /// 0..k, with the triple it belongs to.
     pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
         let k = self.operators();
         let mut worst = 0.0f64;
@@ -118,7 +118,7 @@ impl<'g> Frame<'g> {
     }
 
     /// (bᵀb)⁻¹bᵀ, or b⁻¹ where b is square.
-    fn left_inverse(&self) -> Matrix<Expr<'g>> {
+    pub(crate) fn left_inverse(&self) -> Matrix<Expr<'g>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
         let gram_or_b = if b.rows() == k {
             b.clone()
@@ -135,8 +135,8 @@ impl<'g> Frame<'g> {
         })
     }
 
-    /// Largest |[X_r, X_s] − c^m X_m| relative to 1 + |[X_r, X_s]|.
-    fn residual(&self, commutator: &[Expr<'g>], c: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
+    /// Largest |Y − c^m X_m| relative to 1 + |Y|, for an operator Y such as [X_r, X_s].
+    pub(crate) fn residual(&self, commutator: &[Expr<'g>], c: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
         let graph = self.graph();
         let differences: Vec<Expr<'g>> = commutator
             .iter()
@@ -201,7 +201,7 @@ impl<'g> Frame<'g> {
 }
 
 /// The pairs r < s of 0..=k.
-fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..=k).flat_map(move |r| (r + 1..=k).map(move |s| (r, s)))
 }
 

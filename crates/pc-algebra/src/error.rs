@@ -120,6 +120,126 @@ pub enum AlgebraError {
         /// The names there are.
         known: Vec<&'static str>,
     },
+    /// A structure constant that is a rounded real, in a question that only exact arithmetic answers.
+    #[error("c_{r}{s}^{m} = {value} is not a rational number, so nothing exact can be said of the algebra")]
+    NotRational {
+        /// First lower index.
+        r: usize,
+        /// Second lower index.
+        s: usize,
+        /// Upper index.
+        m: usize,
+        /// The constant.
+        value: String,
+    },
+    /// A structure constant that no small rational holds.
+    #[error("c_{r}{s}^{m} = {value} has a numerator or denominator above 2^53")]
+    TooLarge {
+        /// First lower index.
+        r: usize,
+        /// Second lower index.
+        s: usize,
+        /// Upper index.
+        m: usize,
+        /// The constant.
+        value: String,
+    },
+    /// An entry that is a rounded real where exact arithmetic is needed.
+    #[error("entry ({row}, {column}) of {what} is {value}, which is not a rational number")]
+    IrrationalEntry {
+        /// The matrix.
+        what: &'static str,
+        /// Its row, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// The entry.
+        value: String,
+    },
+    /// A change of basis that is none.
+    #[error("the matrix of the change of basis is singular")]
+    SingularBasis,
+    /// Matrices ρ(X_s) that do not represent the algebra.
+    #[error(
+        "this is no representation: ρ([X_{r}, X_{s}]) and ρ(X_{r})ρ(X_{s}) − ρ(X_{s})ρ(X_{r}) differ in \
+         entry ({row}, {column})",
+        r = pair.0, s = pair.1
+    )]
+    NotRepresentation {
+        /// The pair, from 1.
+        pair: (usize, usize),
+        /// Row of the first entry that differs, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+    },
+    /// Matrices that are not a basis.
+    #[error("matrix number {number} is a combination of those before it")]
+    DependentMatrices {
+        /// Its number, from 1.
+        number: usize,
+    },
+    /// Matrices whose commutators leave their span.
+    #[error("the commutator of the matrices number {} and {} is not in their span", pair.0, pair.1)]
+    NotMatrixAlgebra {
+        /// The pair, from 1.
+        pair: (usize, usize),
+    },
+    /// A member of a family with more structure constants than are sensibly kept.
+    #[error("{family}(n) is kept up to n = {largest}, not for n = {n}")]
+    TooLargeFamily {
+        /// Name of the family.
+        family: &'static str,
+        /// The size asked for.
+        n: usize,
+        /// The largest.
+        largest: usize,
+    },
+    /// A parameter that the Bianchi type does not take.
+    #[error("Bianchi type {kind} has a parameter h {range}, not {h}")]
+    BianchiParameter {
+        /// VI or VII.
+        kind: &'static str,
+        /// The range it takes.
+        range: &'static str,
+        /// The parameter.
+        h: String,
+    },
+    /// Three axes that are no sequence of Euler angles.
+    #[error(
+        "`{axes}` is no sequence of Euler angles: three letters x, y, z are needed, neighbours \
+         different, as in zxz"
+    )]
+    EulerSequence {
+        /// The text.
+        axes: String,
+    },
+    /// Numbers that no element of a group is nearest to.
+    #[error("{element:?} has no nearest element of the group")]
+    NoNearestElement {
+        /// The numbers.
+        element: Vec<f64>,
+    },
+    /// Frames with other coordinates or another time.
+    #[error("the two frames do not have the same coordinates and time")]
+    DifferentSpaces,
+    /// Operators that are linearly dependent at each point, so that quasi-velocities do not follow from
+    /// velocities.
+    #[error(
+        "the frame has rank {rank} with {operators} operators, so its quasi-velocities are not determined"
+    )]
+    DependentOperators {
+        /// Rank of b.
+        rank: usize,
+        /// Number of operators.
+        operators: usize,
+    },
+    /// Frames that allow different velocities.
+    #[error("X_{operator} of the one frame is not a combination of the operators of the other")]
+    DifferentVelocities {
+        /// The first operator outside, 0 for the drift.
+        operator: usize,
+    },
     /// An error of the expressions themselves.
     #[error(transparent)]
     Expr(#[from] ExprError),

@@ -8,8 +8,8 @@ use crate::matrix::Matrix;
 
 /// A frame of k operators on a space of n coordinates and time.
 ///
-/// X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i and X_s f = b_is ∂f/∂x_i for s = 1..k; b is n × k, b_0 has length n, both may depend
-/// on t and x.
+/// X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i and X_s f = b_is ∂f/∂x_i for s = 1..k; b is n × k, b_0 has length n, both may
+/// depend on t and x.
 #[derive(Clone, Debug)]
 pub struct Frame<'g> {
     graph: &'g Graph,
@@ -56,8 +56,8 @@ impl<'g> Frame<'g> {
         Frame::new(graph, time, coordinates, b, b0)
     }
 
-    /// The frame of quasi-velocities η = `definitions`, n expressions affine in the symbols `velocities` of ẋ (2):
-    /// η = a ẋ + a_0, b = a⁻¹, b_0 = −b a_0.
+    /// The frame of quasi-velocities η = `definitions`, n expressions affine in the symbols `velocities` of ẋ
+    /// (2): η = a ẋ + a_0, b = a⁻¹, b_0 = −b a_0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`], [`AlgebraError::DefinitionNotAffine`], [`AlgebraError::SingularDefinitions`].
@@ -126,7 +126,36 @@ impl<'g> Frame<'g> {
             .collect()
     }
 
-    /// X_s f for each f of `functions`, s = 0..k (4): the rates of change when ẋ_i = b_is (and ṫ = 1 for s = 0).
+    /// The matrix a (k × n) and the vector a_0 (length k) of η = a ẋ + a_0 (2): a = b⁻¹ and a_0 = −a b_0.
+    ///
+    /// Where n > k, a is one of many with a b = 1: (bᵀb)⁻¹bᵀ.
+    ///
+    /// # Errors
+    /// [`AlgebraError::DependentOperators`] where rank b < k.
+    ///
+    /// ```
+    /// # use pc_algebra::Frame;
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [t, r, dr] = graph.symbols(["t", "r", "dr"]);
+    /// let frame = Frame::from_definitions(&graph, t, vec![r], &[dr], &[r * dr + t])?;
+    /// let (a, a0) = frame.definitions()?;
+    /// assert_eq!((a[(0, 0)], a0[0]), (r, t));
+    /// # Ok::<(), pc_algebra::AlgebraError>(())
+    /// ```
+    pub fn definitions(&self) -> Result<(Matrix<Expr<'g>>, Vec<Expr<'g>>), AlgebraError> {
+        let (rank, operators) = (self.rank(), self.operators());
+        if rank < operators {
+            return Err(AlgebraError::DependentOperators { rank, operators });
+        }
+        let a = self.left_inverse();
+        let drift = |s: usize| -self.graph.dot(a.row(s).iter().copied(), self.b0.iter().copied());
+        let a0 = (0..operators).map(drift).collect();
+        Ok((a, a0))
+    }
+
+    /// X_s f for each f of `functions`, s = 0..k (4): the rates of change when ẋ_i = b_is (and ṫ = 1 for s =
+    /// 0).
     pub fn apply(&self, s: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let rates: Vec<(Expr<'g>, Expr<'g>)> = if s == 0 {
             let drift = self.coordinates.iter().copied().zip(self.b0.iter().copied());
@@ -149,7 +178,8 @@ impl<'g> Frame<'g> {
         forth.into_iter().zip(back).map(|(f, b)| f - b).collect()
     }
 
-    fn operator(&self, s: usize) -> Vec<Expr<'g>> {
+    /// The components b_is of X_s, the drift for s = 0.
+    pub(crate) fn operator(&self, s: usize) -> Vec<Expr<'g>> {
         if s == 0 { self.b0.clone() } else { self.b.column(s - 1).collect() }
     }
 
@@ -181,11 +211,13 @@ impl<'g> Frame<'g> {
     }
 }
 
-fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AlgebraError> {
+/// An error unless `found` is `expected`.
+pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AlgebraError> {
     if found == expected { Ok(()) } else { Err(AlgebraError::Shape { what, found, expected }) }
 }
 
-/// Coefficients and constant part of expressions affine in `symbols`; otherwise the index of the first that is not.
+/// Coefficients and constant part of expressions affine in `symbols`; otherwise the index of the first that
+/// is not.
 fn affine_parts<'g>(
     graph: &'g Graph,
     symbols: &[Expr<'g>],

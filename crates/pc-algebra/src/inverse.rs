@@ -9,9 +9,9 @@ const COFACTORS: usize = 4;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Constant pivots are eliminated first, the block that is left is inverted as cofactors over its determinant: the
-/// entries are regular wherever the matrix is. (Only a block of more than four rows without constant pivots is
-/// eliminated with pivots that depend on the state and may vanish on their own.)
+/// Constant pivots are eliminated first, the block that is left is inverted as cofactors over its
+/// determinant: the entries are regular wherever the matrix is. (Only a block of more than four rows without
+/// constant pivots is eliminated with pivots that depend on the state and may vanish on their own.)
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let n = matrix.rows();
     let mut work = Elimination::new(graph, matrix);

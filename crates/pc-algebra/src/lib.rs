@@ -1,11 +1,35 @@
-//! Frames of operators and their algebra: [X_r, X_s] = c_rs^m X_m (5).
+//! Frames of operators, their algebra [X_r, X_s] = c_rs^m X_m (5), and the groups behind it.
 //!
-//! Notation: coordinates x_1..x_n, quasi-velocities η_1..η_k, ẋ = b η + b_0 (3), X_s = b_is ∂/∂x_i and
-//! X_0 = ∂/∂t + b_i0 ∂/∂x_i (4); index 0 is time. Numbers in brackets are those of V. V. Rumyantsev,
-//! *On Poincaré–Chetaev's equations* (1994), with its misprints corrected.
+//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
+//! misprints corrected. Index 0 is time; i, j count coordinates, r, s, m operators; repeated indices are
+//! summed over.
+//!
+//! # Frame
+//!
+//! A mechanical system with coordinates x_1..x_n need not be described by the velocities ẋ. Quasi-velocities
+//! η_1..η_k are affine in them, η = a ẋ + a_0 (2); solved for the velocities,
+//!
+//! ẋ = b η + b_0 (3), b an n × k matrix, all of it depending on t and x.
+//!
+//! A [`Frame`] is b and b_0, made [from velocities](Frame::from_velocities) (3) or [from
+//! definitions](Frame::from_definitions) (2). Where n > k it stands for constraints (1) as well, which the
+//! motion ẋ = b η + b_0 satisfies whatever η is.
+//!
+//! # Operators
+//!
+//! The columns of b are the operators X_s f = b_is ∂f/∂x_i and X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i (4); the rate of
+//! change of f along a motion is X_0 f + η_s X_s f. [`Frame::apply`] applies them, [`Frame::commutator`] is
+//! \[X_r, X_s\].
+//!
+//! # Structure coefficients and closure
+//!
+//! If the commutators are combinations of the operators again, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
+//! and m from 1, the frame is closed and the c_rs^m are its [`StructureCoefficients`].
+//! [`Frame::structure_coefficients`] finds them from b alone, equal to (6), and names the pair where there
+//! are none:
 //!
 //! ```
-//! use pc_algebra::{Frame, LieAlgebra, Neighbourhood};
+//! use pc_algebra::{EulerAngles, Frame, LieAlgebra, LieGroup, Neighbourhood};
 //! use pc_expr::Graph;
 //!
 //! // Euler angles of a rigid body, quasi-velocities: body angular velocity. Their algebra is so(3).
@@ -16,24 +40,87 @@
 //! let frame = Frame::from_velocities(&graph, t, vec![psi, theta, phi], &[w1, w2, w3], &velocities)?;
 //! let c = frame.structure_coefficients(&Neighbourhood::default())?;
 //! assert_eq!(c.lie_algebra(), Some(LieAlgebra::so3()));
+//!
+//! // The same frame as the left-invariant one of a group.
+//! let group = EulerAngles::about("zxz")?;
+//! let invariant = group.left_frame(&graph, t, vec![psi, theta, phi])?;
+//! assert_eq!(invariant.velocities(&[w1, w2, w3]), velocities);
 //! # Ok::<(), pc_algebra::AlgebraError>(())
 //! ```
+//!
+//! Three questions that the c_rs^m answer: are the constraints integrable ([`Frame::integrability`],
+//! Frobenius); is η_m the velocity of a coordinate, η_m = dπ_m/dt (7) ([`Frame::holonomy`]); and how do the
+//! c_rs^m change with the frame ([`Frame::change_to`]).
+//!
+//! # Lie algebra
+//!
+//! Where the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; those with a name are in the
+//! [`CATALOGUE`]. Its constants are exact, and so is what is said of it:
+//! [series](LieAlgebra::derived_series), [centre](LieAlgebra::centre), [Killing
+//! form](LieAlgebra::killing_form), [rank](LieAlgebra::rank), [index](LieAlgebra::index) (the number of
+//! Casimirs), [invariant forms](LieAlgebra::invariant_quadratic_forms).
+//!
+//! ```
+//! use pc_algebra::{LieAlgebra, Representation};
+//!
+//! // The heavy top: rotations and the vertical, so(3) ⋉ ℝ³.
+//! let top = Representation::adjoint(&LieAlgebra::so3()).semidirect_product();
+//! assert_eq!(top, LieAlgebra::named("se3")?);
+//! assert_eq!((top.index()?, top.is_semisimple()?), (2, false));
+//! # Ok::<(), pc_algebra::AlgebraError>(())
+//! ```
+//!
+//! # Lie group
+//!
+//! An algebra belongs to the motions of a [`LieGroup`]: [`RotationMatrices`], [`UnitQuaternions`] and
+//! [`EulerAngles`] for so(3), [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`],
+//! and every [`DirectProduct`]. A group gives frames, exact: body velocities [on the
+//! left](LieGroup::left_frame), whose structure coefficients are the constants of the algebra, and spatial
+//! velocities [on the right](LieGroup::right_frame), with the opposite ones. And it gives numbers, for
+//! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
+//! [`LieGroup::compose`], [`LieGroup::project`].
 
+mod bianchi;
 mod catalogue;
 mod closure;
+mod echelon;
 mod error;
+mod exact;
+mod families;
 mod frame;
+mod frame_change;
+mod group;
+mod holonomy;
+mod integrability;
+mod invariant;
 mod inverse;
+mod killing;
 mod lie_algebra;
 mod matrix;
+mod matrix_algebra;
+mod product;
+mod rank;
+mod representation;
+mod residue;
 mod sample;
+mod series;
 mod structure;
+mod subspace;
 
 pub use catalogue::{CATALOGUE, Entry};
 pub use error::AlgebraError;
 pub use frame::Frame;
+pub use frame_change::FrameChange;
+pub use group::{
+    DirectProduct, EulerAngles, HeisenbergGroup, LieGroup, PlaneMotions, PlaneRotations, RigidMotions,
+    RotationMatrices, Side, UnitQuaternions,
+};
+pub use holonomy::Holonomy;
+pub use integrability::Integrability;
 pub use inverse::inverse;
 pub use lie_algebra::LieAlgebra;
 pub use matrix::Matrix;
+pub use representation::Representation;
 pub use sample::Neighbourhood;
 pub use structure::StructureCoefficients;
+pub use subspace::Subspace;

@@ -3,6 +3,7 @@
 use pc_expr::Number;
 
 use crate::error::AlgebraError;
+use crate::matrix::Matrix;
 
 /// A Lie algebra with basis X_1..X_k and exact structure constants: [X_r, X_s] = c_rs^m X_m (5).
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +30,8 @@ impl LieAlgebra {
         LieAlgebra { dim, constants: indices(dim).map(|(r, s, m)| c(r, s, m)).collect() }
     }
 
-    /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), from 0; those of the
-    /// pairs (s, r) follow, and pairs that are not listed commute.
+    /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), from 0; those of
+    /// the pairs (s, r) follow, and pairs that are not listed commute.
     ///
     /// # Errors
     /// As [`new`](LieAlgebra::new), if the list contradicts itself.
@@ -73,6 +74,32 @@ impl LieAlgebra {
             .collect()
     }
 
+    /// The matrix of ad x = [x, ·], entry (m, s) c_rs^m x_r; `x` has length [`dim`](LieAlgebra::dim).
+    ///
+    /// ```
+    /// # use pc_algebra::{LieAlgebra, Matrix};
+    /// let ad = LieAlgebra::so3().ad(&[0, 0, 1]); // e_3 × ·
+    /// assert_eq!(ad.to_rows(), [[0, -1, 0], [1, 0, 0], [0, 0, 0]].map(|row| row.map(Into::into)));
+    /// ```
+    pub fn ad<T: Copy + Into<Number>>(&self, x: &[T]) -> Matrix<Number> {
+        let k = self.dim;
+        Matrix::from_fn(k, k, |m, s| {
+            (0..k).fold(Number::ZERO, |sum, r| sum + self.constant(r, s, m) * x[r].into())
+        })
+    }
+
+    /// The matrix −(ad x)ᵀ of the coadjoint action on covectors, entry (s, m) −c_rs^m x_r.
+    ///
+    /// The brackets of (9) are v_s = c_rs^m η_r p_m: v = −coad(η) p.
+    pub fn coad<T: Copy + Into<Number>>(&self, x: &[T]) -> Matrix<Number> {
+        self.ad(x).transpose().map(|entry| -entry)
+    }
+
+    /// All (r, s, m) from 0.
+    pub(crate) fn indices(&self) -> impl Iterator<Item = (usize, usize, usize)> + use<> {
+        indices(self.dim)
+    }
+
     fn check_antisymmetry(&self) -> Result<(), AlgebraError> {
         let k = self.dim;
         for (r, s, m) in indices(k) {
@@ -110,6 +137,6 @@ impl LieAlgebra {
     }
 }
 
-fn indices(k: usize) -> impl Iterator<Item = (usize, usize, usize)> {
+fn indices(k: usize) -> impl Iterator<Item = (usize, usize, usize)> + use<> {
     (0..k).flat_map(move |r| (0..k).flat_map(move |s| (0..k).map(move |m| (r, s, m))))
 }

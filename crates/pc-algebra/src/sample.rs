@@ -10,8 +10,8 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre); `None` where one of them
-    /// is not finite.
+    /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre); `None` where one of
+    /// them is not finite.
     pub(crate) fn sample(&self, graph: &'g Graph, outputs: &[Expr<'g>], index: u64) -> Option<Vec<f64>> {
         let symbols = graph.symbols_of(outputs);
         let mut random = Random(index);

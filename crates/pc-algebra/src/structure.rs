@@ -6,7 +6,8 @@ use pc_expr::{Expr, Graph, Number};
 
 use crate::lie_algebra::LieAlgebra;
 
-/// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 = 0.
+/// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 =
+/// 0.
 #[derive(Clone, Debug)]
 pub struct StructureCoefficients<'g> {
     operators: usize,

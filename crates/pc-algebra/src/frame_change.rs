@@ -1,0 +1,143 @@
+//! Two frames of one system.
+
+use pc_expr::Expr;
+
+use crate::closure::ROUNDING;
+use crate::error::AlgebraError;
+use crate::frame::{Frame, shape};
+use crate::inverse::inverse;
+use crate::matrix::Matrix;
+use crate::sample::Neighbourhood;
+use crate::structure::StructureCoefficients;
+
+/// The change η' = A η + A_0 of quasi-velocities from a frame X_s to a frame X'_s that allows the same
+/// velocities.
+///
+/// A is k × k and regular, A_0 has length k; both depend on t and x. X_s = A_us X'_u, X_0 = X'_0 + A_u0 X'_u.
+#[derive(Clone, Debug)]
+pub struct FrameChange<'g> {
+    to: Frame<'g>,
+    matrix: Matrix<Expr<'g>>,
+    drift: Vec<Expr<'g>>,
+    /// B = A⁻¹ and B_0 = −B A_0, of η = B η' + B_0.
+    back: (Matrix<Expr<'g>>, Vec<Expr<'g>>),
+}
+
+impl<'g> Frame<'g> {
+    /// The change of quasi-velocities from this frame to `other`, by A = a' b, A_0 = a' (b_0 − b'_0) with a'
+    /// b' = 1.
+    ///
+    /// # Errors
+    /// [`AlgebraError::DifferentSpaces`]; [`AlgebraError::Shape`] if the numbers of operators differ;
+    /// [`AlgebraError::DependentOperators`] if one of the frames has rank b < k;
+    /// [`AlgebraError::DifferentVelocities`] naming the first operator, 0 for the drift, that `other` does
+    /// not allow.
+    ///
+    /// ```
+    /// # use pc_algebra::{EulerAngles, LieGroup, Neighbourhood};
+    /// # use pc_expr::Graph;
+    /// // From body to spatial angular velocity: A is the rotation matrix, and so(3) changes sign.
+    /// let graph = Graph::new();
+    /// let angles = graph.symbols(["psi", "theta", "phi"]).to_vec();
+    /// let (t, near, group) = (graph.symbol("t"), Neighbourhood::default(), EulerAngles::about("zxz")?);
+    /// let body = group.left_frame(&graph, t, angles.clone())?;
+    /// let space = group.right_frame(&graph, t, angles.clone())?;
+    /// let change = body.change_to(&space, &near)?;
+    /// assert_eq!(change.matrix()[(2, 2)], angles[1].cos());
+    /// let c = change.structure_coefficients(&body.structure_coefficients(&near)?)?;
+    /// assert_eq!(c.get(1, 2, 3), (-1).into());
+    /// # Ok::<(), pc_algebra::AlgebraError>(())
+    /// ```
+    pub fn change_to(
+        &self,
+        other: &Frame<'g>,
+        near: &Neighbourhood<'g>,
+    ) -> Result<FrameChange<'g>, AlgebraError> {
+        if (self.time(), self.coordinates()) != (other.time(), other.coordinates()) {
+            return Err(AlgebraError::DifferentSpaces);
+        }
+        let (graph, k) = (self.graph(), self.operators());
+        shape("the list of operators of the other frame", other.operators(), k)?;
+        let (a, _) = other.definitions()?;
+        let project = |y: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            (0..k).map(|u| graph.dot(a.row(u).iter().copied(), y.iter().copied())).collect()
+        };
+        let columns: Vec<Vec<Expr<'g>>> = (0..=k)
+            .map(|s| {
+                let operator: Vec<Expr<'g>> = match s {
+                    0 => self.b0().iter().zip(other.b0()).map(|(&own, &others)| own - others).collect(),
+                    _ => self.operator(s),
+                };
+                let column = project(&operator);
+                match other.residual(&operator, &column, near) > ROUNDING {
+                    true => Err(AlgebraError::DifferentVelocities { operator: s }),
+                    false => Ok(column),
+                }
+            })
+            .collect::<Result<_, _>>()?;
+        let matrix = Matrix::from_fn(k, k, |u, s| columns[s + 1][u]);
+        let dependent = || AlgebraError::DependentOperators { rank: self.rank(), operators: k };
+        let b = inverse(graph, &matrix).ok_or_else(dependent)?;
+        let drift = columns[0].clone();
+        let b0 = (0..k).map(|m| -graph.dot(b.row(m).iter().copied(), drift.iter().copied())).collect();
+        Ok(FrameChange { to: other.clone(), matrix, drift, back: (b, b0) })
+    }
+}
+
+impl<'g> FrameChange<'g> {
+    /// A, k × k.
+    pub fn matrix(&self) -> &Matrix<Expr<'g>> {
+        &self.matrix
+    }
+
+    /// A_0, length k.
+    pub fn drift(&self) -> &[Expr<'g>] {
+        &self.drift
+    }
+
+    /// η' = A η + A_0; `eta` has length k.
+    pub fn quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let graph = self.to.graph();
+        let row = |u: usize| self.matrix.row(u).iter().zip(eta).map(|(&a, &eta)| a * eta);
+        (0..eta.len()).map(|u| graph.sum(row(u).chain([self.drift[u]]))).collect()
+    }
+
+    /// The structure coefficients c' of the frame X' from those of the frame X:
+    /// c'_rs^u = A_um (B_pr B_qs c_pq^m + X'_r B_ms − X'_s B_mr), where B = A⁻¹, p, q = 0..k and m = 1..k;
+    /// B_00 = 1, B_0s = 0, and B_p0 = −B_pu A_u0.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Shape`] unless `c` has k operators.
+    pub fn structure_coefficients(
+        &self,
+        c: &StructureCoefficients<'g>,
+    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        let (graph, k) = (self.to.graph(), self.drift.len());
+        shape("the list of operators of the structure coefficients", c.operators(), k)?;
+        let b: Vec<Vec<Expr<'g>>> = (0..=k).map(|s| self.back_column(s)).collect();
+        StructureCoefficients::from_pairs(k, |r, s| {
+            let forth = self.to.apply(r, &b[s]);
+            let back = self.to.apply(s, &b[r]);
+            let along_old: Vec<Expr<'g>> = (1..=k)
+                .map(|m| {
+                    let brackets = c
+                        .nonzero()
+                        .filter(|entry| entry.2 == m)
+                        .map(|(p, q, _, c)| c * (b[r][p] * b[s][q] - b[r][q] * b[s][p]));
+                    graph.sum(brackets.chain([forth[m], -back[m]]))
+                })
+                .collect();
+            Ok((0..k)
+                .map(|u| graph.dot(self.matrix.row(u).iter().copied(), along_old.iter().copied()))
+                .collect())
+        })
+    }
+
+    /// B_ps for p = 0..k: the components of X'_s along X_0..X_k.
+    fn back_column(&self, s: usize) -> Vec<Expr<'g>> {
+        match s {
+            0 => [&[Expr::ONE], self.back.1.as_slice()].concat(),
+            _ => std::iter::once(Expr::ZERO).chain(self.back.0.column(s - 1)).collect(),
+        }
+    }
+}

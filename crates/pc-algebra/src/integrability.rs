@@ -1,0 +1,96 @@
+//! Frobenius' theorem for the velocities that a frame allows.
+
+use nalgebra::{DMatrix, DVector};
+use pc_expr::Expr;
+
+use crate::closure::{ROUNDING, TRIALS, pairs};
+use crate::frame::Frame;
+use crate::sample::Neighbourhood;
+
+/// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrability {
+    /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost each point.
+    ///
+    /// Through each (t, x) goes one submanifold that no motion leaves: at each instant of this dimension,
+    /// which is rank b, and moving with time as X_0 says. The n − rank b constraints that the frame stands
+    /// for can be written f(t, x) = const.
+    Integrable {
+        /// rank b.
+        dimension: usize,
+    },
+    /// The commutator of this pair leaves the span; 0 is time.
+    NotIntegrable {
+        /// The first such pair r < s.
+        pair: (usize, usize),
+        /// Its largest distance from the span, relative to 1 + |[X_r, X_s]|.
+        residual: f64,
+    },
+}
+
+impl<'g> Frame<'g> {
+    /// Frobenius' test, time included: the fields X_0, X_1..X_k on the space of (t, x) are integrable if and
+    /// only if their commutators are in their span; as \[X_r, X_s\] has no ∂/∂t, in that of X_1..X_k.
+    ///
+    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; where that
+    /// knows too little of the functions in it, a residual at points of `near` decides. Unlike
+    /// [`structure_coefficients`](Frame::structure_coefficients) this takes frames of any rank.
+    ///
+    /// To ask whether constraints η_α = 0 are holonomic, [restrict](Frame::restricted) the frame to the other
+    /// operators.
+    ///
+    /// ```
+    /// # use pc_algebra::{Frame, Integrability, Neighbourhood};
+    /// # use pc_expr::Graph;
+    /// // A blade on ice: the velocity (ẋ, ẏ) = v (cos φ, sin φ), φ̇ = w. The lost direction is [X_1, X_2].
+    /// let graph = Graph::new();
+    /// let [t, x, y, phi, v, w] = graph.symbols(["t", "x", "y", "phi", "v", "w"]);
+    /// let velocities = [v * phi.cos(), v * phi.sin(), w];
+    /// let blade = Frame::from_velocities(&graph, t, vec![x, y, phi], &[v, w], &velocities)?;
+    /// let verdict = blade.integrability(&Neighbourhood::default());
+    /// assert!(matches!(verdict, Integrability::NotIntegrable { pair: (1, 2), .. }));
+    /// # Ok::<(), pc_algebra::AlgebraError>(())
+    /// ```
+    pub fn integrability(&self, near: &Neighbourhood<'g>) -> Integrability {
+        let columns = self.b().transpose().to_rows();
+        let rank = self.graph().generic_rank(&columns);
+        for pair in pairs(self.operators()) {
+            let commutator = self.commutator(pair.0, pair.1);
+            if commutator.iter().all(|x| x.is_zero()) {
+                continue;
+            }
+            let extended = [columns.as_slice(), std::slice::from_ref(&commutator)].concat();
+            if self.graph().generic_rank(&extended) == rank {
+                continue;
+            }
+            let residual = self.distance_from_span(&commutator, near);
+            if residual > ROUNDING {
+                return Integrability::NotIntegrable { pair, residual };
+            }
+        }
+        Integrability::Integrable { dimension: rank }
+    }
+
+    /// Largest distance of the operator Y from the span of X_1..X_k, relative to 1 + |Y|.
+    fn distance_from_span(&self, y: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
+        let (n, k) = (self.b().rows(), self.operators());
+        let entries: Vec<Expr<'g>> = self.b().entries().iter().chain(y).copied().collect();
+        let samples = near.samples(self.graph(), &entries, TRIALS);
+        if samples.is_empty() {
+            return f64::INFINITY;
+        }
+        let distance = |values: &Vec<f64>| {
+            let y = DVector::from_column_slice(&values[n * k..]);
+            let outside = if k == 0 {
+                y.clone()
+            } else {
+                let svd = DMatrix::from_row_slice(n, k, &values[..n * k]).svd(true, false);
+                let kept = svd.singular_values.iter().map(|s| *s > 1e-10 * svd.singular_values.max());
+                let u = svd.u.iter().flat_map(|u| u.column_iter());
+                u.zip(kept).filter(|(_, kept)| *kept).fold(y.clone(), |rest, (u, _)| &rest - u * u.dot(&y))
+            };
+            outside.amax() / (1.0 + y.amax())
+        };
+        samples.iter().map(distance).fold(0.0, f64::max)
+    }
+}
