@@ -1,10 +1,12 @@
-//! Derived equations of every built-in model against the classical ones, coded by hand.
+//! Derived equations of every built-in model against the classical ones, coded by hand, and against their
+//! definition.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use pc_mech::{Backend, Folding, Graph, VectorField};
 use pc_model::{Builtin, Model};
 use pc_tests::classical::{MODELS, SplitMix64, classical, sample};
+use pc_tests::definition::assert_derived;
 
 /// Products of numbers of order one, sums of a dozen terms: a few hundred units of rounding.
 const TOLERANCE: f64 = 1e-12;
@@ -42,4 +44,19 @@ fn derived_equations_are_the_classical_ones() {
 #[test]
 fn without_folding_they_are_the_same() {
     compare(Folding::Structural, Backend::Interpreter);
+}
+
+#[test]
+fn they_are_those_of_the_definition() {
+    for &name in MODELS {
+        let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+        let worst = assert_derived(
+            name,
+            |graph| model.assemble(graph).unwrap_or_else(|e| panic!("{e}")).system,
+            0,
+            STATES,
+            |random| sample(name, random).unwrap(),
+        );
+        println!("{name}: {worst:.1e} of the largest term");
+    }
 }

@@ -2,17 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Arc;
 
 use pc_expr::{Inputs, Interpreter, Kernel, Program};
-use pc_mech::{Backend, EmitOptions, EmittedFile, Equations, Expr, Graph, Language, System, VectorField};
+use pc_mech::{Backend, EmitOptions, Equations, Expr, Graph, Language, System, VectorField};
 use pc_model::{Builtin, Model};
 use pc_tests::classical::{MODELS, SplitMix64, sample};
+use pc_tests::emitted::{self, Emitted, Routine, execute, fresh_directory, rustc, write_files};
 use pc_tests::reference::{Reference, reference};
 
 /// States tried for each model.
@@ -42,20 +41,11 @@ const CXX_FLAGS: &[&str] =
 
 /// A system as source, with what it has to compute.
 struct Case {
-    name: String,
-    files: Vec<EmittedFile>,
-    integrals: usize,
+    emitted: Emitted,
     /// t, state, parameters
     inputs: Vec<Vec<f64>>,
     /// ydot, mass matrix, energy, integrals; then the Jacobian
     expected: Vec<(Vec<f64>, Vec<f64>)>,
-}
-
-fn emit(equations: &Equations<'_>, options: impl Fn(Language) -> EmitOptions) -> Vec<EmittedFile> {
-    [Language::C, Language::Rust]
-        .into_iter()
-        .flat_map(|language| equations.emit(&options(language)).unwrap())
-        .collect()
 }
 
 impl Case {
@@ -67,7 +57,6 @@ impl Case {
     ) -> Case {
         let system = equations.system();
         let graph = system.graph();
-        let files = emit(equations, |language| options(language).fused(fused));
         let parameters: Vec<Expr<'_>> = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
         let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).copied().collect();
         let inputs = Inputs { time: Some(system.frame().time()), state, parameters };
@@ -84,13 +73,19 @@ impl Case {
         });
         let mut motion = equations.compile_for(Backend::Interpreter).unwrap();
 
-        let mut case = Case {
-            name: files[0].name.trim_end_matches(".h").to_owned(),
-            files,
-            integrals: integrals.len(),
-            inputs: Vec::new(),
-            expected: Vec::new(),
-        };
+        let dimension = inputs.state.len();
+        let routine = |name, outputs| Routine { name, outputs };
+        let mut routines = vec![
+            routine("rhs", Some(dimension)),
+            routine("mass_matrix", Some(accelerations.len() * accelerations.len())),
+            routine("energy", None),
+        ];
+        if !integrals.is_empty() {
+            routines.push(routine("integrals", Some(integrals.len())));
+        }
+        routines.push(routine("jacobian", Some(dimension * dimension)));
+        let emitted = Emitted::new(equations, |language| options(language).fused(fused), routines).unwrap();
+        let mut case = Case { emitted, inputs: Vec::new(), expected: Vec::new() };
         for (t, y, p) in states {
             let values = interpreters.iter_mut().flat_map(|interpreter| {
                 let mut values = vec![0.0; interpreter.program().outputs_len()];
@@ -133,10 +128,6 @@ impl Case {
             (t, y, p)
         });
         Case::new(&equations, options, fused, states)
-    }
-
-    fn file(&self, suffix: &str) -> &EmittedFile {
-        self.files.iter().find(|file| file.name.ends_with(suffix)).unwrap()
     }
 }
 
@@ -216,160 +207,17 @@ fn chain(links: usize) -> Case {
 
 /// A fresh directory for files of this test.
 fn directory(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("emission").join(name);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn run(command: &mut Command, input: &str) -> String {
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap_or_else(|error| panic!("{command:?} does not run: {error}"));
-    let mut stdin = child.stdin.take().unwrap();
-    let output = std::thread::scope(|scope| {
-        scope.spawn(move || stdin.write_all(input.as_bytes()));
-        child.wait_with_output().unwrap()
-    });
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?} fails:\n{message}");
-    assert!(message.is_empty(), "{command:?} says:\n{message}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn c_driver(cases: &[Case]) -> String {
-    let mut text = String::from("#include <inttypes.h>\n#include <stdio.h>\n#include <string.h>\n");
-    for case in cases {
-        let _ = writeln!(text, "#include \"{0}.h\"\n#include \"{0}.h\"", case.name);
-    }
-    text += r#"
-static double get(void)
-{
-    uint64_t bits;
-    double value;
-    if (scanf("%" SCNx64, &bits) != 1)
-        return 0.0;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static void put(const double *values, int count)
-{
-    for (int i = 0; i < count; i++) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        printf("%" PRIx64 " ", bits);
-    }
-}
-
-int main(void)
-{
-    int model;
-    static double y[64], p[64], values[1024];
-    while (scanf("%d", &model) == 1) {
-        const double t = get();
-"#;
-    for (i, case) in cases.iter().enumerate() {
-        let (name, capitals) = (&case.name, case.name.to_uppercase());
-        let _ = write!(
-            text,
-            "        if (model == {i}) {{
-            for (int i = 0; i < {capitals}_DIM; i++) y[i] = get();
-            for (int i = 0; i < {capitals}_PARAMETERS; i++) p[i] = get();
-            {name}_rhs(t, y, p, values);
-            put(values, {capitals}_N + {capitals}_K);
-            {name}_mass_matrix(t, y, p, values);
-            put(values, {capitals}_K*{capitals}_K);
-            values[0] = {name}_energy(t, y, p);
-            put(values, 1);\n"
-        );
-        if case.integrals > 0 {
-            let _ = writeln!(text, "            {name}_integrals(t, y, p, values);");
-            let _ = writeln!(text, "            put(values, {capitals}_INTEGRALS);");
-        }
-        let _ = write!(
-            text,
-            "            {name}_jacobian(t, y, p, values);
-            put(values, {capitals}_DIM*{capitals}_DIM);
-        }}\n"
-        );
-    }
-    text + "        printf(\"\\n\");\n    }\n    return 0;\n}\n"
-}
-
-fn rust_driver(cases: &[Case]) -> String {
-    let mut text = String::from("use std::io::{BufRead, Write};\n");
-    for case in cases {
-        let _ = writeln!(text, "mod {};", case.name);
-    }
-    text += r#"
-fn put(out: &mut impl Write, values: &[f64]) {
-    for value in values {
-        write!(out, "{:x} ", value.to_bits()).unwrap();
-    }
-}
-
-fn main() {
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-    for line in std::io::stdin().lock().lines() {
-        let line = line.unwrap();
-        let mut words = line.split_whitespace();
-        let model: usize = words.next().unwrap().parse().unwrap();
-        let mut get = || f64::from_bits(u64::from_str_radix(words.next().unwrap(), 16).unwrap());
-        let t = get();
-"#;
-    for (i, case) in cases.iter().enumerate() {
-        let name = &case.name;
-        let _ = write!(
-            text,
-            "        if model == {i} {{
-            use {name}::*;
-            let y: [f64; DIM] = std::array::from_fn(|_| get());
-            let p: [f64; PARAMETERS] = std::array::from_fn(|_| get());
-            let (mut ydot, mut jac) = ([f64::NAN; COORDINATES + QUASI_VELOCITIES], [f64::NAN; DIM * DIM]);
-            let mut mass = [f64::NAN; QUASI_VELOCITIES * QUASI_VELOCITIES];
-            rhs(t, &y, &p, &mut ydot);
-            jacobian(t, &y, &p, &mut jac);
-            mass_matrix(t, &y, &p, &mut mass);
-            put(&mut out, &ydot);
-            put(&mut out, &mass);
-            put(&mut out, &[energy(t, &y, &p)]);\n"
-        );
-        if case.integrals > 0 {
-            text += "            let mut values = [f64::NAN; INTEGRALS];\n";
-            text += "            integrals(t, &y, &p, &mut values);\n            put(&mut out, &values);\n";
-        }
-        text += "            put(&mut out, &jac);\n        }\n";
-    }
-    text + "        writeln!(out).unwrap();\n    }\n}\n"
+    fresh_directory(Path::new(env!("CARGO_TARGET_TMPDIR")).join("emission").join(name))
 }
 
 /// Runs a driver on all inputs and compares what it prints.
 fn compare(program: &Path, cases: &[Case], language: &str) {
-    let mut input = String::new();
-    for (i, case) in cases.iter().enumerate() {
-        for values in &case.inputs {
-            let bits: Vec<String> = values.iter().map(|value| format!("{:x}", value.to_bits())).collect();
-            let _ = writeln!(input, "{i} {}", bits.join(" "));
-        }
-    }
-    let output = run(&mut Command::new(program), &input);
-    let mut lines = output.lines();
-    for case in cases {
-        for (inputs, (values, jacobian)) in case.inputs.iter().zip(&case.expected) {
-            let found: Vec<f64> = lines
-                .next()
-                .unwrap()
-                .split_whitespace()
-                .map(|bits| f64::from_bits(u64::from_str_radix(bits, 16).unwrap()))
-                .collect();
-            assert_eq!(found.len(), values.len() + jacobian.len(), "{} in {language}", case.name);
+    let found = emitted::run(program, cases.iter().map(|case| (&case.emitted, &case.inputs[..])));
+    for (case, found) in cases.iter().zip(found) {
+        for ((inputs, found), (values, jacobian)) in case.inputs.iter().zip(found).zip(&case.expected) {
             let (found_values, found_jacobian) = found.split_at(values.len());
             let blame = |what: &str, i: usize, found: f64, expected: f64| {
-                let name = &case.name;
+                let name = &case.emitted.name;
                 panic!("{name} in {language} at {inputs:?}: {what} {i} is {found:e}, not {expected:e}")
             };
             // The sign of zero is not determined where min or max takes one of +0 and −0.
@@ -391,37 +239,14 @@ fn compare(program: &Path, cases: &[Case], language: &str) {
             }
         }
     }
-    assert!(lines.next().is_none());
 }
 
-fn write_files(path: &Path, cases: &[Case]) {
-    for file in cases.iter().flat_map(|case| &case.files) {
-        fs::write(path.join(&file.name), &file.text).unwrap();
-    }
+fn sources(cases: &[Case]) -> Vec<Emitted> {
+    cases.iter().map(|case| case.emitted.clone()).collect()
 }
 
 fn compile_c(compiler: &str, flags: &[&str], cases: &[Case]) -> PathBuf {
-    let path = directory(compiler);
-    write_files(&path, cases);
-    fs::write(path.join("driver.c"), c_driver(cases)).unwrap();
-    let mut command = Command::new(compiler);
-    command.current_dir(&path).args(flags).args(["-o", "driver", "driver.c"]);
-    command.args(cases.iter().map(|case| format!("{}.c", case.name))).arg("-lm");
-    run(&mut command, "");
-    path.join("driver")
-}
-
-fn compile_rust(cases: &[Case], flags: &[&str], directory_name: &str) -> PathBuf {
-    let path = directory(directory_name);
-    write_files(&path, cases);
-    fs::write(path.join("driver.rs"), rust_driver(cases)).unwrap();
-    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
-    let mut command = Command::new(rustc);
-    run(
-        command.current_dir(&path).args(["--edition=2021", "-O", "-Dwarnings"]).args(flags).arg("driver.rs"),
-        "",
-    );
-    path.join("driver")
+    emitted::compile_c(&directory(compiler), compiler, flags, &sources(cases))
 }
 
 fn all_cases() -> Vec<Case> {
@@ -448,7 +273,7 @@ fn emitted_c_is_cpp() {
 #[test]
 fn emitted_rust_computes_what_the_interpreter_does() {
     let cases = all_cases();
-    compare(&compile_rust(&cases, &[], "rustc"), &cases, "Rust");
+    compare(&emitted::compile_rust(&directory("rustc"), &[], &sources(&cases)), &cases, "Rust");
 }
 
 /// The crate `libm` as far as it is called, so that the test needs no network.
@@ -473,23 +298,23 @@ fn emitted_rust_needs_no_std() {
         .chain([awkward()])
         .collect();
     let path = directory("no_std");
-    write_files(&path, &cases);
+    write_files(&path, &sources(&cases));
     fs::write(path.join("libm.rs"), LIBM).unwrap();
-    let modules: String = cases.iter().map(|case| format!("pub mod {};\n", case.name)).collect();
+    let modules: String = cases.iter().map(|case| format!("pub mod {};\n", case.emitted.name)).collect();
     fs::write(path.join("alone.rs"), format!("#![no_std]\n{modules}")).unwrap();
     let rustc = || {
-        let mut command = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
+        let mut command = rustc();
         command.current_dir(&path).args(["--edition=2021", "--crate-type=lib", "-Dwarnings"]);
         command
     };
-    run(rustc().arg("libm.rs"), "");
+    execute(rustc().arg("libm.rs"), &[]);
     let cfg = ["--cfg", "feature=\"libm\"", "--extern", "libm=liblibm.rlib", "--emit=metadata"];
-    run(rustc().args(cfg).arg("alone.rs"), "");
+    execute(rustc().args(cfg).arg("alone.rs"), &[]);
 }
 
 /// The last line of what a `main` prints: t, the state and the energy.
 fn last_line(program: &Path) -> Vec<f64> {
-    let output = run(&mut Command::new(program), "");
+    let output = String::from_utf8(execute(&mut Command::new(program), &[])).unwrap();
     output.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect()
 }
 
@@ -506,13 +331,13 @@ fn compare_end(name: &str, end: &[f64]) {
 fn main_of_emitted_c_arrives() {
     let path = directory("main_c");
     for &name in MODELS.iter().filter(|name| reference(name).is_some()) {
-        let case = Case::builtin(name, 0);
-        write_files(&path, std::slice::from_ref(&case));
-        let source = &case.file(".c").name;
-        let main = format!("-D{}_MAIN", case.name.to_uppercase());
+        let source = Case::builtin(name, 0).emitted;
+        write_files(&path, std::slice::from_ref(&source));
+        let main = format!("-D{}_MAIN", source.name.to_uppercase());
+        let file = &source.file(".c").unwrap().name;
         let mut gcc = Command::new("gcc");
-        run(gcc.current_dir(&path).args(C_FLAGS).args([&main, "-o", &case.name, source, "-lm"]), "");
-        compare_end(name, &last_line(&path.join(&case.name)));
+        execute(gcc.current_dir(&path).args(C_FLAGS).args([&main, "-o", &source.name, file, "-lm"]), &[]);
+        compare_end(name, &last_line(&path.join(&source.name)));
     }
 }
 
@@ -520,19 +345,18 @@ fn main_of_emitted_c_arrives() {
 fn main_of_emitted_rust_arrives() {
     let path = directory("main_rust");
     for name in ["heavy-top-lagrange", "euler-top"] {
-        let case = Case::builtin(name, 0);
-        write_files(&path, std::slice::from_ref(&case));
-        let mut rustc = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
-        let flags = ["-O", "--cfg", "pc_main", "-Dwarnings", &case.file(".rs").name];
-        run(rustc.current_dir(&path).args(flags), "");
-        compare_end(name, &last_line(&path.join(&case.name)));
+        let source = Case::builtin(name, 0).emitted;
+        write_files(&path, std::slice::from_ref(&source));
+        let flags = ["-O", "--cfg", "pc_main", "-Dwarnings", &source.file(".rs").unwrap().name];
+        execute(rustc().current_dir(&path).args(flags), &[]);
+        compare_end(name, &last_line(&path.join(&source.name)));
     }
 }
 
 #[test]
 fn emission_is_deterministic() {
     for name in ["heavy-top-euler", "relativistic-particle"] {
-        assert_eq!(Case::builtin(name, 0).files, Case::builtin(name, 0).files);
+        assert_eq!(Case::builtin(name, 0).emitted.files, Case::builtin(name, 0).emitted.files);
     }
 }
 

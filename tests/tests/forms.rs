@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 mod holonomic {
+    mod definition;
     mod harness;
     mod jet;
     mod random_systems;

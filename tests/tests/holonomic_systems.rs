@@ -1,11 +1,12 @@
-//! Holonomic systems of many forms, described by closures: derived against classical equations, end states against
-//! references of 16 digits, integrals, structure coefficients.
+//! Holonomic systems of many forms, described by closures: derived against classical equations and against
+//! their definition, end states against references of 16 digits, integrals, structure coefficients.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 mod holonomic {
     mod chains;
     mod closed_forms;
+    mod definition;
     mod forces;
     mod harness;
     mod judge;

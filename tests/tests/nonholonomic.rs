@@ -2,8 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::{Equations, Expr, Graph, System};
+use pc_mech::{Equations, Expr, Graph};
 use pc_solve::{Options, solve};
+use pc_tests::definition::assert_derived;
+use pc_tests::nonholonomic::{SYSTEMS, ball_on_turntable, disk, sleigh, voronets};
 
 /// What is asked of an integration at rtol = 1e-12: the references have 16 digits.
 const TOLERANCE: f64 = 1e-8;
@@ -30,33 +32,10 @@ fn reaches(equations: &Equations<'_>, start: &[f64], t_end: f64, reference: &[f6
     }
 }
 
-/// System 5: blade at (x, y), heading φ; η = (v, ω, u), u the lateral velocity of the blade.
-///
-/// The kinetic energy is computed with `lateral(u)` for u: itself, or 0 to put the constraint in too early.
-fn sleigh<'g>(graph: &'g Graph, lateral: fn(Expr<'g>) -> Expr<'g>) -> System<'g> {
-    let [m, j, a] = graph.symbols(["m", "J", "a"]);
-    System::builder(graph)
-        .parameter(m, 1.0)
-        .parameter(j, 1.0)
-        .parameter(a, 0.5)
-        .coordinates(["x", "y", "phi"])
-        .quasi_velocities(["v", "w", "u"])
-        .kinematics(|_, x, eta| {
-            let (s, c) = (x[2].sin(), x[2].cos());
-            [eta[0] * c - eta[2] * s, eta[0] * s + eta[2] * c, eta[1]]
-        })
-        .lagrangian(|_, _, eta| {
-            let across = lateral(eta[2]) + a * eta[1];
-            m * (eta[0].square() + across.square()) / 2.0 + j * eta[1].square() / 2.0
-        })
-        .build()
-        .unwrap()
-}
-
 #[test]
 fn the_chaplygin_sleigh_turns_round() {
     let graph = Graph::new();
-    let equations = sleigh(&graph, |u| u).poincare_constrained(2).unwrap();
+    let equations = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
     assert_eq!(
         equations.right_hand_side().iter().map(Expr::to_string).collect::<Vec<_>>(),
         ["m*a*w^2", "-m*a*v*w"]
@@ -70,45 +49,16 @@ fn the_chaplygin_sleigh_turns_round() {
 #[test]
 fn a_constraint_put_into_the_lagrangian_gives_the_wrong_motion() {
     let graph = Graph::new();
-    let right = sleigh(&graph, |u| u).poincare_constrained(2).unwrap();
-    let wrong = sleigh(&graph, |_| Expr::ZERO).poincare_constrained(2).unwrap();
+    let right = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
+    let wrong = sleigh(&graph, |_| Expr::ZERO).unwrap().poincare_constrained(2).unwrap();
     assert!(wrong.right_hand_side().iter().all(|r| r.is_zero()));
     assert!(right.right_hand_side().iter().all(|r| !r.is_zero()));
-}
-
-/// System 7: a disk rolling on a plane, θ the angle of its axle with the vertical; slips u and v are zero.
-fn disk(graph: &Graph) -> System<'_> {
-    let [m, a, c, r, g] = graph.symbols(["m", "A", "C", "r", "g"]);
-    let numbers = [(m, 1.0), (a, 0.25), (c, 0.5), (r, 1.0), (g, 10.0)];
-    let builder =
-        numbers.into_iter().fold(System::builder(graph), |b, (symbol, value)| b.parameter(symbol, value));
-    builder
-        .coordinates(["X", "Y", "psi", "theta", "phi"])
-        .quasi_velocities(["w1", "w2", "w3", "u", "v"])
-        .kinematics(|_, x, w| {
-            let roll = w[2] - w[1] * x[3].cot();
-            let along = w[3] - r * roll;
-            [
-                along * x[2].cos() - w[4] * x[2].sin(),
-                along * x[2].sin() + w[4] * x[2].cos(),
-                w[1] / x[3].sin(),
-                w[0],
-                roll,
-            ]
-        })
-        .lagrangian(|_, x, w| {
-            let (s, co) = (x[3].sin(), x[3].cos());
-            let centre = (w[3] - r * w[2]).square() + (w[4] * co).square() + (r * w[0] - w[4] * s).square();
-            (m * centre + a * (w[0].square() + w[1].square()) + c * w[2].square()) / 2.0 - m * g * r * s
-        })
-        .build()
-        .unwrap()
 }
 
 #[test]
 fn the_tilted_disk_rolls_as_in_the_book() {
     let graph = Graph::new();
-    let equations = disk(&graph).poincare_constrained(3).unwrap();
+    let equations = disk(&graph).unwrap().poincare_constrained(3).unwrap();
     let mass: Vec<String> = (0..3).map(|s| equations.mass_matrix()[(s, s)].to_string()).collect();
     assert_eq!(mass, ["m*r^2 + A", "A", "m*r^2 + C"]);
     let reference = [
@@ -127,20 +77,14 @@ fn the_tilted_disk_rolls_as_in_the_book() {
 #[test]
 fn the_equations_of_the_disk_are_short() {
     let graph = Graph::new();
-    let equations = disk(&graph).poincare_constrained(3).unwrap();
+    let equations = disk(&graph).unwrap().poincare_constrained(3).unwrap();
     let free = equations.compile().unwrap().cost();
     let bound = equations.with_parameters_bound().compile().unwrap().cost();
     assert!(free.total() <= 44, "{free:?}\n{:?}", equations.right_hand_side());
     assert!(bound.total() <= 30, "{bound:?}");
 }
 
-/// A, B, D of the constraint ż = A ẋ + B ẏ + D.
-fn voronets_coefficients<'g>(affine: bool, t: Expr<'g>, x: &[Expr<'g>]) -> [Expr<'g>; 3] {
-    let drift = if affine { t.cos() / 2.0 + x[1] / 10.0 + x[2] / 5.0 } else { Expr::ZERO };
-    [x[1] + x[2].square() / 2.0, x[0] * x[2], drift]
-}
-
-/// System 15: an affine constraint whose coefficients depend on the dependent coordinate and on time.
+/// An affine constraint whose coefficients depend on the dependent coordinate and on time.
 #[test]
 fn the_rheonomic_voronets_system_reaches_its_reference() {
     let graph = Graph::new();
@@ -167,29 +111,14 @@ fn the_rheonomic_voronets_system_reaches_its_reference() {
         ),
     ];
     for (affine, reference) in cases {
-        let system = System::builder(&graph)
-            .coordinates(["x", "y", "z"])
-            .quasi_velocities(["vx", "vy", "slip"])
-            .kinematics(|t, x, eta| {
-                let [a, b, d] = voronets_coefficients(affine, t, x);
-                [eta[0], eta[1], eta[2] + a * eta[0] + b * eta[1] + d]
-            })
-            .lagrangian(|t, x, eta| {
-                let [a, b, d] = voronets_coefficients(affine, t, x);
-                let vz = a * eta[0] + b * eta[1] + eta[2] + d;
-                (eta[0].square() + eta[1].square() + vz.square()) / 2.0
-                    - x[2].square() / 2.0
-                    - x[0] * x[2] / 4.0
-            })
-            .build()
-            .unwrap();
+        let system = voronets(&graph, affine).unwrap();
         let equations = system.poincare_constrained(2).unwrap();
         let conserved: &[&str] = if affine { &[] } else { &["energy"] };
         reaches(&equations, &[0.5, -0.5, 1.0, 0.8, -0.6], 5.0, &reference, conserved);
     }
 }
 
-/// System 10: a ball on a turntable, redundant quaternion, affine slip constraints, b_0 ≠ 0 and c_0s ≠ 0.
+/// A ball on a turntable, redundant quaternion, affine slip constraints, b_0 ≠ 0 and c_0s ≠ 0.
 #[test]
 fn the_ball_on_a_turntable_reaches_its_references() {
     let cases = [
@@ -224,31 +153,19 @@ fn the_ball_on_a_turntable_reaches_its_references() {
     ];
     for (accelerated, reference) in cases {
         let graph = Graph::new();
-        let (m, r, j) = (1.0, 0.5, 0.1);
-        let system = System::builder(&graph)
-            .coordinates(["q0", "q1", "q2", "q3", "X", "Y"])
-            .quasi_velocities(["wx", "wy", "wz", "u", "v"])
-            .kinematics(|t, x, w| {
-                let omega: Expr<'_> = if accelerated { 1.0 + t / 4.0 } else { 2.0.into() };
-                let q = &x[..4];
-                [
-                    (-q[1] * w[0] - q[2] * w[1] - q[3] * w[2]) / 2.0,
-                    (q[0] * w[0] + q[3] * w[1] - q[2] * w[2]) / 2.0,
-                    (q[0] * w[1] + q[1] * w[2] - q[3] * w[0]) / 2.0,
-                    (q[0] * w[2] + q[2] * w[0] - q[1] * w[1]) / 2.0,
-                    w[1] * r + w[3] - omega * x[5],
-                    w[4] - w[0] * r + omega * x[4],
-                ]
-            })
-            .lagrangian(|t, x, w| {
-                let omega: Expr<'_> = if accelerated { 1.0 + t / 4.0 } else { 2.0.into() };
-                let (vx, vy) = (w[1] * r + w[3] - omega * x[5], w[4] - w[0] * r + omega * x[4]);
-                let spin = w[0].square() + w[1].square() + w[2].square();
-                (vx.square() + vy.square()) * (m / 2.0) + spin * (j / 2.0)
-            })
-            .build()
-            .unwrap();
+        let system = ball_on_turntable(&graph, accelerated).unwrap();
         let equations = system.poincare_constrained(3).unwrap();
         reaches(&equations, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 3.0, 1.0, 0.5], 5.0, &reference, &[]);
+    }
+}
+
+#[test]
+fn the_equations_are_those_of_the_definition() {
+    for described in SYSTEMS {
+        let vanishing = described.vanishing.len();
+        let build = described.system;
+        let worst =
+            assert_derived(described.name, |graph| build(graph).unwrap(), vanishing, 300, described.sample);
+        println!("{}: {worst:.1e} of the largest term", described.name);
     }
 }

@@ -57,7 +57,9 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     section("the equations derived from it");
     let graph = Graph::new();
     let (_, equations) = input::derive(&model, &graph)?;
-    for line in kinematics(&equations).iter().chain(&brackets(&equations)[..3]).chain(&balance(&equations)) {
+    let system = equations.system();
+    let rates = kinematics(system, equations.velocities());
+    for line in rates.iter().chain(&brackets(system)[..3]).chain(&balance(&equations)) {
         println!("  {line}");
     }
 

@@ -72,9 +72,9 @@ pub struct DeriveArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Form of the equations: poincare
-    #[arg(long, value_parser = form)]
-    pub form: Option<Form>,
+    /// Form of the equations: poincare, canonical (in momenta) or lagrange (in velocities)
+    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = form)]
+    pub form: Form,
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
@@ -102,8 +102,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare
-    #[arg(long, value_parser = form)]
-    pub form: Option<Form>,
+    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = run_form)]
+    pub form: RunForm,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -168,6 +168,17 @@ pub enum Page {
 pub enum Form {
     /// Equations for the quasi-velocities.
     Poincare,
+    /// Equations for the momenta.
+    Canonical,
+    /// Equations for the velocities.
+    Lagrange,
+}
+
+/// Form of the equations that are integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RunForm {
+    /// Equations for the quasi-velocities.
+    Poincare,
 }
 
 /// Integration method.
@@ -180,6 +191,10 @@ pub enum Method {
 }
 
 fn form(text: &str) -> Result<Form, String> {
+    choice(text, &["voronets"])
+}
+
+fn run_form(text: &str) -> Result<RunForm, String> {
     choice(text, &["canonical", "lagrange", "voronets"])
 }
 
@@ -194,7 +209,10 @@ fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
             .iter()
             .filter_map(|variant| variant.to_possible_value().map(|value| value.get_name().to_owned()))
             .collect();
-        let names = names.join(" or ");
+        let names = match names.split_last() {
+            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+            _ => names.concat(),
+        };
         if later.contains(&text) {
             format!("`{text}` is not supported yet; use {names}")
         } else {

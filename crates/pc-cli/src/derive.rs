@@ -2,10 +2,11 @@
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Cost, ExprError, Inputs, Program};
-use pc_mech::{Equations, Expr, Graph, MechError, Style};
+use pc_mech::{Canonical, Equations, Expr, Graph, MechError, Style, System};
 use serde_json::{Map, Value, json};
 
-use crate::args::{DeriveArguments, Page};
+use crate::args::{DeriveArguments, Form, Page};
+use crate::canonical;
 use crate::error::CliError;
 use crate::input;
 use crate::latex;
@@ -18,20 +19,39 @@ use crate::text::{columns, combination, print};
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = Graph::new();
-    let (_, equations) = input::derive(&model, &graph)?;
-    let operations =
-        Operations::of(&equations).map_err(|error| model.derivation_error(MechError::from(error)))?;
+    let system = model.assemble(&graph)?.system;
     let title = input::title(&model);
-    print(|out| match arguments.format {
-        Page::Text => write!(out, "{}\n\n{}", heading(title), text(&equations, &operations)),
-        Page::Latex => write!(out, "{}", latex::page(title, &equations)),
-        Page::Json => writeln!(out, "{:#}", object(title, &equations, &operations)),
+    let page = page(arguments, title, &system).map_err(|error| model.derivation_error(error))?;
+    print(|out| write!(out, "{page}"))
+}
+
+/// The equations in the form and format that are asked for.
+fn page(arguments: &DeriveArguments, title: &str, system: &System<'_>) -> Result<String, MechError> {
+    let (heading, system) = match arguments.form {
+        Form::Poincare => (format!("{title}: Poincaré's equations"), system.clone()),
+        Form::Lagrange => (format!("{title}: Lagrange's equations"), system.in_velocities()?),
+        Form::Canonical => {
+            let equations = system.canonical()?;
+            let operations = Operations::of_canonical(&equations)?;
+            let heading = format!("{title}: canonical equations");
+            return Ok(match arguments.format {
+                Page::Text => underlined(&heading) + &canonical::text(&equations, &operations),
+                Page::Latex => latex::canonical_page(&heading, &equations),
+                Page::Json => format!("{:#}\n", canonical::object(title, &equations, &operations)),
+            });
+        }
+    };
+    let equations = system.poincare()?;
+    let operations = Operations::of(&equations)?;
+    Ok(match arguments.format {
+        Page::Text => underlined(&heading) + &text(&equations, &operations),
+        Page::Latex => latex::page(&heading, &equations),
+        Page::Json => format!("{:#}\n", object(title, &equations, &operations)),
     })
 }
 
-fn heading(title: &str) -> String {
-    let title = format!("{title}: Poincaré's equations");
-    format!("{title}\n{}", "=".repeat(columns(&title)))
+fn underlined(heading: &str) -> String {
+    format!("{heading}\n{}\n\n", "=".repeat(columns(heading)))
 }
 
 /// The operations of one evaluation of the right-hand side ẋ, η̇.
@@ -44,26 +64,42 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// Counts them.
+    /// Those of Poincaré's equations.
     ///
     /// # Errors
     /// [`ExprError`] if the right-hand side cannot be compiled.
     pub fn of(equations: &Equations<'_>) -> Result<Operations, ExprError> {
         let system = equations.system();
+        let rates = [equations.velocities(), &equations.accelerations()].concat();
+        Operations::counted(system, system.quasi_velocities(), &rates)
+    }
+
+    /// Those of the canonical equations.
+    ///
+    /// # Errors
+    /// As [`of`](Operations::of).
+    pub fn of_canonical(equations: &Canonical<'_>) -> Result<Operations, ExprError> {
+        let rates = [equations.velocities(), equations.right_hand_side()].concat();
+        Operations::counted(equations.system(), equations.momenta(), &rates)
+    }
+
+    /// Those of `rates`, functions of time, coordinates, `moving` and parameters.
+    fn counted<'g>(
+        system: &System<'g>,
+        moving: &[Expr<'g>],
+        rates: &[Expr<'g>],
+    ) -> Result<Operations, ExprError> {
         let graph = system.graph();
-        let state = system.frame().coordinates().iter().chain(system.quasi_velocities());
         let inputs = Inputs {
             time: Some(system.frame().time()),
-            state: state.copied().collect(),
+            state: system.frame().coordinates().iter().chain(moving).copied().collect(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
-        let mut rates = equations.velocities().to_vec();
-        rates.extend(equations.accelerations());
         let numbers: Vec<_> =
             system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect();
-        let bound = graph.substitute(&rates, &numbers);
+        let bound = graph.substitute(rates, &numbers);
         Ok(Operations {
-            free: Program::new(graph, &inputs, &rates)?.cost(),
+            free: Program::new(graph, &inputs, rates)?.cost(),
             bound: Program::new(graph, &inputs, &bound)?.cost(),
         })
     }
@@ -71,30 +107,30 @@ impl Operations {
 
 /// The equations as a book prints them: kinematics, brackets, mass matrix, M η̇ = r, energy, operations.
 pub fn text(equations: &Equations<'_>, operations: &Operations) -> String {
-    let section = |title: &str, lines: &[String]| {
-        let lines: String = lines.iter().map(|line| format!("  {line}\n")).collect();
-        format!("{title}\n{lines}\n")
-    };
-    let kinematics = kinematics(equations);
-    let mut text = String::new();
-    if !kinematics.is_empty() {
-        text += &section("Kinematics", &kinematics);
-    }
-    text += &section("Brackets", &brackets(equations));
-    text += &section("Mass matrix", &mass_matrix(equations));
-    text += &section("Equations", &balance(equations));
-    text += &section("Energy", &[equations.energy().to_string()]);
-    let costs = [("parameters free ", &operations.free), ("parameters bound", &operations.bound)];
-    text += &section("Operations of one right-hand side", &costs.map(|(what, cost)| counted(what, cost)));
-    text.truncate(text.trim_end().len());
-    text + "\n"
+    sections(&[
+        ("Kinematics", kinematics(equations.system(), equations.velocities())),
+        ("Brackets", brackets(equations.system())),
+        ("Mass matrix", mass_matrix(equations)),
+        ("Equations", balance(equations)),
+        ("Energy", vec![equations.energy().to_string()]),
+        ("Operations of one right-hand side", operations.lines()),
+    ])
 }
 
-/// ẋ_i = b_is η_s + b_i0, a line each; none where η = ẋ.
-pub fn kinematics(equations: &Equations<'_>) -> Vec<String> {
-    let system = equations.system();
+/// Titles with the lines under them; those without lines are left out.
+pub fn sections(parts: &[(&str, Vec<String>)]) -> String {
+    let section = |(title, lines): &(&str, Vec<String>)| {
+        let lines: String = lines.iter().map(|line| format!("  {line}\n")).collect();
+        format!("{title}\n{lines}")
+    };
+    let written: Vec<String> = parts.iter().filter(|(_, lines)| !lines.is_empty()).map(section).collect();
+    written.join("\n")
+}
+
+/// ẋ_i = `velocities`, a line each; none where these are the velocities themselves.
+pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
     let rates: Vec<String> = system.frame().coordinates().iter().map(|x| format!("{x}'")).collect();
-    let velocities: Vec<String> = equations.velocities().iter().map(Expr::to_string).collect();
+    let velocities: Vec<String> = velocities.iter().map(Expr::to_string).collect();
     if rates == velocities {
         return Vec::new();
     }
@@ -108,14 +144,13 @@ pub fn balance(equations: &Equations<'_>) -> Vec<String> {
 }
 
 /// Left = right, the equals signs under each other unless a left side is long.
-fn aligned<'a>(pairs: impl Iterator<Item = (&'a String, &'a String)> + Clone) -> Vec<String> {
+pub fn aligned<'a>(pairs: impl Iterator<Item = (&'a String, &'a String)> + Clone) -> Vec<String> {
     let width = pairs.clone().map(|(left, _)| columns(left)).filter(|&width| width <= 24).max().unwrap_or(0);
     pairs.map(|(left, right)| format!("{left:width$} = {right}")).collect()
 }
 
 /// The brackets [X_r, X_s] = c_rs^m X_m that are not zero, by the names of the quasi-velocities, `t` for time.
-pub fn brackets(equations: &Equations<'_>) -> Vec<String> {
-    let system = equations.system();
+pub fn brackets(system: &System<'_>) -> Vec<String> {
     let structure = system.structure();
     let name = operator_names(system.quasi_velocities(), "t");
     let k = structure.operators();
@@ -177,6 +212,13 @@ fn mass_matrix(equations: &Equations<'_>) -> Vec<String> {
         .collect()
 }
 
+impl Operations {
+    /// A line each for parameters free and bound.
+    pub fn lines(&self) -> Vec<String> {
+        vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
+    }
+}
+
 /// `what: total (kind count, …)`.
 pub fn counted(what: &str, cost: &Cost) -> String {
     let kinds: Vec<String> = cost.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
@@ -188,10 +230,17 @@ pub fn counted(what: &str, cost: &Cost) -> String {
 
 /// The equations for programs.
 pub fn object(title: &str, equations: &Equations<'_>, operations: &Operations) -> Value {
-    let system = equations.system();
+    let mut object = description(title, equations.system());
+    object.insert("mass_matrix".to_owned(), json!(matrix(&equations.mass_matrix().to_rows())));
+    object.insert("equations".to_owned(), json!(strings(equations.right_hand_side())));
+    object.insert("energy".to_owned(), json!(equations.energy().to_string()));
+    object.insert("operations".to_owned(), operations.object());
+    Value::Object(object)
+}
+
+/// What all forms of the equations have in common.
+pub fn description(title: &str, system: &System<'_>) -> Map<String, Value> {
     let frame = system.frame();
-    let strings = |list: &[Expr<'_>]| list.iter().map(Expr::to_string).collect::<Vec<_>>();
-    let matrix = |rows: Vec<Vec<Expr<'_>>>| rows.iter().map(|row| strings(row)).collect::<Vec<_>>();
     let name = operator_names(system.quasi_velocities(), "0");
     let structure: Vec<Value> = system
         .structure()
@@ -200,18 +249,31 @@ pub fn object(title: &str, equations: &Equations<'_>, operations: &Operations) -
         .collect();
     let parameters: Map<String, Value> =
         system.parameters().iter().map(|(symbol, value)| (symbol.to_string(), json!(value))).collect();
-    json!({
-        "model": title,
-        "coordinates": strings(frame.coordinates()),
-        "quasi_velocities": strings(system.quasi_velocities()),
-        "parameters": parameters,
-        "kinematics": { "b": matrix(frame.b().to_rows()), "b_0": strings(frame.b0()) },
-        "structure_coefficients": structure,
-        "mass_matrix": matrix(equations.mass_matrix().to_rows()),
-        "equations": strings(equations.right_hand_side()),
-        "energy": equations.energy().to_string(),
-        "operations": { "free": counts(&operations.free), "bound": counts(&operations.bound) },
-    })
+    let entries = [
+        ("model", json!(title)),
+        ("coordinates", json!(strings(frame.coordinates()))),
+        ("quasi_velocities", json!(strings(system.quasi_velocities()))),
+        ("parameters", Value::Object(parameters)),
+        ("kinematics", json!({ "b": matrix(&frame.b().to_rows()), "b_0": strings(frame.b0()) })),
+        ("structure_coefficients", json!(structure)),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// The expressions as text.
+pub fn strings(list: &[Expr<'_>]) -> Vec<String> {
+    list.iter().map(Expr::to_string).collect()
+}
+
+fn matrix(rows: &[Vec<Expr<'_>>]) -> Vec<Vec<String>> {
+    rows.iter().map(|row| strings(row)).collect()
+}
+
+impl Operations {
+    /// For programs.
+    pub fn object(&self) -> Value {
+        json!({ "free": counts(&self.free), "bound": counts(&self.bound) })
+    }
 }
 
 fn counts(cost: &Cost) -> Value {

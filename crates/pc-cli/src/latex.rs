@@ -2,18 +2,41 @@
 
 use std::fmt::Write as _;
 
-use pc_mech::{Equations, Expr, Style};
+use pc_mech::{Canonical, Equations, Expr, Style, System};
 
-/// One display for each part of the equations, with a comment above it.
-pub fn page(title: &str, equations: &Equations<'_>) -> String {
-    let mut page = format!("% {title}: Poincaré's equations (needs amsmath)\n");
-    for (part, lines) in [
-        ("Kinematics", kinematics(equations)),
-        ("Brackets", brackets(equations)),
-        ("Equations", equations.balance(Style::Latex)),
-        ("Energy", vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
-    ] {
-        display(&mut page, part, &lines);
+use crate::canonical;
+
+/// One display for each part of Poincaré's equations, with a comment above it.
+pub fn page(heading: &str, equations: &Equations<'_>) -> String {
+    displays(
+        heading,
+        &[
+            ("Kinematics", kinematics(equations.system(), equations.velocities())),
+            ("Brackets", brackets(equations.system())),
+            ("Equations", equations.balance(Style::Latex)),
+            ("Energy", vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
+        ],
+    )
+}
+
+/// The same of the canonical equations.
+pub fn canonical_page(heading: &str, equations: &Canonical<'_>) -> String {
+    displays(
+        heading,
+        &[
+            ("Kinematics", kinematics(equations.system(), equations.velocities())),
+            ("Brackets", brackets(equations.system())),
+            ("Momenta", canonical::momenta(equations, Style::Latex)),
+            ("Hamiltonian", vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))]),
+            ("Equations", equations.balance(Style::Latex)),
+        ],
+    )
+}
+
+fn displays(heading: &str, parts: &[(&str, Vec<(String, String)>)]) -> String {
+    let mut page = format!("% {heading} (needs amsmath)\n");
+    for (part, lines) in parts {
+        display(&mut page, part, lines);
     }
     page
 }
@@ -27,19 +50,17 @@ fn display(page: &mut String, part: &str, lines: &[(String, String)]) {
     let _ = write!(page, "\n% {part}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
 }
 
-fn kinematics(equations: &Equations<'_>) -> Vec<(String, String)> {
-    let system = equations.system();
+fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<(String, String)> {
     let graph = system.graph();
     let rate = |x: &Expr<'_>| graph.symbol(&format!("{x}'"));
-    let velocities = system.frame().coordinates().iter().zip(equations.velocities());
+    let velocities = system.frame().coordinates().iter().zip(velocities);
     velocities
         .filter(|(x, velocity)| rate(x) != **velocity)
         .map(|(x, velocity)| (rate(x).display(Style::Latex), velocity.display(Style::Latex)))
         .collect()
 }
 
-fn brackets(equations: &Equations<'_>) -> Vec<(String, String)> {
-    let system = equations.system();
+fn brackets(system: &System<'_>) -> Vec<(String, String)> {
     let structure = system.structure();
     let graph = system.graph();
     let k = structure.operators();

@@ -86,3 +86,45 @@ fn a_check_as_an_object() {
     let text = pc(&["check", "heavy-top-lagrange"]);
     assert!(text.contains("2 of 3") && text.contains("so3") && text.contains("rank 3 of 3"), "{text}");
 }
+
+#[test]
+fn canonical_equations_in_print() {
+    let text = pc(&["derive", "heavy-top-euler", "--form", "canonical"]);
+    for line in [
+        "Heavy top in Euler's angles: canonical equations",
+        "θ' = p_ω1*cos(φ)/I1 - p_ω2*sin(φ)/I2",
+        "p_ω1 = I1*ω1",
+        "p_ω1^2/(2*I1) + p_ω2^2/(2*I2) + p_ω3^2/(2*I3) + mg*(r1*sin(φ)*sin(θ) + r2*cos(φ)*sin(θ) + r3*cos(θ))",
+        "p_ω1' = r3*mg*cos(φ)*sin(θ) - r2*mg*cos(θ) - p_ω2*p_ω3*(1/I2 - 1/I3)",
+    ] {
+        assert!(text.contains(line), "{line} not in {text}");
+    }
+    let page = pc(&["derive", "heavy-top-euler", "--form", "canonical", "--format", "latex"]);
+    assert!(page.contains(r"\dot{p}_{\omega_{1}} &= "), "{page}");
+    let object = json(&["derive", "heavy-top-euler", "--form", "canonical"]);
+    assert_eq!(object["momenta"], serde_json::json!(["p_ω1", "p_ω2", "p_ω3"]));
+    assert_eq!(object["quasi_velocities_of_momenta"][2], "p_ω3/I3");
+    assert_eq!(object["operations"]["free"]["sin"], 2);
+}
+
+#[test]
+fn lagranges_equations_in_print() {
+    let text = pc(&["derive", "heavy-top-euler", "--form", "lagrange"]);
+    for line in [
+        "Lagrange's equations",
+        "all operators commute",
+        "M(φ', ψ') = I3*cos(θ)",
+        "I3*ψ''*cos(θ) + I3*φ'' = ",
+    ] {
+        assert!(text.contains(line), "{line} not in {text}");
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args(["derive", "heavy-top-quaternion", "--form", "lagrange"])
+        .output()
+        .expect("pc starts");
+    assert_eq!(output.status.code(), Some(4));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let expected =
+        "Lagrange's equations need independent coordinates; here 4 coordinates move with 3 quasi-velocities";
+    assert!(message.contains(expected), "{message}");
+}

@@ -24,6 +24,7 @@
 
 mod angles;
 mod collect;
+mod colouring;
 mod cone;
 mod dag;
 mod derivative;
@@ -43,6 +44,7 @@ mod kernel;
 mod lower;
 mod number;
 pub mod parse;
+mod pattern;
 mod print;
 mod program;
 mod rank;
@@ -50,6 +52,7 @@ mod sharing;
 mod vector_field;
 
 pub use collect::Polynomial;
+pub use colouring::Colouring;
 pub use dag::Folding;
 pub use emit::{Body, Calls, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
@@ -63,6 +66,7 @@ pub use graph::Graph;
 pub use jit::{Entry, Jit, JitError, JitOptions};
 pub use kernel::{Interpreter, Kernel, compile};
 pub use number::Number;
+pub use pattern::Pattern;
 pub use print::Style;
 pub use program::{Inputs, Instruction, Program, Register};
 pub use vector_field::{Failure, VectorField};

@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
+use crate::pattern::Pattern;
+
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
 /// Implemented by compiled equations of motion and by anything a user writes; integrators know nothing else.
@@ -16,7 +18,8 @@ pub trait VectorField {
     /// [`Failure`] where f is not defined; a recoverable one lets an integrator try a smaller step.
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
-    /// Whether [`jacobian`](VectorField::jacobian) is implemented; if not, integrators take difference quotients.
+    /// Whether [`jacobian`](VectorField::jacobian) is implemented; if not, integrators take difference
+    /// quotients.
     fn has_jacobian(&self) -> bool {
         false
     }
@@ -29,6 +32,60 @@ pub trait VectorField {
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
     fn jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), Failure> {
         Err(Failure::fatal(NoJacobian))
+    }
+
+    /// Where ∂f/∂y may be other than zero, if that is known, with or without a Jacobian: dim × dim.
+    fn sparsity(&self) -> Option<&Pattern> {
+        None
+    }
+
+    /// Writes the entries of ∂f/∂y that [`sparsity`](VectorField::sparsity) lists, in its order.
+    ///
+    /// Called only if there is a [Jacobian](VectorField::has_jacobian) and a pattern.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`rhs`](VectorField::rhs).
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let mut dense = vec![0.0; self.dim() * self.dim()];
+        self.jacobian(t, y, &mut dense)?;
+        self.sparsity().ok_or_else(|| Failure::fatal(NoPattern))?.gather(&dense, values);
+        Ok(())
+    }
+
+    /// Whether [`jvp`](VectorField::jvp) is implemented.
+    fn has_jvp(&self) -> bool {
+        false
+    }
+
+    /// Writes the product (∂f/∂y) v to `product`; all slices have length [`dim`](VectorField::dim).
+    ///
+    /// Called only if [`has_jvp`](VectorField::has_jvp) answers true.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`rhs`](VectorField::rhs).
+    fn jvp(&mut self, _t: f64, _y: &[f64], _v: &[f64], _product: &mut [f64]) -> Result<(), Failure> {
+        Err(Failure::fatal(NoProduct))
+    }
+
+    /// Number of parameters p of f that [`parameter_jacobian`](VectorField::parameter_jacobian)
+    /// differentiates by.
+    fn parameters_len(&self) -> usize {
+        0
+    }
+
+    /// Whether [`parameter_jacobian`](VectorField::parameter_jacobian) is implemented.
+    fn has_parameter_jacobian(&self) -> bool {
+        false
+    }
+
+    /// Writes ∂f_i/∂p_j to `jacobian[i + j * dim]` (column-major, dim × parameters, every entry written).
+    ///
+    /// Called only if [`has_parameter_jacobian`](VectorField::has_parameter_jacobian) answers true.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`rhs`](VectorField::rhs).
+    fn parameter_jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), Failure> {
+        Err(Failure::fatal(NoParameterJacobian))
     }
 
     /// Name of component `i` of y, for messages.
@@ -49,6 +106,27 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
         (**self).jacobian(t, y, jacobian)
+    }
+    fn sparsity(&self) -> Option<&Pattern> {
+        (**self).sparsity()
+    }
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        (**self).sparse_jacobian(t, y, values)
+    }
+    fn has_jvp(&self) -> bool {
+        (**self).has_jvp()
+    }
+    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        (**self).jvp(t, y, v, product)
+    }
+    fn parameters_len(&self) -> usize {
+        (**self).parameters_len()
+    }
+    fn has_parameter_jacobian(&self) -> bool {
+        (**self).has_parameter_jacobian()
+    }
+    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        (**self).parameter_jacobian(t, y, jacobian)
     }
     fn component_name(&self, i: usize) -> String {
         (**self).component_name(i)
@@ -101,3 +179,15 @@ impl Failure {
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field has no Jacobian")]
 struct NoJacobian;
+
+#[derive(Debug, thiserror::Error)]
+#[error("the zero pattern of this vector field's Jacobian is not known")]
+struct NoPattern;
+
+#[derive(Debug, thiserror::Error)]
+#[error("this vector field has no products with its Jacobian")]
+struct NoProduct;
+
+#[derive(Debug, thiserror::Error)]
+#[error("this vector field has no derivative by its parameters")]
+struct NoParameterJacobian;

@@ -3,6 +3,7 @@
 use pc_expr::{Expr, Folding, Graph, Style};
 
 use crate::poincare::Equations;
+use crate::system::System;
 
 impl<'g> Equations<'g> {
     /// The left and right sides of M η̇ = r, one pair of texts an equation.
@@ -15,27 +16,32 @@ impl<'g> Equations<'g> {
         (0..self.right.len())
             .map(|s| {
                 let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
-                (left.display(style), self.expanded(self.right[s], style))
+                let right = expanded(&self.system, self.right[s], &self.system.quasi_velocities, style);
+                (left.display(style), right)
             })
             .collect()
     }
+}
 
-    /// An expression as a sum of products of quasi-velocities, if it is a polynomial in them.
-    fn expanded(&self, expression: Expr<'g>, style: Style) -> String {
-        let graph = self.system.graph();
-        let eta = &self.system.quasi_velocities;
-        let parameters: Vec<Expr<'g>> = self.system.parameters.iter().map(|&(symbol, _)| symbol).collect();
-        let Some(mut polynomial) = graph.polynomial(expression, eta) else {
-            return expression.display(style);
-        };
-        for (_, coefficient) in &mut polynomial.terms {
-            *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
-        }
-        // Written in a graph of its own, which merges nothing back to the nested form; symbols in book order.
-        let page = Graph::with_folding(Folding::Structural);
-        for symbol in parameters.iter().chain(self.system.frame.coordinates()).chain(eta) {
-            page.symbol(&symbol.symbol_name().unwrap_or_default());
-        }
-        polynomial.expanded(graph, &page).display(style)
+/// An expression as a sum of products of `variables`, if it is a polynomial in them.
+pub(crate) fn expanded<'g>(
+    system: &System<'g>,
+    expression: Expr<'g>,
+    variables: &[Expr<'g>],
+    style: Style,
+) -> String {
+    let graph = system.graph();
+    let parameters: Vec<Expr<'g>> = system.parameters.iter().map(|&(symbol, _)| symbol).collect();
+    let Some(mut polynomial) = graph.polynomial(expression, variables) else {
+        return expression.display(style);
+    };
+    for (_, coefficient) in &mut polynomial.terms {
+        *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
     }
+    // Written in a graph of its own, which merges nothing back to the nested form; symbols in book order.
+    let page = Graph::with_folding(Folding::Structural);
+    for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
+        page.symbol(&symbol.symbol_name().unwrap_or_default());
+    }
+    polynomial.expanded(graph, &page).display(style)
 }

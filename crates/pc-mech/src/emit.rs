@@ -6,6 +6,7 @@ mod rust;
 use pc_expr::{Body, Calls, Expr, Language, Layout, Place, Program, Slot};
 
 use crate::error::MechError;
+use crate::first_order::{FirstOrder, Linearised};
 use crate::ldl::Factors;
 use crate::poincare::Equations;
 
@@ -154,7 +155,7 @@ impl<'g> Equations<'g> {
         let system = &self.system;
         let names = |symbols: &[Expr<'g>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
         let of = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
-        let state = names(&self.inputs().state);
+        let state = names(&self.first_order().state);
         if let Some(start) = &options.start
             && start.state.len() != state.len()
         {
@@ -196,12 +197,13 @@ impl<'g> Equations<'g> {
         let graph = system.graph();
         let (n, k) = (system.frame.coordinates().len(), system.quasi_velocities.len());
         let dim = n + k;
-        let writer = Writer::new(self, options);
-        let state: Vec<String> = self.inputs().state.iter().map(Expr::to_string).collect();
+        let writer = Writer::new(self.first_order(), options);
+        let state: Vec<String> = writer.system.state.iter().map(Expr::to_string).collect();
         let rates: Vec<String> = state.iter().map(|name| format!("{name}'")).collect();
 
         let factors = Factors::of(graph, &self.mass);
-        let accelerations = self.solve(&factors);
+        let accelerations = writer.system.solve(&factors);
+        let linearised = Linearised::new(&writer.system, &factors, &accelerations);
         let motion: Vec<Expr<'g>> = self.velocities.iter().chain(&accelerations).copied().collect();
         let mut routines = vec![writer.routine(
             "rhs",
@@ -214,7 +216,7 @@ impl<'g> Equations<'g> {
             "jacobian",
             format!("the Jacobian of `rhs`, column after column: `jac[i + {dim}*j] = ∂ydot[i]/∂y[j]`"),
             ("jac", Extent::StateSquared),
-            &self.jacobian(&factors, &accelerations),
+            &linearised.columns(&writer.system.state).concat(),
             |e| {
                 let (i, j) = (e % dim, e / dim);
                 (format!("[{i} + {dim}*{j}]"), format!("∂{}/∂{}", rates[i], state[j]))
@@ -259,7 +261,7 @@ impl<'g> Equations<'g> {
 
 /// Prints programs of the same inputs.
 struct Writer<'a, 'g> {
-    equations: &'a Equations<'g>,
+    system: FirstOrder<'g>,
     options: &'a EmitOptions,
     inputs: Vec<String>,
     prefix: String,
@@ -268,8 +270,8 @@ struct Writer<'a, 'g> {
 }
 
 impl<'a, 'g> Writer<'a, 'g> {
-    fn new(equations: &'a Equations<'g>, options: &'a EmitOptions) -> Writer<'a, 'g> {
-        let inputs = equations.inputs();
+    fn new(system: FirstOrder<'g>, options: &'a EmitOptions) -> Writer<'a, 'g> {
+        let inputs = system.inputs(&[]);
         let names: Vec<String> = inputs.state.iter().chain(&inputs.parameters).map(Expr::to_string).collect();
         let language = options.language;
         let name = language.identifiers(&[&options.name], &[]).remove(0);
@@ -279,7 +281,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         };
         reserved.extend(["ydot", "jac", "mass", "values"].map(str::to_owned));
         let inputs = language.identifiers(&names, &reserved.iter().map(String::as_str).collect::<Vec<_>>());
-        Writer { equations, options, inputs, prefix: name + "_", reserved }
+        Writer { system, options, inputs, prefix: name + "_", reserved }
     }
 
     /// A function of the name, purpose and array given; `slot` gives the index of each output in the array and what
@@ -293,8 +295,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         slot: impl Fn(usize) -> (String, String),
     ) -> Result<Routine, MechError> {
         let language = self.options.language;
-        let graph = self.equations.system.graph();
-        let mut program = Program::new(graph, &self.equations.inputs(), values)?;
+        let mut program = Program::new(self.system.graph, &self.system.inputs(&[]), values)?;
         if self.options.fused {
             program = program.fused();
         }

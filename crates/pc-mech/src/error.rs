@@ -33,6 +33,26 @@ pub enum MechError {
         /// The quasi-velocities in whose elimination no pivot was left.
         quasi_velocities: Vec<String>,
     },
+    /// y = ∂L/∂η is not linear in the quasi-velocities.
+    #[error(
+        "the canonical form needs a Lagrangian that is quadratic in the quasi-velocities; ∂²L/∂η∂η depends on \
+         `{quasi_velocity}`"
+    )]
+    NotQuadratic {
+        /// A quasi-velocity in the Hessian.
+        quasi_velocity: String,
+    },
+    /// Lagrange's equations asked for in coordinates that are not independent.
+    #[error(
+        "Lagrange's equations need independent coordinates; here {coordinates} coordinates move with \
+         {quasi_velocities} quasi-velocities"
+    )]
+    Redundant {
+        /// Number n of coordinates.
+        coordinates: usize,
+        /// Number k of quasi-velocities.
+        quasi_velocities: usize,
+    },
     /// A pivot of the mass matrix vanished on the way.
     #[error(
         "the mass matrix is singular: the pivot of `{quasi_velocity}` is {pivot:e} at t = {t}{}",
@@ -47,6 +67,12 @@ pub enum MechError {
         t: f64,
         /// Names and values of the state.
         state: Vec<(String, f64)>,
+    },
+    /// A derivative was asked for that was not [compiled](crate::CompileOptions).
+    #[error("the motion was compiled without its {what}")]
+    NotCompiled {
+        /// The derivative.
+        what: &'static str,
     },
     /// An error of the frame or its algebra.
     #[error(transparent)]

@@ -26,17 +26,33 @@
 //! ```
 
 mod book;
+mod canonical;
+mod columns;
+mod dense_ldl;
+mod elimination;
 mod emit;
 mod error;
+mod fault;
+mod first_order;
+mod lagrange;
 mod ldl;
+mod legendre;
 mod motion;
+mod options;
+mod pivots;
 mod poincare;
+mod staged;
 mod system;
+mod unrolled;
 
+pub use canonical::Canonical;
 pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
 pub use motion::Motion;
+pub use options::CompileOptions;
 pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-pub use pc_expr::{Backend, Expr, ExprError, Folding, Graph, Language, Number, Style, VectorField};
+pub use pc_expr::{
+    Backend, Colouring, Expr, ExprError, Folding, Graph, Language, Number, Pattern, Style, VectorField,
+};
 pub use poincare::Equations;
 pub use system::{System, SystemBuilder};

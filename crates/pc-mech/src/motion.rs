@@ -1,17 +1,20 @@
-//! Compiled equations of motion: a vector field with its Jacobian, and the quantities watched along it.
+//! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Failure, Inputs, Program, VectorField};
+use pc_expr::{Cost, Expr, Failure, Pattern, VectorField};
 
+use crate::columns::Layout;
+use crate::elimination;
 use crate::error::MechError;
-use crate::ldl::Factors;
+use crate::fault::Fault;
+use crate::first_order::FirstOrder;
+use crate::options::CompileOptions;
 use crate::poincare::Equations;
+use crate::staged::Staged;
+use crate::unrolled::Unrolled;
 
-/// A pivot this small against the largest diagonal entry of M is rounding.
-const VANISHING_PIVOT: f64 = 1e-14;
-
-/// A Jacobian of more operations is interpreted: integrators ask for it once in dozens of steps, and machine code for
-/// it would take longer to make than a run.
-const LONG_JACOBIAN: usize = 5000;
+/// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
+/// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
+pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
 /// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
 #[derive(Clone, Debug)]
@@ -19,108 +22,90 @@ pub struct Motion {
     /// n coordinates, then k quasi-velocities.
     names: Vec<String>,
     coordinates: usize,
+    /// What the pivots of M belong to.
+    quasi_velocities: Vec<String>,
     parameters: Vec<f64>,
-    /// Outputs: ẋ, η̇, the pivots D of M, the diagonal of M.
-    rhs: Evaluator,
-    jacobian: Evaluator,
-    observables: Evaluator,
+    form: Form,
+    options: CompileOptions,
     observable_names: Vec<String>,
     conserved: usize,
-    outputs: Vec<f64>,
+}
+
+/// How f is computed.
+#[derive(Clone, Debug)]
+enum Form {
+    Unrolled(Box<Unrolled>),
+    Staged(Box<Staged>),
 }
 
 impl<'g> Equations<'g> {
     /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
     ///
+    /// Accelerations are solved for in the program, unless there are many quasi-velocities of which most are
+    /// coupled with each other: then M is factorised in numbers at each call.
+    ///
     /// # Errors
-    /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
+    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
+    /// declared parameter.
     pub fn compile(&self) -> Result<Motion, MechError> {
-        self.compile_for(Backend::Fastest)
+        self.compile_for(CompileOptions::default())
     }
 
-    /// Compiles as [`compile`](Equations::compile) does, for the kernel chosen.
+    /// Compiles as [`compile`](Equations::compile) does, with other derivatives or for another
+    /// [kernel](pc_expr::Backend).
     ///
     /// # Errors
     /// As [`compile`](Equations::compile).
-    pub fn compile_for(&self, backend: Backend) -> Result<Motion, MechError> {
+    pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
+        self.first_order().compile(&options.into(), LONGEST_ELIMINATION)
+    }
+
+    /// The case w = η̇, g = (b η + b_0, w).
+    pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let system = &self.system;
-        let graph = system.graph();
         let x = system.frame.coordinates();
-        let inputs = self.inputs();
-        let state = inputs.state.clone();
-        let compile = |outputs: &[Expr<'g>], backend| -> Result<Evaluator, ExprError> {
-            Ok(Evaluator::new(Program::new(graph, &inputs, outputs)?, backend))
-        };
-        let factors = Factors::of(graph, &self.mass);
-        let accelerations = self.solve(&factors);
-        let mut outputs = self.velocities.clone();
-        outputs.extend(&accelerations);
-        outputs.extend(factors.pivots());
-        outputs.extend((0..factors.pivots().len()).map(|s| self.mass[(s, s)]));
-
+        let unknowns = system.accelerations();
         let energy = ("energy".to_owned(), self.energy);
-        let observed: Vec<(String, Expr<'g>)> =
-            system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect();
-        let (observable_names, observed): (Vec<String>, Vec<Expr<'g>>) = observed.into_iter().unzip();
-        let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
-        let observed = graph.substitute(&observed, &rates);
-
-        let rhs = compile(&outputs, backend)?;
-        Ok(Motion {
-            names: state.iter().map(Expr::to_string).collect(),
+        FirstOrder {
+            graph: system.graph(),
+            time: system.frame.time(),
+            state: x.iter().chain(&system.quasi_velocities).copied().collect(),
             coordinates: x.len(),
-            parameters: system.parameters.iter().map(|&(_, value)| value).collect(),
-            outputs: vec![0.0; rhs.program().outputs_len()],
-            rhs,
-            jacobian: self.compile_jacobian(&inputs, &factors, &accelerations, backend)?,
-            observables: compile(&observed, Backend::Interpreter)?,
-            observable_names,
+            parameters: system.parameters.clone(),
+            names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
+            mass: self.mass.clone(),
+            right: self.right.clone(),
+            rates: self.velocities.iter().chain(&unknowns).copied().collect(),
+            unknowns,
+            collected_by: system.collecting_order(),
+            observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
             conserved: system.integrals.len() + 1,
+        }
+    }
+}
+
+impl FirstOrder<'_> {
+    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest`.
+    ///
+    /// # Errors
+    /// As for [`Equations::compile`].
+    pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
+        let short = elimination::operations(&self.mass) <= longest;
+        let form = if short || !elimination::needs_no_pivoting(self.graph, &self.mass) {
+            Form::Unrolled(Box::new(Unrolled::new(self, options)?))
+        } else {
+            Form::Staged(Box::new(Staged::new(self, options)?))
+        };
+        Ok(Motion {
+            names: self.state.iter().map(Expr::to_string).collect(),
+            coordinates: self.coordinates,
+            quasi_velocities: self.names.clone(),
+            parameters: self.parameters.iter().map(|&(_, value)| value).collect(),
+            form,
+            options: *options,
+            observable_names: self.observables.iter().map(|(name, _)| name.clone()).collect(),
+            conserved: self.conserved,
         })
-    }
-
-    fn compile_jacobian(
-        &self,
-        inputs: &Inputs<'g>,
-        factors: &Factors<'g>,
-        accelerations: &[Expr<'g>],
-        backend: Backend,
-    ) -> Result<Evaluator, ExprError> {
-        let program = Program::new(self.system.graph(), inputs, &self.jacobian(factors, accelerations))?;
-        let long = program.code().len() > LONG_JACOBIAN;
-        Ok(Evaluator::new(program, if long { Backend::Interpreter } else { backend }))
-    }
-
-    /// What the compiled programs read.
-    pub(crate) fn inputs(&self) -> Inputs<'g> {
-        let system = &self.system;
-        Inputs {
-            time: Some(system.frame.time()),
-            state: system.frame.coordinates().iter().chain(&system.quasi_velocities).copied().collect(),
-            parameters: system.parameters.iter().map(|&(symbol, _)| symbol).collect(),
-        }
-    }
-
-    /// ∂(ẋ, η̇)/∂(x, η), column after column. No inverse is differentiated: with F = r − M a at fixed a = η̇,
-    /// ∂η̇/∂y = M⁻¹ ∂F/∂y.
-    pub(crate) fn jacobian(&self, factors: &Factors<'g>, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let graph = self.system.graph();
-        let eta = &self.system.quasi_velocities;
-        let state: Vec<Expr<'g>> = self.system.frame.coordinates().iter().chain(eta).copied().collect();
-        let fixed = self.system.accelerations();
-        let balance: Vec<Expr<'g>> = (0..eta.len())
-            .map(|s| self.right[s] - graph.dot(self.mass.row(s).iter().copied(), fixed.iter().copied()))
-            .collect();
-        let rows: Vec<Expr<'g>> = self.velocities.iter().chain(&balance).copied().collect();
-        let values: Vec<_> = fixed.into_iter().zip(accelerations.iter().copied()).collect();
-        let mut columns = Vec::with_capacity(rows.len() * state.len());
-        for &y in &state {
-            let column = graph.directional(&rows, &[(y, Expr::ONE)]);
-            let (velocity, balance) = column.split_at(self.velocities.len());
-            columns.extend(velocity);
-            columns.extend(factors.solve(graph, &graph.substitute(balance, &values)));
-        }
-        columns
     }
 }
 
@@ -142,6 +127,9 @@ impl Motion {
 
     /// The values of the parameters, to be changed.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
+        if let Form::Unrolled(unrolled) = &mut self.form {
+            unrolled.forget();
+        }
         &mut self.parameters
     }
 
@@ -150,7 +138,8 @@ impl Motion {
         &self.observable_names
     }
 
-    /// Number of observables, the first ones, that the motion should keep constant: the integrals and the energy.
+    /// Number of observables, the first ones, that the motion should keep constant: the integrals and the
+    /// energy.
     pub fn conserved_len(&self) -> usize {
         self.conserved
     }
@@ -162,35 +151,55 @@ impl Motion {
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         let mut values = vec![0.0; self.observable_names.len()];
-        self.observables.eval(t, y, &self.parameters, &mut values);
+        match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, &mut values),
+            Form::Staged(staged) => staged.observe(t, y, &self.parameters, &mut values),
+        }
         values
     }
 
-    /// Operations of one evaluation of the right-hand side, kinematics included.
+    /// Operations of one evaluation of the right-hand side, kinematics included; without those of the
+    /// factorisation where M is factorised in numbers.
     pub fn cost(&self) -> Cost {
-        self.rhs.program().cost()
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.cost().clone(),
+            Form::Staged(staged) => staged.cost().clone(),
+        }
     }
 
-    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let (motion, factors) = self.outputs.split_at(self.names.len());
-        let (pivots, diagonal) = factors.split_at(factors.len() / 2);
-        let scale = diagonal.iter().fold(0.0f64, |scale, m| scale.max(m.abs()));
-        if let Some(s) = pivots.iter().position(|d| d.abs() <= VANISHING_PIVOT * scale) {
-            return Err(Failure::recoverable(MechError::SingularMassMatrix {
-                quasi_velocity: self.names[self.coordinates + s].clone(),
-                pivot: pivots[s],
+    /// Whether M is factorised in numbers.
+    #[cfg(test)]
+    pub(crate) fn is_staged(&self) -> bool {
+        matches!(self.form, Form::Staged(_))
+    }
+
+    #[cold]
+    fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
+        match fault {
+            Fault::Pivot { index, pivot } => Failure::recoverable(MechError::SingularMassMatrix {
+                quasi_velocity: self.quasi_velocities[index].clone(),
+                pivot,
                 t,
                 state: self.names.iter().cloned().zip(y.iter().copied()).collect(),
-            }));
+            }),
+            Fault::Expr(error) => Failure::recoverable(MechError::from(error)),
+            Fault::NotCompiled { what } => Failure::fatal(MechError::NotCompiled { what }),
         }
-        if motion.iter().all(|v| v.is_finite()) {
-            return Ok(());
-        }
-        let culprit = self.rhs.diagnose(t, y, &self.parameters);
-        match culprit {
-            Some(error) => Err(Failure::recoverable(MechError::from(error))),
-            None => Ok(()),
-        }
+    }
+
+    fn write_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+        layout: Layout,
+    ) -> Result<(), Failure> {
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, layout),
+            Form::Staged(staged) => staged.jacobian(at, entries, layout),
+        };
+        outcome.map_err(|fault| self.failure(fault, t, y))
     }
 }
 
@@ -200,25 +209,61 @@ impl VectorField for Motion {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.rhs.eval(t, y, &self.parameters, &mut self.outputs);
-        self.check(t, y)?;
-        ydot.copy_from_slice(&self.outputs[..y.len()]);
-        Ok(())
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
+            Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
+        };
+        outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
     fn has_jacobian(&self) -> bool {
-        true
+        self.options.jacobian
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-        self.jacobian.eval(t, y, &self.parameters, jacobian);
-        if jacobian.iter().all(|v| v.is_finite()) {
-            return Ok(());
+        self.write_jacobian(t, y, jacobian, Layout::Dense)
+    }
+
+    /// Known if the Jacobian was compiled.
+    fn sparsity(&self) -> Option<&Pattern> {
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.pattern(),
+            Form::Staged(staged) => staged.pattern(),
         }
-        match self.jacobian.diagnose(t, y, &self.parameters) {
-            Some(error) => Err(Failure::recoverable(MechError::from(error))),
-            None => Ok(()),
-        }
+    }
+
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.write_jacobian(t, y, values, Layout::Sparse)
+    }
+
+    fn has_jvp(&self) -> bool {
+        self.options.jvp
+    }
+
+    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
+            Form::Staged(staged) => staged.jvp(at, v, product),
+        };
+        outcome.map_err(|fault| self.failure(fault, t, y))
+    }
+
+    fn parameters_len(&self) -> usize {
+        self.parameters.len()
+    }
+
+    fn has_parameter_jacobian(&self) -> bool {
+        self.options.parameter_jacobian
+    }
+
+    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
+            Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
+        };
+        outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
     fn component_name(&self, i: usize) -> String {

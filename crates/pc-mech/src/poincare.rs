@@ -111,7 +111,7 @@ impl<'g> System<'g> {
         }
     }
 
-    fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
+    pub(crate) fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
         let size = mass.rows();
         let graph = self.graph();
         let rank = graph.generic_rank(&mass.to_rows());
@@ -155,24 +155,7 @@ impl<'g> Equations<'g> {
 
     /// The accelerations η̇ = M⁻¹ r, length k.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
-        self.solve(&Factors::of(self.system.graph(), &self.mass))
-    }
-
-    /// M⁻¹ r; an acceleration that is a single quotient is shortened once more.
-    pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
-        let graph = self.system.graph();
-        let order = self.system.collecting_order();
-        let mut accelerations = factors.solve(graph, &self.right);
-        for (s, acceleration) in accelerations.iter_mut().enumerate() {
-            let row = self.mass.row(s);
-            let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());
-            let is_parameter =
-                |symbol: &Expr<'g>| self.system.parameters.iter().any(|(known, _)| known == symbol);
-            if decoupled && !graph.symbols_of(&[row[s]]).iter().all(is_parameter) {
-                *acceleration = graph.shorten(&[*acceleration], &order)[0];
-            }
-        }
-        accelerations
+        self.first_order().solve(&Factors::of(self.system.graph(), &self.mass))
     }
 
     /// The same equations with the parameters replaced by their numbers.

@@ -1,8 +1,9 @@
 //! Families of any length: the pendulum of N links and the Toda chain.
 
-use pc_mech::{Expr, Graph, Motion, System};
+use pc_mech::{Expr, Graph, System};
 
-use super::harness::{STATES, distance, integrate, normals, rates};
+use super::definition::assert_definition;
+use super::harness::{STATES, compiled, distance, integrate, normals, rates};
 use super::judge::{assert_equations, assert_motion};
 use pc_tests::classical::SplitMix64;
 
@@ -11,9 +12,8 @@ fn names(letter: &str, count: usize) -> Vec<String> {
 }
 
 /// Unit masses on unit links, g = 10, in the angles θ_i from the vertical.
-fn pendulum_in_angles(links: usize) -> Motion {
-    let graph = Graph::new();
-    let system = System::builder(&graph)
+fn pendulum_in_angles(graph: &Graph, links: usize) -> System<'_> {
+    let system = System::builder(graph)
         .coordinates(names("q", links))
         .lagrangian(|_, q, rate| {
             let (mut across, mut up, mut height) = (Expr::ZERO, Expr::ZERO, Expr::ZERO);
@@ -29,14 +29,13 @@ fn pendulum_in_angles(links: usize) -> Motion {
         .build()
         .unwrap();
     assert_eq!(system.structure().nonzero().count(), 0);
-    system.poincare().unwrap().compile().unwrap()
+    system
 }
 
 /// The same in the Cartesian coordinates x_i, y_i of its particles, with the rates of the links as quasi-velocities.
-fn pendulum_in_the_plane(links: usize) -> Motion {
-    let graph = Graph::new();
+fn pendulum_in_the_plane(graph: &Graph, links: usize) -> System<'_> {
     let coordinates = (1..=links).flat_map(|i| [format!("x{i}"), format!("y{i}")]);
-    let system = System::builder(&graph)
+    let system = System::builder(graph)
         .coordinates(coordinates)
         .quasi_velocities(names("w", links))
         .kinematics(|_, x, rate| plane_velocities(x, rate))
@@ -47,7 +46,7 @@ fn pendulum_in_the_plane(links: usize) -> Motion {
         .build()
         .unwrap();
     assert_eq!(system.structure().nonzero().count(), 0);
-    system.poincare().unwrap().compile().unwrap()
+    system
 }
 
 fn plane_velocities<'g>(x: &[Expr<'g>], rate: &[Expr<'g>]) -> Vec<Expr<'g>> {
@@ -106,7 +105,8 @@ fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
 
 #[test]
 fn a_pendulum_of_four_links() {
-    let mut motion = pendulum_in_angles(4);
+    let graph = Graph::new();
+    let mut motion = compiled(&pendulum_in_angles(&graph, 4));
     assert_equations(
         "pendulum",
         &mut motion,
@@ -130,7 +130,9 @@ fn a_pendulum_of_four_links() {
 /// The same accelerations at random states, and the same motion, as in the angles.
 #[test]
 fn a_pendulum_of_three_links_in_redundant_coordinates() {
-    let (mut angles, mut plane) = (pendulum_in_angles(3), pendulum_in_the_plane(3));
+    let graph = Graph::new();
+    let mut angles = compiled(&pendulum_in_angles(&graph, 3));
+    let mut plane = compiled(&pendulum_in_the_plane(&graph, 3));
     let in_the_plane = |y: &[f64]| [place(&y[..3]), y[3..].to_vec()].concat();
     let mut random = SplitMix64::new(5);
     for _ in 0..STATES {
@@ -177,11 +179,9 @@ fn trace_of_lax_power<'g>(q: &[Expr<'g>], eta: &[Expr<'g>], power: usize) -> Exp
     (0..BODIES).map(|i| product[i][i]).sum()
 }
 
-/// q̈_i = e^(q_(i−1) − q_i) − e^(q_i − q_(i+1)), in the relative velocities η_1 = q̇_1, η_i = q̇_i − q̇_(i−1).
-#[test]
-fn an_open_toda_chain() {
-    let graph = Graph::new();
-    let mut builder = System::builder(&graph)
+/// Toda's open chain in the relative velocities η_1 = q̇_1, η_i = q̇_i − q̇_(i−1).
+fn toda(graph: &Graph) -> System<'_> {
+    let mut builder = System::builder(graph)
         .coordinates(names("q", BODIES))
         .quasi_velocities(names("w", BODIES))
         .kinematics(|_, _, eta| sums(eta))
@@ -189,13 +189,23 @@ fn an_open_toda_chain() {
             let kinetic: Expr<'_> = sums(eta).into_iter().map(Expr::square).sum();
             kinetic / 2.0 - q.windows(2).map(|pair| (pair[0] - pair[1]).exp()).sum::<Expr<'_>>()
         });
-    let traces: Vec<String> = (1..=BODIES).map(|power| format!("trace {power}")).collect();
-    for (power, name) in (1..=BODIES).zip(&traces) {
+    for (power, name) in (1..=BODIES).zip(traces()) {
         builder = builder.integral(name, |_, q, eta| trace_of_lax_power(q, eta, power));
     }
-    let system = builder.build().unwrap();
+    builder.build().unwrap()
+}
+
+fn traces() -> Vec<String> {
+    (1..=BODIES).map(|power| format!("trace {power}")).collect()
+}
+
+/// q̈_i = e^(q_(i−1) − q_i) − e^(q_i − q_(i+1))
+#[test]
+fn an_open_toda_chain() {
+    let graph = Graph::new();
+    let system = toda(&graph);
     assert_eq!(system.structure().nonzero().count(), 0);
-    let mut motion = system.poincare().unwrap().compile().unwrap();
+    let mut motion = compiled(&system);
 
     let classical = |_: f64, y: &[f64]| {
         let (q, eta) = y.split_at(BODIES);
@@ -225,7 +235,18 @@ fn an_open_toda_chain() {
         -0.063080784345197,
         0.6810043704872663,
     ];
+    let traces = traces();
     let mut conserved: Vec<&str> = traces.iter().map(String::as_str).collect();
     conserved.push("energy");
     assert_motion("chain", &mut motion, &start, (6.0, &end), &conserved);
+}
+
+#[test]
+fn chains_are_those_of_the_definition() {
+    let angles = [0.5, 0.9, 1.4, 2.0, 0.3, -1.0, 0.7, 1.0];
+    assert_definition("pendulum of four links", |graph| pendulum_in_angles(graph, 4), &angles);
+    let plane = [0.5, -0.9, 1.1, -1.7, 1.8, -2.4, 0.5, -0.3, 0.8];
+    assert_definition("three links in the plane", |graph| pendulum_in_the_plane(graph, 3), &plane);
+    let bodies = [0.0, 0.5, 1.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.5, 0.0, -1.0, 0.5];
+    assert_definition("Toda's chain", toda, &bodies);
 }

@@ -3,7 +3,8 @@
 use pc_mech::{AlgebraError, Graph, LieAlgebra, System, SystemBuilder};
 use pc_tests::closed_form::{euler_top, euler_top_separatrix, relativistic_fall};
 
-use super::harness::{distance, integrate};
+use super::definition::assert_definition;
+use super::harness::{compiled, distance, integrate};
 
 /// Error of an integration at rtol = 1e-12 over a few periods.
 const ARRIVAL: f64 = 1e-9;
@@ -46,18 +47,28 @@ fn a_free_top_without_its_algebra_is_refused() {
 }
 
 /// L = −c² √(1 − ẋ²/c²) + f x with c = 2 and f = 3.
-#[test]
-fn a_constant_force_drives_a_particle_to_the_velocity_of_light() {
-    let graph = Graph::new();
-    let system = System::builder(&graph)
+fn under_constant_force(graph: &Graph) -> System<'_> {
+    System::builder(graph)
         .coordinates(["x"])
         .lagrangian(|_, x, v| -4.0 * (1.0 - v[0].square() / 4.0).sqrt() + 3.0 * x[0])
         .build()
-        .unwrap();
-    let mut motion = system.poincare().unwrap().compile().unwrap();
+        .unwrap()
+}
+
+#[test]
+fn a_constant_force_drives_a_particle_to_the_velocity_of_light() {
+    let graph = Graph::new();
+    let mut motion = compiled(&under_constant_force(&graph));
     let times = [0.1, 0.5, 1.0, 2.0, 3.0];
     for (t, y) in times.iter().zip(integrate(&mut motion, &[0.0, 0.0], &times)) {
         let velocity = 3.0 * t / (1.5 * t).hypot(1.0);
         assert!(distance(&y, &[relativistic_fall(2.0, 3.0, *t), velocity]) < ARRIVAL, "t = {t}: {y:?}");
     }
+}
+
+#[test]
+fn they_are_those_of_the_definition() {
+    let so3 = LieAlgebra::so3();
+    assert_definition("free top", |graph| free_top(graph).algebra(&so3).build().unwrap(), &[1.0, 0.2, 1.0]);
+    assert_definition("constant force", under_constant_force, &[0.0, 0.5]);
 }

@@ -4,22 +4,24 @@ use pc_mech::{Expr, Folding, Graph, System};
 use pc_tests::classical::SplitMix64;
 use pc_tests::closed_form::damped_oscillator;
 
-use super::harness::{Description, STATES, distance, integrate};
+use super::definition::assert_definition;
+use super::harness::{Description, STATES, compiled, distance, integrate};
 use super::rheonomic::{HOOP, WIRE};
 use super::shared::{CHARGE, SCALED_OSCILLATOR, TURNING_CHART};
 
 /// Error of an integration at rtol = 1e-12 over a few oscillations.
 const ARRIVAL: f64 = 1e-9;
 
-/// The oscillator ẍ = −4x in the frame ẋ = `velocity`(t, x, η), braked by the force −½ẋ: Q = −½ẋ ∂ẋ/∂η. The state
-/// of the motion at `times` from x = 1 and η = `eta`.
-fn braked_oscillator(
-    velocity: for<'g> fn(Expr<'g>, Expr<'g>, Expr<'g>) -> Expr<'g>,
-    eta: f64,
-    times: &[f64],
-) -> Vec<Vec<f64>> {
-    let graph = Graph::new();
-    let system = System::builder(&graph)
+/// ẋ(t, x, η)
+type Velocity = for<'g> fn(Expr<'g>, Expr<'g>, Expr<'g>) -> Expr<'g>;
+
+const PLAIN: Velocity = |_, _, eta| eta;
+const MOVING: Velocity = |t, x, eta| (-t / 4.0).exp() * eta + x / 4.0;
+const STRETCHED: Velocity = |_, x, eta| (2.0 + x.sin()) * eta;
+
+/// The oscillator ẍ = −4x in the frame ẋ = `velocity`(t, x, η), braked by the force −½ẋ: Q = −½ẋ ∂ẋ/∂η.
+fn braked_oscillator(graph: &Graph, velocity: Velocity) -> System<'_> {
+    System::builder(graph)
         .coordinates(["x"])
         .quasi_velocities(["eta"])
         .kinematics(|t, x, eta| [velocity(t, x[0], eta[0])])
@@ -29,17 +31,19 @@ fn braked_oscillator(
             [-velocity / 2.0 * velocity.derivative(eta[0])]
         })
         .build()
-        .unwrap();
-    integrate(&mut system.poincare().unwrap().compile().unwrap(), &[1.0, eta], times)
+        .unwrap()
 }
 
 /// The brake is a force here and growth of the Lagrangian with time in the model `damped-oscillator`: one motion.
 #[test]
 fn a_braking_force_damps_as_a_growing_lagrangian() {
     let times = [0.5, 1.0, 2.0, 3.0, 4.5, 6.0];
-    let plain = braked_oscillator(|_, _, eta| eta, 1.0, &times);
-    let moving = braked_oscillator(|t, x, eta| (-t / 4.0).exp() * eta + x / 4.0, 0.75, &times);
-    let stretched = braked_oscillator(|_, x, eta| (2.0 + x.sin()) * eta, 1.0 / (2.0 + 1.0f64.sin()), &times);
+    let run = |velocity: Velocity, eta: f64| {
+        let graph = Graph::new();
+        integrate(&mut compiled(&braked_oscillator(&graph, velocity)), &[1.0, eta], &times)
+    };
+    let (plain, moving) = (run(PLAIN, 1.0), run(MOVING, 0.75));
+    let stretched = run(STRETCHED, 1.0 / (2.0 + 1.0f64.sin()));
     for (i, &t) in times.iter().enumerate() {
         let [x, velocity] = damped_oscillator(t);
         let expected = [
@@ -53,11 +57,9 @@ fn a_braking_force_damps_as_a_growing_lagrangian() {
     }
 }
 
-/// A particle of mass 2 pushed by F = (2 cos t, 1) in space: x = 2 − cos t, y = t + t²/4.
-#[test]
-fn a_force_in_space_axes_pushes_in_polar_coordinates() {
-    let graph = Graph::new();
-    let system = System::builder(&graph)
+/// A particle of mass 2 in polar coordinates, pushed by F = (2 cos t, 1) in space.
+fn pushed_particle(graph: &Graph) -> System<'_> {
+    System::builder(graph)
         .coordinates(["rho", "phi"])
         .quasi_velocities(["u", "v"])
         .kinematics(|_, x, eta| [eta[0], eta[1] / x[0]])
@@ -68,8 +70,14 @@ fn a_force_in_space_axes_pushes_in_polar_coordinates() {
             [push * x[1].cos() + lift * x[1].sin(), lift * x[1].cos() - push * x[1].sin()]
         })
         .build()
-        .unwrap();
-    let mut motion = system.poincare().unwrap().compile().unwrap();
+        .unwrap()
+}
+
+/// x = 2 − cos t, y = t + t²/4
+#[test]
+fn a_force_in_space_axes_pushes_in_polar_coordinates() {
+    let graph = Graph::new();
+    let mut motion = compiled(&pushed_particle(&graph));
     let times = [0.5, 1.0, 2.0, 4.0, 6.0];
     let states = integrate(&mut motion, &[1.0, 0.0, 0.0, 1.0], &times);
     for (t, state) in times.into_iter().zip(&states) {
@@ -189,4 +197,13 @@ fn power_and_the_canonical_equations() {
             .unwrap();
         assert_canonical(name, &system);
     }
+}
+
+#[test]
+fn pushed_and_braked_particles_are_those_of_the_definition() {
+    for (name, velocity) in [("plain", PLAIN), ("moving", MOVING), ("stretched", STRETCHED)] {
+        let name = format!("braked oscillator, {name} frame");
+        assert_definition(&name, |graph| braked_oscillator(graph, velocity), &[1.0, 0.7]);
+    }
+    assert_definition("pushed particle", pushed_particle, &[1.0, 0.0, 0.0, 1.0]);
 }

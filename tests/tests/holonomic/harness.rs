@@ -30,6 +30,11 @@ pub(super) fn normals<const N: usize>(random: &mut SplitMix64) -> [f64; N] {
     std::array::from_fn(|_| random.normal())
 }
 
+/// The derived equations, compiled.
+pub(super) fn compiled(system: &System<'_>) -> Motion {
+    system.poincare().unwrap().compile().unwrap()
+}
+
 /// (ẋ, η̇) at a state.
 pub(super) fn rates(motion: &mut Motion, t: f64, y: &[f64]) -> Vec<f64> {
     let mut rates = vec![f64::NAN; y.len()];

@@ -1,9 +1,10 @@
 //! Pendulums in Cartesian coordinates with frames that keep the lengths of their links: n > k.
 
-use pc_mech::{Equations, Expr, Graph, MechError, Motion, System};
+use pc_mech::{Expr, Graph, MechError, Motion, System};
 use pc_tests::classical::SplitMix64;
 
-use super::harness::normals;
+use super::definition::assert_definition;
+use super::harness::{compiled, normals};
 use super::judge::{assert_equations, assert_motion};
 
 // Masses 1 and 2, links of lengths 1 and 0.8, g = 10.
@@ -15,11 +16,11 @@ fn double_energy<'g>(x: &[Expr<'g>], velocity: &[Expr<'g>]) -> [Expr<'g>; 2] {
     [kinetic, 10.0 * (x[1] + 2.0 * x[3])]
 }
 
+/// ẋ(x, η)
+type Velocities<const N: usize> = for<'g> fn(&[Expr<'g>], &[Expr<'g>]) -> [Expr<'g>; N];
+
 /// The double pendulum in a frame of two fields along its configurations.
-fn double_pendulum<'g>(
-    graph: &'g Graph,
-    velocities: fn(&[Expr<'g>], &[Expr<'g>]) -> [Expr<'g>; 4],
-) -> Equations<'g> {
+fn double_pendulum(graph: &Graph, velocities: Velocities<4>) -> System<'_> {
     System::builder(graph)
         .coordinates(DOUBLE)
         .quasi_velocities(["u", "v"])
@@ -32,9 +33,20 @@ fn double_pendulum<'g>(
         .integral("second length", |_, x, _| (x[2] - x[0]).square() + (x[3] - x[1]).square())
         .build()
         .unwrap()
-        .poincare()
-        .unwrap()
 }
+
+/// η = (ẋ_1, ẋ_2) (14)
+const DOUBLE_BY_HORIZONTALS: Velocities<4> = |x, eta| {
+    let fall = -x[0] / x[1] * eta[0];
+    [eta[0], fall, eta[1], fall - (x[2] - x[0]) / (x[3] - x[1]) * (eta[1] - eta[0])]
+};
+
+/// η = (θ̇_1, θ̇_2), without a singular configuration
+const DOUBLE_BY_RATES: Velocities<4> = |x, eta| {
+    let (p, r) = (x[2] - x[0], x[3] - x[1]);
+    let (across, up) = (-x[1] * eta[0], x[0] * eta[0]);
+    [across, up, across - r * eta[1], up + p * eta[1]]
+};
 
 /// Angular accelerations of the two links at place x and rates w:
 /// (m_1 + m_2) |r_1|² θ̈_1 + m_2 r_1·r_2 θ̈_2 = m_2 (r_1 × r_2) θ̇_2² − (m_1 + m_2) g x_1,
@@ -58,16 +70,12 @@ fn double_sample(random: &mut SplitMix64) -> (f64, Vec<f64>) {
     (0.0, state)
 }
 
-/// η = (ẋ_1, ẋ_2) (14): all brackets vanish.
 #[test]
 fn a_double_pendulum_by_horizontal_velocities() {
     let graph = Graph::new();
-    let equations = double_pendulum(&graph, |x, eta| {
-        let fall = -x[0] / x[1] * eta[0];
-        [eta[0], fall, eta[1], fall - (x[2] - x[0]) / (x[3] - x[1]) * (eta[1] - eta[0])]
-    });
-    assert_eq!(equations.system().structure().nonzero().count(), 0);
-    let mut motion = equations.compile().unwrap();
+    let system = double_pendulum(&graph, DOUBLE_BY_HORIZONTALS);
+    assert_eq!(system.structure().nonzero().count(), 0);
+    let mut motion = compiled(&system);
     let classical = |_: f64, y: &[f64]| {
         let (p, r) = (y[2] - y[0], y[3] - y[1]);
         let w = [-y[4] / y[1], -(y[5] - y[4]) / r];
@@ -100,17 +108,12 @@ fn a_double_pendulum_by_horizontal_velocities() {
 
 const CONSERVED: [&str; 3] = ["energy", "first length", "second length"];
 
-/// η = (θ̇_1, θ̇_2), without a singular configuration.
 #[test]
 fn a_double_pendulum_by_the_rates_of_its_links() {
     let graph = Graph::new();
-    let equations = double_pendulum(&graph, |x, eta| {
-        let (p, r) = (x[2] - x[0], x[3] - x[1]);
-        let (across, up) = (-x[1] * eta[0], x[0] * eta[0]);
-        [across, up, across - r * eta[1], up + p * eta[1]]
-    });
-    assert_eq!(equations.system().structure().nonzero().count(), 0);
-    let mut motion = equations.compile().unwrap();
+    let system = double_pendulum(&graph, DOUBLE_BY_RATES);
+    assert_eq!(system.structure().nonzero().count(), 0);
+    let mut motion = compiled(&system);
     let classical = |_: f64, y: &[f64]| {
         let (p, r) = (y[2] - y[0], y[3] - y[1]);
         let a = angular_accelerations(y, [y[4], y[5]]);
@@ -140,10 +143,7 @@ fn a_double_pendulum_by_the_rates_of_its_links() {
 }
 
 /// The spherical pendulum of length 1 with g = 10, in a frame on the spheres about its point of support.
-fn spherical_pendulum<'g>(
-    graph: &'g Graph,
-    velocities: fn(&[Expr<'g>], &[Expr<'g>]) -> [Expr<'g>; 3],
-) -> Equations<'g> {
+fn spherical_pendulum(graph: &Graph, velocities: Velocities<3>) -> System<'_> {
     System::builder(graph)
         .coordinates(["x", "y", "z"])
         .quasi_velocities(["u", "v"])
@@ -158,9 +158,21 @@ fn spherical_pendulum<'g>(
         })
         .build()
         .unwrap()
-        .poincare()
-        .unwrap()
 }
+
+/// η = (ẋ, ẏ) (14)
+const SPHERICAL_BY_HORIZONTALS: Velocities<3> =
+    |x, eta| [eta[0], eta[1], -(x[0] * eta[0] + x[1] * eta[1]) / x[2]];
+
+/// Unit fields along meridians and parallels of the unit sphere.
+const SPHERICAL_BY_MERIDIANS: Velocities<3> = |x, eta| {
+    let rho = (x[0].square() + x[1].square()).sqrt();
+    [
+        (x[0] * x[2] * eta[0] - x[1] * eta[1]) / rho,
+        (x[1] * x[2] * eta[0] + x[0] * eta[1]) / rho,
+        -rho * eta[0],
+    ]
+};
 
 /// r̈ = −g e_z + λ r with λ = (gz − |ṙ|²)/|r|².
 fn tension(place: &[f64], velocity: [f64; 3]) -> f64 {
@@ -178,14 +190,12 @@ fn assert_spherical(name: &str, motion: &mut Motion, classical: impl Fn(f64, &[f
     });
 }
 
-/// η = (ẋ, ẏ) (14).
 #[test]
 fn a_spherical_pendulum_by_horizontal_velocities() {
     let graph = Graph::new();
-    let equations =
-        spherical_pendulum(&graph, |x, eta| [eta[0], eta[1], -(x[0] * eta[0] + x[1] * eta[1]) / x[2]]);
-    assert_eq!(equations.system().structure().nonzero().count(), 0);
-    let mut motion = equations.compile().unwrap();
+    let system = spherical_pendulum(&graph, SPHERICAL_BY_HORIZONTALS);
+    assert_eq!(system.structure().nonzero().count(), 0);
+    let mut motion = compiled(&system);
     assert_spherical("spherical pendulum (a)", &mut motion, |_, y| {
         let rise = -(y[0] * y[3] + y[1] * y[4]) / y[2];
         let lambda = tension(y, [y[3], y[4], rise]);
@@ -202,24 +212,17 @@ fn a_spherical_pendulum_by_horizontal_velocities() {
     assert_motion("spherical pendulum (a)", &mut motion, &start, (3.0, &end), &["energy", "length", "area"]);
 }
 
-/// Unit fields along meridians and parallels of the unit sphere: c_12^2 = −z/ρ.
+/// c_12^2 = −z/ρ.
 #[test]
 fn a_spherical_pendulum_by_meridians_and_parallels() {
     let graph = Graph::new();
-    let equations = spherical_pendulum(&graph, |x, eta| {
-        let rho = (x[0].square() + x[1].square()).sqrt();
-        [
-            (x[0] * x[2] * eta[0] - x[1] * eta[1]) / rho,
-            (x[1] * x[2] * eta[0] + x[0] * eta[1]) / rho,
-            -rho * eta[0],
-        ]
-    });
+    let system = spherical_pendulum(&graph, SPHERICAL_BY_MERIDIANS);
     let [x, y, z] = graph.symbols(["x", "y", "z"]);
     let rho = (x.square() + y.square()).sqrt();
-    let brackets: Vec<_> = equations.system().structure().nonzero().collect();
+    let brackets: Vec<_> = system.structure().nonzero().collect();
     assert_eq!(brackets, [(1, 2, 2, -z / rho)]);
 
-    let mut motion = equations.compile().unwrap();
+    let mut motion = compiled(&system);
     assert_spherical("spherical pendulum (b)", &mut motion, |_, y| {
         let [x, y, z, u, v] = [y[0], y[1], y[2], y[3], y[4]];
         let rho = x.hypot(y);
@@ -262,4 +265,18 @@ fn a_spherical_pendulum_by_rotations_is_refused() {
         "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 2 of 3, so that `w3` is not \
          determined by its equation"
     );
+}
+
+#[test]
+fn pendulums_are_those_of_the_definition() {
+    let double = [0.48, -0.88, 0.17, -1.61, 0.3, 0.1];
+    let spherical = [0.6, 0.0, -0.8, 1.0, 1.5];
+    assert_definition("double (a)", |graph| double_pendulum(graph, DOUBLE_BY_HORIZONTALS), &double);
+    assert_definition("double (b)", |graph| double_pendulum(graph, DOUBLE_BY_RATES), &double);
+    assert_definition(
+        "spherical (a)",
+        |graph| spherical_pendulum(graph, SPHERICAL_BY_HORIZONTALS),
+        &spherical,
+    );
+    assert_definition("spherical (b)", |graph| spherical_pendulum(graph, SPHERICAL_BY_MERIDIANS), &spherical);
 }

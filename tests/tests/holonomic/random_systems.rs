@@ -3,7 +3,8 @@
 use pc_mech::{Expr, Folding, Frame, Graph, Motion, System};
 use pc_tests::classical::SplitMix64;
 
-use super::harness::rates;
+use super::definition::assert_definition;
+use super::harness::{compiled, rates};
 use super::jet::{Jet, VARIABLES, solve};
 
 /// Sums of some dozens of terms and the solution of two systems of condition below 10: at most a few thousand units
@@ -219,10 +220,6 @@ impl<'g> Sample<'g> {
         (rates, size)
     }
 
-    fn compile(&self) -> Motion {
-        self.system.poincare().unwrap().compile().unwrap()
-    }
-
     /// The derived equations at `place` = (t, x, η) are Lagrange's.
     fn assert_lagrange(&self, motion: &mut Motion, random: &mut SplitMix64, label: &str) {
         let k = self.relation.len();
@@ -253,7 +250,7 @@ fn assert_lagrange(seeds: std::ops::Range<u64>, k: usize, form: Form, folding: F
         let brackets: Vec<_> = sample.system.structure().nonzero().collect();
         drifting += usize::from(brackets.iter().any(|&(r, ..)| r == 0));
         varying += usize::from(brackets.iter().any(|&(r, _, _, c)| r > 0 && c.constant().is_none()));
-        let mut motion = sample.compile();
+        let mut motion = compiled(&sample.system);
         let mut random = SplitMix64::new(1000 + seed);
         for _ in 0..POINTS {
             sample.assert_lagrange(&mut motion, &mut random, &format!("{form:?}, k = {k}, seed {seed}"));
@@ -297,4 +294,20 @@ fn without_folding_by_value() {
     assert_lagrange(100..104, 3, Form::Velocities, Folding::Structural);
     assert_lagrange(200..208, 2, Form::Definitions, Folding::Structural);
     assert_lagrange(400..408, 2, Form::Redundant, Folding::Structural);
+}
+
+#[test]
+fn random_systems_are_those_of_the_definition() {
+    let kinds = [(0, 2, Form::Velocities), (100, 3, Form::Velocities), (200, 2, Form::Definitions)];
+    for (first, k, form) in kinds.into_iter().chain([(400, 2, Form::Redundant)]) {
+        for seed in first..first + 6 {
+            let coordinates = if form == Form::Redundant { k + 1 } else { k };
+            let name = format!("{form:?}, k = {k}, seed {seed}");
+            assert_definition(
+                &name,
+                |graph| sample(graph, seed, k, form).system,
+                &vec![0.2; coordinates + k],
+            );
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use pc_mech::{Expr, Graph};
 use pc_tests::classical::SplitMix64;
 
+use super::definition::assert_definition;
 use super::harness::{Description, distance, integrate, normals};
 use super::judge::{assert_equations, assert_motion};
 use super::shared::TURNING_CHART;
@@ -151,4 +152,10 @@ fn an_oscillator_in_a_turning_chart() {
     let start = [1.0, 0.0, 0.0, 1.5];
     let end = [-0.4202456629931698, -0.2319376450203162, 0.884420493138732, 0.2972106552854497];
     assert_motion("chart", &mut motion, &start, (8.0, &end), &["jacobi"]);
+}
+
+#[test]
+fn rheonomic_systems_are_those_of_the_definition() {
+    assert_definition("wire", |graph| WIRE.builder(graph).build().unwrap(), &[1.0, 0.0, -0.5]);
+    assert_definition("hoop", |graph| HOOP.builder(graph).build().unwrap(), &[0.5, 0.0, -0.9, 0.2]);
 }

@@ -2,10 +2,11 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use pc_mech::{Expr, Graph, LieAlgebra, Motion, Number, System};
+use pc_mech::{Expr, Graph, LieAlgebra, Number, System};
 use pc_tests::classical::SplitMix64;
 
-use super::harness::normals;
+use super::definition::assert_definition;
+use super::harness::{compiled, normals};
 use super::judge::{assert_equations, assert_motion};
 
 /// What expressions and numbers have in common here.
@@ -142,22 +143,23 @@ fn sample(random: &mut SplitMix64) -> (f64, Vec<f64>) {
     (0.0, y.to_vec())
 }
 
-fn compiled(system: &System<'_>) -> Motion {
-    system.poincare().unwrap().compile().unwrap()
-}
+const ON_SPRING: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// A spring of stiffness 5 from the body's point a to the origin of space.
-#[test]
-fn a_body_on_a_spring() {
-    const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
-    let graph = Graph::new();
-    let system = body(&graph, INERTIA, 2.0, |r, axes| {
+fn on_a_spring(graph: &Graph) -> System<'_> {
+    body(graph, ON_SPRING, 2.0, |r, axes| {
         let end = (0..3).map(|i| r[i] + axes[i][0] * 0.5 + axes[i][2] * 0.25);
         -2.5 * end.map(Expr::square).sum::<Expr<'_>>()
-    });
+    })
+}
+
+#[test]
+fn a_body_on_a_spring() {
+    let graph = Graph::new();
+    let system = on_a_spring(&graph);
     assert_rigid_body(&system);
     let mut motion = compiled(&system);
-    let classical = newton_euler(INERTIA, 2.0, |r, axes| {
+    let classical = newton_euler(ON_SPRING, 2.0, |r, axes| {
         let arm = [0.5, 0.0, 0.25];
         let offset = times(axes, &arm);
         let force: [f64; 3] = std::array::from_fn(|i| -5.0 * (r[i] + offset[i]));
@@ -184,24 +186,29 @@ fn a_body_on_a_spring() {
     assert_motion("spring", &mut motion, &start, (5.0, &end), &CONSERVED);
 }
 
+const IN_ORBIT: [f64; 3] = [0.1, 0.2, 0.25];
+
 /// MacCullagh's potential of a body far from an attracting centre with μ = 1.
-#[test]
-fn a_body_in_a_gravity_gradient() {
-    const INERTIA: [f64; 3] = [0.1, 0.2, 0.25];
-    let graph = Graph::new();
-    let system = body(&graph, INERTIA, 1.0, |r, axes| {
+fn in_a_gravity_gradient(graph: &Graph) -> System<'_> {
+    body(graph, IN_ORBIT, 1.0, |r, axes| {
         let distance = dot(r, r).sqrt();
         let seen = times(&transposed(axes), r);
-        let moment: Expr<'_> = (0..3).map(|i| INERTIA[i] * seen[i].square()).sum();
+        let moment: Expr<'_> = (0..3).map(|i| IN_ORBIT[i] * seen[i].square()).sum();
         1.0 / distance + 0.55 / 2.0 / distance.powi(3) - 1.5 * moment / distance.powi(5)
-    });
+    })
+}
+
+#[test]
+fn a_body_in_a_gravity_gradient() {
+    let graph = Graph::new();
+    let system = in_a_gravity_gradient(&graph);
     assert_rigid_body(&system);
     let mut motion = compiled(&system);
-    let classical = newton_euler(INERTIA, 1.0, |r, axes| {
+    let classical = newton_euler(IN_ORBIT, 1.0, |r, axes| {
         let distance = dot(r, r).sqrt();
         let direction: [f64; 3] = std::array::from_fn(|i| r[i] / distance);
         let seen = times(&transposed(axes), &direction);
-        let moment: [f64; 3] = std::array::from_fn(|i| INERTIA[i] * seen[i]);
+        let moment: [f64; 3] = std::array::from_fn(|i| IN_ORBIT[i] * seen[i]);
         let turned = times(axes, &moment);
         let fourth = distance.powi(4);
         let central = 1.0 / distance.powi(2) + 1.5 * (0.55 - 5.0 * dot(&seen, &moment)) / fourth;
@@ -227,4 +234,11 @@ fn a_body_in_a_gravity_gradient() {
         0.08091470186555868,
     ];
     assert_motion("gravity gradient", &mut motion, &start, (10.0, &end), &CONSERVED);
+}
+
+#[test]
+fn rigid_bodies_are_those_of_the_definition() {
+    let centre = [2.0, 0.0, 0.5, 1.0, 0.2, 0.0, 0.0, 0.2, 1.0, -0.5, 0.0, 1.0, 0.25];
+    assert_definition("body on a spring", on_a_spring, &centre);
+    assert_definition("body in a gravity gradient", in_a_gravity_gradient, &centre);
 }

@@ -4,6 +4,7 @@ use pc_mech::{Equations, Expr, Folding, Graph, LieAlgebra, System};
 use pc_tests::classical::SplitMix64;
 use pc_tests::reference::reference;
 
+use super::definition::assert_definition;
 use super::harness::{Description, STATES, distance, integrate, normals, rates};
 use super::shared::{CHARGE, SCALED_OSCILLATOR, TURNING_CHART};
 
@@ -305,4 +306,27 @@ fn a_change_of_gauge_changes_no_motion() {
     assert_gauge_invariant("top in angles", TOP_IN_ANGLES, top_sample);
     // In γ the frame has rank 2 with three operators.
     assert_gauge_invariant("top in γ", TOP_IN_VERTICAL, |random| normals::<6>(random).to_vec());
+}
+
+#[test]
+fn each_frame_is_that_of_the_definition() {
+    let described: [(&str, Description, &[f64]); 7] = [
+        ("chart", TURNING_CHART, &[1.0, 0.0, 0.0, 1.5]),
+        ("charge", CHARGE, &[1.0, 0.0, 0.5, 1.0]),
+        ("relativistic", RELATIVISTIC, &[1.0, 0.0, 0.0, 1.1]),
+        ("scaled oscillator", SCALED_OSCILLATOR, &[1.0, 0.75]),
+        ("spherical coordinates", SPHERICAL, &[1.0, 1.2, 0.4, -0.5, 0.3, 0.8]),
+        ("top in angles", TOP_IN_ANGLES, &[0.0, 1.0, 0.3, 0.2, -0.3, 1.5]),
+        ("top in a quaternion", TOP_IN_QUATERNION, &[0.9, 0.5, -0.1, 0.1, 0.2, -0.3, 1.5]),
+    ];
+    for (name, description, centre) in described {
+        assert_definition(name, |graph| description.builder(graph).build().unwrap(), centre);
+    }
+    // The frame in γ does not determine the brackets.
+    let so3 = LieAlgebra::so3();
+    assert_definition(
+        "top in γ",
+        |graph| TOP_IN_VERTICAL.builder(graph).algebra(&so3).build().unwrap(),
+        &[0.2, 0.8, 0.5, 0.2, -0.3, 1.5],
+    );
 }

@@ -58,7 +58,12 @@ pub(super) fn symbol(name: &str) -> String {
     };
     let stem = letters(stem);
     let stem = accent.map_or(stem.clone(), |accent| format!("\\{accent}{{{stem}}}"));
-    if index.is_empty() { stem } else { format!("{stem}_{{{}}}", letters(index)) }
+    let plain = index.contains('_') || index.starts_with(|c: char| c.is_ascii_digit());
+    match index {
+        "" => stem,
+        _ if plain => format!("{stem}_{{{}}}", letters(index)),
+        _ => format!("{stem}_{{{}}}", symbol(index)), // p_ω1 is p_{\omega_{1}}
+    }
 }
 
 fn letters(text: &str) -> String {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use pc_expr::{ExprError, Failure};
 use pc_mech::MechError;
 use pc_model::ModelError;
+use pc_nonholo::NonholoError;
 
 /// Why a benchmark could not be run.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +20,9 @@ pub(crate) enum Error {
     /// A system was refused.
     #[error(transparent)]
     Mech(#[from] MechError),
+    /// Constraints were refused.
+    #[error(transparent)]
+    Nonholo(#[from] NonholoError),
     /// A program could not be made.
     #[error(transparent)]
     Expr(#[from] ExprError),

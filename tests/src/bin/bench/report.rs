@@ -51,7 +51,7 @@ impl Report {
         fs::create_dir_all(&directory)
             .and_then(|()| fs::write(&path, &self.text))
             .map_err(|source| Error::Write { path: path.clone(), source })?;
-        println!("\nwritten to {}\n", path.display());
+        eprintln!("\nwritten to {}\n", path.display());
         Ok(())
     }
 }

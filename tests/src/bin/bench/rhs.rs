@@ -8,9 +8,10 @@ use pc_mech::{Equations, Graph, VectorField};
 use pc_tests::classical::SplitMix64;
 
 use crate::error::Error;
-use crate::measure::{ROUNDS, Times, Variant, geometric_mean, interleave};
+use crate::hand::Routine;
+use crate::measure::{Call, ROUNDS, Times, Variant, geometric_mean, interleave};
 use crate::report::Report;
-use crate::systems::{Case, SYSTEMS};
+use crate::systems::{Case, Derive, FURTHER, SYSTEMS};
 
 /// Variants may differ by this, relative to the largest component.
 const ROUNDING: f64 = 1e-12;
@@ -18,64 +19,106 @@ const ROUNDING: f64 = 1e-12;
 const STATES: usize = 100;
 
 /// A way to run programs.
-struct KernelKind {
-    name: &'static str,
-    /// A kernel of the program, or why there is none.
-    make: fn(&Program) -> Result<Box<dyn Kernel>, String>,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Backend {
+    Interpreter,
+    Jit,
 }
 
-/// Every kernel is timed alike.
-const KERNELS: &[KernelKind] = &[
-    KernelKind {
-        name: "interpreter",
-        make: |program| Ok(Box::new(Interpreter::new(Arc::new(program.clone())))),
-    },
-    KernelKind {
-        name: "jit",
-        make: |program| match Jit::new(program) {
-            Ok(jit) => Ok(Box::new(jit)),
-            Err(error) => Err(error.to_string()),
-        },
-    },
-];
+impl Backend {
+    const ALL: [Backend; 2] = [Backend::Interpreter, Backend::Jit];
 
-/// A kernel with its parameters against the code by hand: one ratio for each system.
+    fn name(self) -> &'static str {
+        match self {
+            Backend::Interpreter => "interpreter",
+            Backend::Jit => "jit",
+        }
+    }
+
+    /// The program as a function of the state, or why there is none.
+    fn call(self, program: &Program, parameters: Vec<f64>) -> Result<Box<Call<'static>>, String> {
+        match self {
+            Backend::Interpreter => {
+                let mut kernel = Interpreter::new(Arc::new(program.clone()));
+                Ok(Box::new(move |y, dy| kernel.eval(0.0, y, &parameters, dy)))
+            }
+            Backend::Jit => {
+                let jit = Jit::new(program).map_err(|error| error.to_string())?;
+                Ok(enter(Routine::compiled(jit, parameters)))
+            }
+        }
+    }
+}
+
+/// Machine code as a variant calls it, by hand or not.
+fn enter(mut routine: Routine) -> Box<Call<'static>> {
+    Box::new(move |y, dy| routine.call(y, dy))
+}
+
+/// A backend against the code by hand, with numbers for parameters or not: one ratio for each system.
 struct Comparison {
-    kernel: &'static str,
+    backend: Backend,
     bound: bool,
-    ratios: Vec<f64>,
+    ratios: Vec<(String, f64)>,
 }
 
-/// Times all systems.
+impl Comparison {
+    /// One for each backend, with parameters bound and free.
+    fn all() -> Vec<Comparison> {
+        let of = |bound| Backend::ALL.map(|backend| Comparison { backend, bound, ratios: Vec::new() });
+        [of(false), of(true)].into_iter().flatten().collect()
+    }
+
+    fn mean(&self) -> f64 {
+        geometric_mean(&self.ratios.iter().map(|&(_, ratio)| ratio).collect::<Vec<_>>())
+    }
+
+    fn largest(&self) -> Option<&(String, f64)> {
+        self.ratios.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Times all systems; the last line is the geometric mean of the JIT's ratios to the code by hand.
 ///
 /// # Errors
 /// [`Error::Disagreement`] before anything is timed of a system whose variants differ.
 pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     report.line(format!(
-        "ns a call: minimum, 10th percentile and median of {ROUNDS} rounds, in each of which every variant of a system \
-         has one turn of about 100 µs.\nEach call waits for the one before, since every input contains an output. \
-         `empty` copies the state: the cost of the harness, contained in the other rows.\n`/ hand` is the median over \
-         the rounds of the ratio within a round. All variants agree to {ROUNDING:e} at {STATES} random states.\n\
-         `bound` has numbers for parameters, as `hand` has; `motion` is what an integrator calls, pivots watched.\n"
+        "ns a call: minimum, 10th percentile and median of {ROUNDS} rounds, in each of which every variant \
+         of a system has one turn of about 100 µs.\nEach call waits for the one before: where its state is \
+         depends on all outputs. `empty` copies the state: the cost of the harness, contained in the other \
+         rows.\n`/ hand` is the median over the rounds of the ratio within a round. `hand` and `jit` are \
+         entered by the same instructions, through a pointer to machine code.\nAll variants agree to \
+         {ROUNDING:e} at {STATES} random states. `bound` has numbers for parameters, as `hand` has; `motion` \
+         is what an integrator calls, pivots watched.\n"
     ));
-    report.columns(&["system", "variant", "operations", "min", "p10", "median", "/ hand"]);
-    let mut comparisons: Vec<Comparison> = Vec::new();
-    for kernel in KERNELS {
-        for bound in [true, false] {
-            comparisons.push(Comparison { kernel: kernel.name, bound, ratios: Vec::new() });
+    let comparisons = group(SYSTEMS, report)?;
+    report.line("\nSystems beside those that the means are taken of:\n");
+    group(FURTHER, report)?;
+
+    report.line("");
+    for bound in [false, true] {
+        let parameters = if bound { "" } else { ", parameters free" };
+        for comparison in comparisons.iter().filter(|comparison| comparison.bound == bound) {
+            let name = comparison.backend.name();
+            if let Some((system, ratio)) = comparison.largest() {
+                report.line(format!("largest {name}/hand{parameters}: {ratio:.2} ({system})"));
+            }
+            report.line(format!("geometric mean {name}/hand{parameters}: {:.2}", comparison.mean()));
         }
     }
-    for system in SYSTEMS {
-        let graph = Graph::new();
-        let case = system(&graph)?;
-        time(&case, &mut comparisons, report)?;
-    }
-    report.line("");
-    for Comparison { kernel, bound, ratios } in &comparisons {
-        let parameters = if *bound { "" } else { ", parameters free" };
-        report.line(format!("geometric mean {kernel}/hand{parameters}: {:.2}", geometric_mean(ratios)));
-    }
     Ok(())
+}
+
+/// Times systems in a table.
+fn group(systems: &[Derive], report: &mut Report) -> Result<Vec<Comparison>, Error> {
+    report.columns(&["system", "variant", "operations", "min", "p10", "median", "/ hand"]);
+    let mut comparisons = Comparison::all();
+    for system in systems {
+        let graph = Graph::new();
+        time(&system(&graph)?, &mut comparisons, report)?;
+    }
+    Ok(comparisons)
 }
 
 /// What is timed, beside what the table says of it.
@@ -86,46 +129,46 @@ struct Entry<'a> {
     comparison: Option<usize>,
 }
 
-fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) -> Result<(), Error> {
-    let mut entries =
-        vec![Entry { variant: Variant::new("empty", empty), operations: None, comparison: None }];
-    for &(name, hand) in &case.hand {
-        entries.push(Entry { variant: Variant::new(name, hand), operations: None, comparison: None });
+impl<'a> Entry<'a> {
+    /// One that belongs to no comparison.
+    fn plain(name: &str, call: Box<Call<'a>>) -> Entry<'a> {
+        Entry { variant: Variant::new(name, call), operations: None, comparison: None }
     }
+}
+
+fn entries<'a>(case: &Case<'_>, comparisons: &[Comparison]) -> Result<Vec<Entry<'a>>, Error> {
+    let mut entries = vec![Entry::plain("empty", Box::new(empty))];
+    entries.extend(case.hand.iter().map(|&(name, hand)| Entry::plain(name, enter(hand.into()))));
     for (equations, bound) in [(&case.equations.with_parameters_bound(), true), (&case.equations, false)] {
         let (program, parameters) = program(equations)?;
-        for kind in KERNELS {
-            let mut kernel = (kind.make)(&program).map_err(|cause| Error::Kernel {
-                kernel: kind.name,
+        for backend in Backend::ALL {
+            let call = backend.call(&program, parameters.clone()).map_err(|cause| Error::Kernel {
+                kernel: backend.name(),
                 system: case.name.clone(),
                 cause,
             })?;
-            let parameters = parameters.clone();
-            let name = if bound { format!("{}, bound", kind.name) } else { kind.name.to_owned() };
+            let name = if bound { format!("{}, bound", backend.name()) } else { backend.name().to_owned() };
             entries.push(Entry {
-                variant: Variant::new(name, move |y: &[f64], dy: &mut [f64]| {
-                    kernel.eval(0.0, y, &parameters, dy);
-                }),
+                variant: Variant::new(name, call),
                 operations: Some(program.cost().total()),
-                comparison: comparisons.iter().position(|c| c.kernel == kind.name && c.bound == bound),
+                comparison: comparisons.iter().position(|c| c.backend == backend && c.bound == bound),
             });
         }
     }
     let mut motion = case.equations.compile()?;
-    entries.push(Entry {
-        variant: Variant::new("motion", move |y: &[f64], dy: &mut [f64]| {
-            if motion.rhs(0.0, y, dy).is_err() {
-                dy.fill(f64::NAN);
-            }
-        }),
-        operations: None,
-        comparison: None,
-    });
+    let rhs = move |y: &[f64], dy: &mut [f64]| {
+        if motion.rhs(0.0, y, dy).is_err() {
+            dy.fill(f64::NAN);
+        }
+    };
+    entries.push(Entry::plain("motion", Box::new(rhs)));
+    Ok(entries)
+}
 
+fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) -> Result<(), Error> {
+    let mut entries = entries(case, comparisons)?;
     let mut random = SplitMix64::new(1);
-    for _ in 0..STATES {
-        compare(case, &(case.state)(&mut random), &mut entries)?;
-    }
+    compare(case, &mut random, &mut entries)?;
     let mut variants: Vec<Variant<'_>> = Vec::new();
     let mut labels = Vec::new();
     for entry in entries {
@@ -137,7 +180,7 @@ fn time(case: &Case<'_>, comparisons: &mut [Comparison], report: &mut Report) ->
     for ((variant, times), (operations, comparison)) in variants.iter().zip(&times).zip(labels) {
         let ratio = times.ratio_to(&hand);
         if let Some(i) = comparison {
-            comparisons[i].ratios.push(ratio);
+            comparisons[i].ratios.push((case.name.clone(), ratio));
         }
         report.row(&row(&case.name, &variant.name, operations, times, ratio));
     }
@@ -178,8 +221,12 @@ fn empty(y: &[f64], dy: &mut [f64]) {
     }
 }
 
-/// Compares all variants but the empty one with the first by hand.
-fn compare(case: &Case<'_>, state: &[f64], entries: &mut [Entry<'_>]) -> Result<(), Error> {
+/// Compares all variants but the empty one with the first by hand, at random states.
+fn compare(case: &Case<'_>, random: &mut SplitMix64, entries: &mut [Entry<'_>]) -> Result<(), Error> {
+    (0..STATES).try_for_each(|_| compare_at(case, &(case.state)(random), entries))
+}
+
+fn compare_at(case: &Case<'_>, state: &[f64], entries: &mut [Entry<'_>]) -> Result<(), Error> {
     let reference = entries[1].variant.at(state);
     let size = reference.iter().fold(1.0f64, |size, v| size.max(v.abs()));
     for i in 2..entries.len() {
@@ -199,4 +246,20 @@ fn compare(case: &Case<'_>, state: &[f64], entries: &mut [Entry<'_>]) -> Result<
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_by_hand_is_what_is_derived() -> Result<(), Error> {
+        let mut random = SplitMix64::new(2);
+        for system in SYSTEMS.iter().chain(FURTHER) {
+            let graph = Graph::new();
+            let case = system(&graph)?;
+            compare(&case, &mut random, &mut entries(&case, &[])?)?;
+        }
+        Ok(())
+    }
 }

@@ -2,7 +2,9 @@
 
 use pc_mech::{Equations, Graph, LieAlgebra, MechError, System};
 use pc_model::{Builtin, Model};
+use pc_nonholo::Constrained;
 use pc_tests::classical::{SplitMix64, sample};
+use pc_tests::nonholonomic::{DISK, Nonholonomic, SLEIGH};
 
 use crate::error::Error;
 use crate::hand::{self, Hand};
@@ -10,7 +12,7 @@ use crate::hand::{self, Hand};
 /// Draws a state.
 type Draw = dyn Fn(&mut SplitMix64) -> Vec<f64>;
 /// Derives a case in a graph.
-type Derive = fn(&Graph) -> Result<Case<'_>, Error>;
+pub(crate) type Derive = fn(&Graph) -> Result<Case<'_>, Error>;
 
 /// A system with its equations derived and written by hand.
 pub(crate) struct Case<'g> {
@@ -24,17 +26,20 @@ pub(crate) struct Case<'g> {
     pub(crate) state: Box<Draw>,
 }
 
-/// All of them.
+/// Those over which means are taken.
 pub(crate) const SYSTEMS: &[Derive] = &[
     top_in_poisson_variables,
     top_in_euler_angles,
-    top_with_quaternion,
+    body_with_quaternion,
+    |graph| nonholonomic(graph, "Chaplygin sleigh", SLEIGH, hand::sleigh()),
+    |graph| nonholonomic(graph, "tilted disk", DISK, hand::disk()),
     |graph| pendulum_case(graph, 4),
     |graph| pendulum_case(graph, 8),
     |graph| pendulum_case(graph, 16),
-    charged_particle,
-    relativistic_particle,
 ];
+
+/// Those that are shown beside them.
+pub(crate) const FURTHER: &[Derive] = &[top_with_quaternion, charged_particle, relativistic_particle];
 
 /// The planar pendulum of unit links and masses in its angles from the vertical.
 ///
@@ -92,6 +97,50 @@ fn top_in_poisson_variables(graph: &Graph) -> Result<Case<'_>, Error> {
         equations: system.poincare()?,
         hand: vec![("hand", hand::poisson())],
         state: Box::new(|random| (0..6).map(|_| random.normal()).collect()),
+    })
+}
+
+/// A triaxial body that turns freely: 4 coordinates, 3 quasi-velocities, the algebra given.
+fn body_with_quaternion(graph: &Graph) -> Result<Case<'_>, Error> {
+    let inertia = graph.symbols(["I1", "I2", "I3"]);
+    let builder = inertia.into_iter().zip([2.0, 3.0, 4.0]);
+    let system = builder
+        .fold(System::builder(graph), |builder, (symbol, value)| builder.parameter(symbol, value))
+        .coordinates(["q0", "q1", "q2", "q3"])
+        .quasi_velocities(["ω1", "ω2", "ω3"])
+        .kinematics(|_, q, w| {
+            [
+                (-q[1] * w[0] - q[2] * w[1] - q[3] * w[2]) / 2.0,
+                (q[0] * w[0] - q[3] * w[1] + q[2] * w[2]) / 2.0,
+                (q[3] * w[0] + q[0] * w[1] - q[1] * w[2]) / 2.0,
+                (-q[2] * w[0] + q[1] * w[1] + q[0] * w[2]) / 2.0,
+            ]
+        })
+        .algebra(&LieAlgebra::so3())
+        .lagrangian(|_, _, w| graph.sum((0..3).map(|i| inertia[i] * w[i].square())) / 2.0)
+        .build()?;
+    Ok(Case {
+        name: "body with a quaternion".to_owned(),
+        equations: system.poincare()?,
+        hand: vec![("hand", hand::free_quaternion())],
+        state: Box::new(|random| (0..7).map(|_| random.normal()).collect()),
+    })
+}
+
+/// A system with its constraints.
+fn nonholonomic<'g>(
+    graph: &'g Graph,
+    name: &str,
+    described: Nonholonomic,
+    hand: Hand,
+) -> Result<Case<'g>, Error> {
+    let system = (described.system)(graph)?;
+    let constrained = Constrained::new(&system, &described.constraints(graph))?;
+    Ok(Case {
+        name: name.to_owned(),
+        equations: constrained.equations().clone(),
+        hand: vec![("hand", hand)],
+        state: Box::new(move |random| (described.sample)(random).1),
     })
 }
 

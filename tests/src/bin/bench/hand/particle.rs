@@ -4,10 +4,7 @@ use super::{Hand, fma, for_this_host};
 
 /// η̇_1 = (η_2/ρ + B) η_2, η̇_2 = −(η_2/ρ + B) η_1 with B = 2.
 #[inline(always)]
-fn in_magnetic_field<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
-    let (Some(&[radius, _, along, across]), Some(dy)) = (y.first_chunk(), dy.first_chunk_mut::<4>()) else {
-        return;
-    };
+fn in_magnetic_field<const FMA: bool>(&[radius, _, along, across]: &[f64; 4], dy: &mut [f64; 4]) {
     let rate = across / radius;
     let turn = rate + 2.0;
     *dy = [along, rate, turn * across, -(turn * along)];
@@ -15,10 +12,7 @@ fn in_magnetic_field<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
 
 /// η̇_1 = F (1 − η_1²/c²)/γ + η_2²/ρ, η̇_2 = −(F η_1/(c²γ) + η_1/ρ) η_2 with F = −1/ρ² and c² = 4.
 #[inline(always)]
-fn relativistic_about_a_centre<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
-    let (Some(&[radius, _, along, across]), Some(dy)) = (y.first_chunk(), dy.first_chunk_mut::<4>()) else {
-        return;
-    };
+fn relativistic_about_a_centre<const FMA: bool>(&[radius, _, along, across]: &[f64; 4], dy: &mut [f64; 4]) {
     let inverse = 1.0 / radius;
     let rate = across * inverse;
     let forward = fma::<FMA>(-0.25 * along, along, 1.0);
@@ -34,10 +28,10 @@ fn relativistic_about_a_centre<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
 
 /// A unit charge in the field B = 2.
 pub(crate) fn charged() -> Hand {
-    for_this_host!(in_magnetic_field)
+    for_this_host!(in_magnetic_field, [f64; 4])
 }
 
 /// Kepler's problem with c = 2 and κ = 1.
 pub(crate) fn relativistic() -> Hand {
-    for_this_host!(relativistic_about_a_centre)
+    for_this_host!(relativistic_about_a_centre, [f64; 4])
 }

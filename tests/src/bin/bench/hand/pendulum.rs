@@ -8,16 +8,10 @@ const GRAVITY: f64 = 10.0;
 ///
 /// The right-hand side by running sums, M = L D Lᵀ row by row, so that inner loops go along memory.
 #[inline(always)]
-fn by_mass_matrix<const FMA: bool, const N: usize>(y: &[f64], dy: &mut [f64]) {
-    let (Some((angles, rest)), Some((velocities, accelerations))) =
-        (y.split_first_chunk::<N>(), dy.split_first_chunk_mut::<N>())
-    else {
-        return;
-    };
-    let (Some(rates), Some(accelerations)) = (rest.first_chunk::<N>(), accelerations.first_chunk_mut::<N>())
-    else {
-        return;
-    };
+fn by_mass_matrix<const FMA: bool, const N: usize>(
+    [angles, rates]: &[[f64; N]; 2],
+    [velocities, accelerations]: &mut [[f64; N]; 2],
+) {
     *velocities = *rates;
     let (mut sin, mut cos, mut weight) = ([0.0; N], [0.0; N], [0.0; N]);
     for i in 0..N {
@@ -80,16 +74,10 @@ fn by_mass_matrix<const FMA: bool, const N: usize>(y: &[f64], dy: &mut [f64]) {
 /// λ_{i−1} cos(θ_i−θ_{i−1}) − 2λ_i + λ_{i+1} cos(θ_{i+1}−θ_i) = −θ̇_i² (at the support −λ_1 and g cos θ_1 instead),
 /// θ̈_i = λ_{i+1} sin(θ_{i+1}−θ_i) − λ_{i−1} sin(θ_i−θ_{i−1}) (at the support −g sin θ_1 instead of the second).
 #[inline(always)]
-fn by_tensions<const FMA: bool, const N: usize>(y: &[f64], dy: &mut [f64]) {
-    let (Some((angles, rest)), Some((velocities, accelerations))) =
-        (y.split_first_chunk::<N>(), dy.split_first_chunk_mut::<N>())
-    else {
-        return;
-    };
-    let (Some(rates), Some(accelerations)) = (rest.first_chunk::<N>(), accelerations.first_chunk_mut::<N>())
-    else {
-        return;
-    };
+fn by_tensions<const FMA: bool, const N: usize>(
+    [angles, rates]: &[[f64; N]; 2],
+    [velocities, accelerations]: &mut [[f64; N]; 2],
+) {
     *velocities = *rates;
     let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
     for i in 0..N {
@@ -128,9 +116,9 @@ fn by_tensions<const FMA: bool, const N: usize>(y: &[f64], dy: &mut [f64]) {
 macro_rules! by_size {
     ($function:ident, $links:expr) => {
         match $links {
-            4 => for_this_host!($function, 4),
-            8 => for_this_host!($function, 8),
-            16 => for_this_host!($function, 16),
+            4 => for_this_host!($function, [[f64; 4]; 2], 4),
+            8 => for_this_host!($function, [[f64; 8]; 2], 8),
+            16 => for_this_host!($function, [[f64; 16]; 2], 16),
             links => unreachable!("no pendulum of {links} links is written by hand"),
         }
     };

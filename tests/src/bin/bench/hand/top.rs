@@ -1,4 +1,4 @@
-//! The triaxial heavy top with its mass centre on no principal axis.
+//! The triaxial heavy top with its mass centre on no principal axis, and the same body without weight.
 
 use super::{Hand, fma, for_this_host};
 
@@ -30,10 +30,7 @@ fn acceleration<const FMA: bool>(vertical: [f64; 3], omega: [f64; 3], out: &mut 
 }
 
 #[inline(always)]
-fn in_poisson_variables<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
-    let (Some(&[g1, g2, g3, w1, w2, w3]), Some(dy)) = (y.first_chunk(), dy.first_chunk_mut::<6>()) else {
-        return;
-    };
+fn in_poisson_variables<const FMA: bool>(&[g1, g2, g3, w1, w2, w3]: &[f64; 6], dy: &mut [f64; 6]) {
     dy[0] = fma::<FMA>(g2, w3, -(g3 * w2));
     dy[1] = fma::<FMA>(g3, w1, -(g1 * w3));
     dy[2] = fma::<FMA>(g1, w2, -(g2 * w1));
@@ -43,10 +40,7 @@ fn in_poisson_variables<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
 }
 
 #[inline(always)]
-fn in_euler_angles<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
-    let (Some(&[_, theta, phi, w1, w2, w3]), Some(dy)) = (y.first_chunk(), dy.first_chunk_mut::<6>()) else {
-        return;
-    };
+fn in_euler_angles<const FMA: bool>(&[_, theta, phi, w1, w2, w3]: &[f64; 6], dy: &mut [f64; 6]) {
     let ((sin_theta, cos_theta), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
     let precession = fma::<FMA>(w1, sin_phi, w2 * cos_phi) / sin_theta;
     dy[0] = precession;
@@ -57,16 +51,28 @@ fn in_euler_angles<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
     dy[3..].copy_from_slice(&omega);
 }
 
+/// q̇ = ½ Ξ(q) ω
 #[inline(always)]
-fn in_quaternion<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
-    let (Some(&[q0, q1, q2, q3, w1, w2, w3]), Some(dy)) = (y.first_chunk(), dy.first_chunk_mut::<7>()) else {
-        return;
-    };
+fn quaternion_rates<const FMA: bool>([q0, q1, q2, q3]: [f64; 4], [w1, w2, w3]: [f64; 3]) -> [f64; 4] {
     let (h1, h2, h3) = (0.5 * w1, 0.5 * w2, 0.5 * w3);
-    dy[0] = -fma::<FMA>(q1, h1, fma::<FMA>(q2, h2, q3 * h3));
-    dy[1] = fma::<FMA>(q0, h1, fma::<FMA>(q2, h3, -(q3 * h2)));
-    dy[2] = fma::<FMA>(q0, h2, fma::<FMA>(q3, h1, -(q1 * h3)));
-    dy[3] = fma::<FMA>(q0, h3, fma::<FMA>(q1, h2, -(q2 * h1)));
+    [
+        // Unlike the others, or the compiler makes one vector of the four and shuffles longer than it saves.
+        -0.5 * fma::<FMA>(q1, w1, fma::<FMA>(q2, w2, q3 * w3)),
+        fma::<FMA>(q0, h1, fma::<FMA>(q2, h3, -(q3 * h2))),
+        fma::<FMA>(q0, h2, fma::<FMA>(q3, h1, -(q1 * h3))),
+        fma::<FMA>(q0, h3, fma::<FMA>(q1, h2, -(q2 * h1))),
+    ]
+}
+
+#[inline(always)]
+fn free_in_quaternion<const FMA: bool>(&[q0, q1, q2, q3, w1, w2, w3]: &[f64; 7], dy: &mut [f64; 7]) {
+    let [r0, r1, r2, r3] = quaternion_rates::<FMA>([q0, q1, q2, q3], [w1, w2, w3]);
+    *dy = [r0, r1, r2, r3, GYROSCOPIC[0] * w2 * w3, GYROSCOPIC[1] * w3 * w1, GYROSCOPIC[2] * w1 * w2];
+}
+
+#[inline(always)]
+fn in_quaternion<const FMA: bool>(&[q0, q1, q2, q3, w1, w2, w3]: &[f64; 7], dy: &mut [f64; 7]) {
+    dy[..4].copy_from_slice(&quaternion_rates::<FMA>([q0, q1, q2, q3], [w1, w2, w3]));
     let (p1, p2) = (fma::<FMA>(q1, q3, -(q0 * q2)), fma::<FMA>(q2, q3, q0 * q1));
     let vertical = [p1 + p1, p2 + p2, fma::<FMA>(q0, q0, q3 * q3) - fma::<FMA>(q1, q1, q2 * q2)];
     let mut omega = [0.0; 3];
@@ -76,15 +82,20 @@ fn in_quaternion<const FMA: bool>(y: &[f64], dy: &mut [f64]) {
 
 /// y = (γ, ω)
 pub(crate) fn poisson() -> Hand {
-    for_this_host!(in_poisson_variables)
+    for_this_host!(in_poisson_variables, [f64; 6])
 }
 
 /// y = (ψ, θ, φ, ω)
 pub(crate) fn euler() -> Hand {
-    for_this_host!(in_euler_angles)
+    for_this_host!(in_euler_angles, [f64; 6])
 }
 
 /// y = (q, ω)
 pub(crate) fn quaternion() -> Hand {
-    for_this_host!(in_quaternion)
+    for_this_host!(in_quaternion, [f64; 7])
+}
+
+/// y = (q, ω), without weight
+pub(crate) fn free_quaternion() -> Hand {
+    for_this_host!(free_in_quaternion, [f64; 7])
 }

@@ -1,0 +1,106 @@
+//! M = L D Lᵀ in numbers.
+
+use std::mem::MaybeUninit;
+
+use faer::dyn_stack::MemStack;
+use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization, cholesky_in_place};
+use faer::linalg::cholesky::ldlt::{factor, solve};
+use faer::{Mat, MatMut, Par};
+use pc_expr::Pattern;
+
+use crate::fault::Fault;
+use crate::pivots;
+
+/// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
+#[derive(Clone, Debug)]
+pub(crate) struct DenseLdl {
+    matrix: Mat<f64>,
+    /// The diagonal of M.
+    diagonal: Vec<f64>,
+    pivots: Vec<f64>,
+    scratch: Vec<MaybeUninit<u8>>,
+}
+
+impl DenseLdl {
+    pub(crate) fn new(k: usize) -> DenseLdl {
+        let scratch = factor::cholesky_in_place_scratch::<f64>(k, Par::Seq, Default::default());
+        DenseLdl {
+            matrix: Mat::zeros(k, k),
+            diagonal: vec![0.0; k],
+            pivots: vec![0.0; k],
+            scratch: vec![MaybeUninit::uninit(); scratch.unaligned_bytes_required()],
+        }
+    }
+
+    /// Factorises M, of which `values` stand at the places `lower` on and below the diagonal; all are finite.
+    ///
+    /// # Errors
+    /// [`Fault::Pivot`] for the first pivot that vanishes against the diagonal of M.
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+        let k = self.diagonal.len();
+        self.matrix.fill(0.0);
+        for ((i, j), &value) in lower.entries().zip(values) {
+            self.matrix[(i, j)] = value;
+        }
+        for s in 0..k {
+            self.diagonal[s] = self.matrix[(s, s)];
+        }
+        let outcome = cholesky_in_place(
+            self.matrix.as_mut(),
+            LdltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+            Default::default(),
+        );
+        let known = match outcome {
+            Ok(_) => k,
+            Err(LdltError::ZeroPivot { index }) => index + 1,
+        };
+        for s in 0..known {
+            self.pivots[s] = self.matrix[(s, s)];
+        }
+        pivots::check(&self.pivots[..known], self.diagonal.iter().copied())?;
+        match outcome {
+            Ok(_) => Ok(()),
+            Err(LdltError::ZeroPivot { index }) => Err(Fault::Pivot { index, pivot: self.pivots[index] }),
+        }
+    }
+
+    /// Replaces each of the columns, of length k, by M⁻¹ times it.
+    pub(crate) fn solve(&mut self, columns: &mut [f64]) {
+        let k = self.diagonal.len();
+        let (l, d) = (self.matrix.as_ref(), self.matrix.as_ref().diagonal());
+        let columns = MatMut::from_column_major_slice_mut(columns, k, columns.len() / k);
+        solve::solve_in_place(l, d, columns, Par::Seq, MemStack::new(&mut []));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn factorised(entries: [f64; 6]) -> Result<DenseLdl, Fault> {
+        let mut ldl = DenseLdl::new(3);
+        ldl.factorise(&Pattern::from_columns(3, [vec![0, 1, 2], vec![1, 2], vec![2]]), &entries).map(|()| ldl)
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_solved_with() {
+        let mut ldl = factorised([2.0, 1.0, 0.0, -3.0, 1.0, 4.0]).unwrap();
+        // M (1, 2, 3) = (4, −2, 14), M (0, 1, 0) = (1, −3, 1)
+        let mut columns = [4.0, -2.0, 14.0, 1.0, -3.0, 1.0];
+        ldl.solve(&mut columns);
+        for (found, expected) in columns.iter().zip([1.0, 2.0, 3.0, 0.0, 1.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_pivot_that_vanishes_is_found() {
+        for (entries, vanishing) in
+            [([1.0, 1.0, 0.0, 1.0, 0.0, 1.0], 1), ([0.0; 6], 0), ([3.0, 1.0, 0.0, 1.0 / 3.0, 0.0, 1.0], 1)]
+        {
+            assert!(matches!(factorised(entries), Err(Fault::Pivot { index, .. }) if index == vanishing));
+        }
+    }
+}

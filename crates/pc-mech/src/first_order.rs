@@ -1,0 +1,145 @@
+//! First-order systems whose rates contain the solution of linear equations.
+
+use pc_algebra::Matrix;
+use pc_expr::{Expr, Graph, Inputs};
+
+use crate::ldl::Factors;
+
+/// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric.
+///
+/// Poincaré's equations (9) are the case w = η̇ of y = (x, η), g = (b η + b_0, w). The parameters may be in
+/// g, M and r.
+#[derive(Clone, Debug)]
+pub(crate) struct FirstOrder<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) time: Expr<'g>,
+    /// The symbols of y, coordinates first.
+    pub(crate) state: Vec<Expr<'g>>,
+    /// Number of coordinates.
+    pub(crate) coordinates: usize,
+    /// The parameters with their values.
+    pub(crate) parameters: Vec<(Expr<'g>, f64)>,
+    /// The symbols of w, k of them.
+    pub(crate) unknowns: Vec<Expr<'g>>,
+    /// What to call the unknowns in messages: the quasi-velocities.
+    pub(crate) names: Vec<String>,
+    /// M, k × k.
+    pub(crate) mass: Matrix<Expr<'g>>,
+    /// r, in t and y.
+    pub(crate) right: Vec<Expr<'g>>,
+    /// g, in t, y and w, as long as the state.
+    pub(crate) rates: Vec<Expr<'g>>,
+    /// Symbols by whose powers the unknowns are collected.
+    pub(crate) collected_by: Vec<Expr<'g>>,
+    /// Functions of t, y and w, with their names; the first `conserved` should not change along a motion.
+    pub(crate) observables: Vec<(String, Expr<'g>)>,
+    pub(crate) conserved: usize,
+}
+
+impl<'g> FirstOrder<'g> {
+    /// The inputs (t, (y, `more`), p) of a program.
+    pub(crate) fn inputs(&self, more: &[Expr<'g>]) -> Inputs<'g> {
+        Inputs {
+            time: Some(self.time),
+            state: self.state.iter().chain(more).copied().collect(),
+            parameters: self.parameter_symbols(),
+        }
+    }
+
+    pub(crate) fn parameter_symbols(&self) -> Vec<Expr<'g>> {
+        self.parameters.iter().map(|&(symbol, _)| symbol).collect()
+    }
+
+    /// w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
+    pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
+        let mut unknowns = factors.solve(self.graph, &self.right);
+        for (s, unknown) in unknowns.iter_mut().enumerate() {
+            let row = self.mass.row(s);
+            let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());
+            if decoupled && !self.is_fixed(row[s]) {
+                *unknown = self.graph.shorten(&[*unknown], &self.collected_by)[0];
+            }
+        }
+        unknowns
+    }
+
+    /// Whether an expression contains parameters only.
+    pub(crate) fn is_fixed(&self, expression: Expr<'g>) -> bool {
+        let parameters = self.parameter_symbols();
+        self.graph.symbols_of(&[expression]).iter().all(|symbol| parameters.contains(symbol))
+    }
+
+    /// F = r − M w, in t, y and w.
+    pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
+        let product = |s| self.graph.dot(self.mass.row(s).iter().copied(), self.unknowns.iter().copied());
+        self.right.iter().enumerate().map(|(s, &right)| right - product(s)).collect()
+    }
+
+    /// ∂g/∂w, row after row.
+    pub(crate) fn coupling(&self) -> Vec<Vec<Expr<'g>>> {
+        self.rates.iter().map(|&rate| self.graph.gradient(rate, &self.unknowns)).collect()
+    }
+
+    /// One symbol for each of `symbols` that stands nowhere in the equations, called as these with `mark`
+    /// before.
+    pub(crate) fn fresh(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let equations: Vec<Expr<'g>> =
+            self.rates.iter().chain(&self.right).chain(self.mass.entries()).copied().collect();
+        let inputs = self.inputs(&self.unknowns);
+        let mut taken = self.graph.symbols_of(&equations);
+        taken.extend(inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters));
+        let free = |symbol: &Expr<'g>| {
+            let longer =
+                std::iter::successors(Some(format!("{mark}{symbol}")), |name| Some(format!("{mark}{name}")));
+            longer.map(|name| self.graph.symbol(&name)).find(|name| !taken.contains(name)).unwrap_or(*symbol)
+        };
+        symbols.iter().map(free).collect()
+    }
+}
+
+/// The derivatives of ẏ = g(t, y, w(t, y)) as expressions in t and y. No inverse is differentiated: with
+/// F = r − M w at fixed w,
+///
+///   w′ = M⁻¹ F′,   ẏ′ = g′ + (∂g/∂w) w′
+///
+/// where ′ is the derivative along any direction in which y and the parameters change.
+pub(crate) struct Linearised<'a, 'g> {
+    graph: &'g Graph,
+    factors: &'a Factors<'g>,
+    /// g, then F.
+    rows: Vec<Expr<'g>>,
+    /// ∂g/∂w
+    coupling: Vec<Vec<Expr<'g>>>,
+    /// The symbols w with their expressions in t and y.
+    values: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'a, 'g> Linearised<'a, 'g> {
+    /// `unknowns` is w in t and y.
+    pub(crate) fn new(
+        system: &FirstOrder<'g>,
+        factors: &'a Factors<'g>,
+        unknowns: &[Expr<'g>],
+    ) -> Linearised<'a, 'g> {
+        let graph = system.graph;
+        let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns.iter().copied()).collect();
+        let coupling = system.coupling().iter().map(|row| graph.substitute(row, &values)).collect();
+        let rows = system.rates.iter().copied().chain(system.balance()).collect();
+        Linearised { graph, factors, rows, coupling, values }
+    }
+
+    /// ẏ′ when each symbol of `direction` changes at the rate beside it.
+    pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+        let graph = self.graph;
+        let change = graph.substitute(&graph.directional(&self.rows, direction), &self.values);
+        let (rates, balance) = change.split_at(self.coupling.len());
+        let unknowns = self.factors.solve(graph, balance);
+        let through = |row: &[Expr<'g>]| graph.dot(row.iter().copied(), unknowns.iter().copied());
+        rates.iter().zip(&self.coupling).map(|(&rate, row)| graph.sum([rate, through(row)])).collect()
+    }
+
+    /// ∂ẏ/∂q for each symbol q of `symbols`, column after column.
+    pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+        symbols.iter().map(|&symbol| self.along(&[(symbol, Expr::ONE)])).collect()
+    }
+}

@@ -1,0 +1,72 @@
+//! What is compiled beside the right-hand side.
+
+use pc_expr::Backend;
+
+/// What to compile of equations of motion, and for which kernel. Each derivative takes time to derive, the
+/// Jacobian of a large system most of all.
+///
+/// ```
+/// use pc_mech::{CompileOptions, Graph, System, VectorField};
+///
+/// let graph = Graph::new();
+/// let [l, g] = graph.symbols(["l", "g"]);
+/// let pendulum = System::builder(&graph)
+///     .parameter(l, 2.0).parameter(g, 10.0)
+///     .coordinates(["θ"])
+///     .lagrangian(|_, x, v| l.square() * v[0].square() / 2.0 + g * l * x[0].cos())
+///     .build()?;
+/// let options = CompileOptions::default().jacobian(false).parameter_jacobian(true);
+/// let mut motion = pendulum.poincare()?.compile_for(options)?;
+/// assert!(!motion.has_jacobian());
+/// let mut by_parameters = [0.0; 4]; // of (θ̇, θ̈ = −(g/l) sin θ) by l, then by g
+/// motion.parameter_jacobian(0.0, &[0.5, 0.0], &mut by_parameters)?;
+/// assert_eq!(by_parameters[3], -0.5f64.sin() / 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CompileOptions {
+    pub(crate) backend: Backend,
+    pub(crate) jacobian: bool,
+    pub(crate) jvp: bool,
+    pub(crate) parameter_jacobian: bool,
+}
+
+impl Default for CompileOptions {
+    /// The fastest kernel and the Jacobian.
+    fn default() -> CompileOptions {
+        CompileOptions { backend: Backend::Fastest, jacobian: true, jvp: false, parameter_jacobian: false }
+    }
+}
+
+impl From<Backend> for CompileOptions {
+    /// The usual choice for another kernel.
+    fn from(backend: Backend) -> CompileOptions {
+        CompileOptions::default().backend(backend)
+    }
+}
+
+impl CompileOptions {
+    /// The kernel that runs the programs.
+    #[must_use]
+    pub fn backend(self, backend: Backend) -> CompileOptions {
+        CompileOptions { backend, ..self }
+    }
+
+    /// Whether to have ∂f/∂y, which Newton iterations of implicit methods take and others do not.
+    #[must_use]
+    pub fn jacobian(self, jacobian: bool) -> CompileOptions {
+        CompileOptions { jacobian, ..self }
+    }
+
+    /// Whether to have products (∂f/∂y) v, which take about as long as f itself.
+    #[must_use]
+    pub fn jvp(self, jvp: bool) -> CompileOptions {
+        CompileOptions { jvp, ..self }
+    }
+
+    /// Whether to have ∂f/∂p for the parameters p.
+    #[must_use]
+    pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
+        CompileOptions { parameter_jacobian, ..self }
+    }
+}

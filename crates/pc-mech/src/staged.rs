@@ -1,0 +1,298 @@
+//! First-order systems whose M is factorised in numbers: programs before the solution of M w = r, and after
+//! it.
+
+use pc_algebra::Matrix;
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
+
+use crate::columns::{Layout, derivative, nonzeros};
+use crate::dense_ldl::DenseLdl;
+use crate::fault::{Fault, check_finite};
+use crate::first_order::FirstOrder;
+use crate::options::CompileOptions;
+
+/// ẏ = g(t, y, w) and its derivatives, with w from M w = r.
+#[derive(Clone, Debug)]
+pub(crate) struct Staged {
+    dim: usize,
+    /// Of (t, y): what is not zero of the lower triangle of M, then r.
+    equations: Evaluator,
+    lower: Pattern,
+    values: Vec<f64>,
+    ldl: DenseLdl,
+    /// y, then w.
+    known: Vec<f64>,
+    /// Of (t, (y, w)).
+    rates: Evaluator,
+    cost: Cost,
+    jacobian: Option<Stage>,
+    jvp: Option<Product>,
+    parameter_jacobian: Option<Stage>,
+    /// Of (t, (y, w)).
+    observables: Evaluator,
+}
+
+impl Staged {
+    /// # Errors
+    /// As for [`Program::new`].
+    pub(crate) fn new(system: &FirstOrder<'_>, options: &CompileOptions) -> Result<Staged, ExprError> {
+        let graph = system.graph;
+        let k = system.unknowns.len();
+        let below: Vec<Vec<Expr<'_>>> = (0..k)
+            .map(|j| (0..k).map(|i| if i < j { Expr::ZERO } else { system.mass[(i, j)] }).collect())
+            .collect();
+        let (lower, mut equations) = nonzeros(k, &below);
+        equations.extend(&system.right);
+        let known = system.inputs(&system.unknowns);
+        let all: Vec<Expr<'_>> = equations.iter().chain(&system.rates).copied().collect();
+        let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
+        let compiled = |inputs, outputs: &[Expr<'_>], backend| -> Result<Evaluator, ExprError> {
+            Ok(Evaluator::new(Program::new(graph, inputs, outputs)?, backend))
+        };
+        let stage = |wanted: bool, symbols: &[Expr<'_>]| {
+            wanted.then(|| Stage::new(system, symbols, options.backend)).transpose()
+        };
+        Ok(Staged {
+            dim: system.state.len(),
+            values: vec![0.0; equations.len()],
+            equations: compiled(&system.inputs(&[]), &equations, options.backend)?,
+            lower,
+            ldl: DenseLdl::new(k),
+            known: vec![0.0; known.state.len()],
+            rates: compiled(&known, &system.rates, options.backend)?,
+            cost: Program::new(graph, &known, &all)?.cost(),
+            jacobian: stage(options.jacobian, &system.state)?,
+            jvp: options.jvp.then(|| Product::new(system, options.backend)).transpose()?,
+            parameter_jacobian: stage(options.parameter_jacobian, &system.parameter_symbols())?,
+            observables: compiled(&known, &observed, Backend::Interpreter)?,
+        })
+    }
+
+    pub(crate) fn cost(&self) -> &Cost {
+        &self.cost
+    }
+
+    pub(crate) fn pattern(&self) -> Option<&Pattern> {
+        self.jacobian.as_ref().map(|stage| &stage.pattern)
+    }
+
+    /// Factorises M and solves for w.
+    fn solve(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
+        self.equations.eval(t, y, p, &mut self.values);
+        check_finite(&self.values, &self.equations, (t, y, p))?;
+        let (mass, right) = self.values.split_at(self.lower.len());
+        self.ldl.factorise(&self.lower, mass)?;
+        let (state, unknowns) = self.known.split_at_mut(self.dim);
+        state.copy_from_slice(y);
+        unknowns.copy_from_slice(right);
+        self.ldl.solve(unknowns);
+        Ok(())
+    }
+
+    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]) -> Result<(), Fault> {
+        self.solve(t, y, p)?;
+        self.rates.eval(t, &self.known, p, ydot);
+        check_finite(ydot, &self.rates, (t, &self.known, p))
+    }
+
+    /// Observables of w are not finite where M is singular.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
+        if self.solve(t, y, p).is_err() {
+            let (state, unknowns) = self.known.split_at_mut(self.dim);
+            state.copy_from_slice(y);
+            unknowns.fill(f64::NAN);
+        }
+        self.observables.eval(t, &self.known, p, values);
+    }
+
+    pub(crate) fn jacobian(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        entries: &mut [f64],
+        layout: Layout,
+    ) -> Result<(), Fault> {
+        self.solve(t, y, p)?;
+        let stage = self.jacobian.as_mut().ok_or(Fault::NotCompiled { what: "Jacobian" })?;
+        stage.eval(t, &self.known, p, &mut self.ldl, entries, layout)
+    }
+
+    pub(crate) fn parameter_jacobian(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        entries: &mut [f64],
+    ) -> Result<(), Fault> {
+        self.solve(t, y, p)?;
+        let what = "derivative by parameters";
+        let stage = self.parameter_jacobian.as_mut().ok_or(Fault::NotCompiled { what })?;
+        stage.eval(t, &self.known, p, &mut self.ldl, entries, Layout::Dense)
+    }
+
+    pub(crate) fn jvp(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        v: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Fault> {
+        self.solve(t, y, p)?;
+        let jvp = self.jvp.as_mut().ok_or(Fault::NotCompiled { what: "product with its Jacobian" })?;
+        jvp.eval(t, &self.known, p, v, &mut self.ldl, product)
+    }
+}
+
+/// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w, for symbols q.
+#[derive(Clone, Debug)]
+struct Stage {
+    /// Of (t, (y, w)): what is not zero of ∂F/∂q, of ∂g/∂q, of ∂g/∂w.
+    parts: Evaluator,
+    values: Vec<f64>,
+    balance: Pattern,
+    rates: Pattern,
+    coupling: Pattern,
+    /// That of the whole.
+    pattern: Pattern,
+    /// M⁻¹ ∂F/∂q
+    unknowns: Vec<f64>,
+    column: Vec<f64>,
+}
+
+impl Stage {
+    fn new<'g>(system: &FirstOrder<'g>, symbols: &[Expr<'g>], backend: Backend) -> Result<Stage, ExprError> {
+        let graph = system.graph;
+        let (dim, k) = (system.state.len(), system.unknowns.len());
+        let columns = |rows: &[Expr<'g>]| -> Vec<Vec<Expr<'g>>> {
+            symbols.iter().map(|&symbol| graph.directional(rows, &[(symbol, Expr::ONE)])).collect()
+        };
+        let coupling = system.coupling();
+        let coupling: Vec<Vec<Expr<'g>>> =
+            (0..k).map(|s| coupling.iter().map(|row| row[s]).collect()).collect();
+        let (balance, mut parts) = nonzeros(k, &columns(&system.balance()));
+        let (rates, rates_parts) = nonzeros(dim, &columns(&system.rates));
+        let (coupling, coupling_parts) = nonzeros(dim, &coupling);
+        parts.extend(rates_parts);
+        parts.extend(coupling_parts);
+        Ok(Stage {
+            values: vec![0.0; parts.len()],
+            parts: derivative(graph, &system.inputs(&system.unknowns), &parts, backend)?,
+            pattern: whole(&blocks(&system.mass), &balance, &rates, &coupling),
+            unknowns: vec![0.0; k * symbols.len()],
+            column: vec![0.0; dim],
+            balance,
+            rates,
+            coupling,
+        })
+    }
+
+    fn eval(
+        &mut self,
+        t: f64,
+        known: &[f64],
+        p: &[f64],
+        ldl: &mut DenseLdl,
+        entries: &mut [f64],
+        layout: Layout,
+    ) -> Result<(), Fault> {
+        self.parts.eval(t, known, p, &mut self.values);
+        check_finite(&self.values, &self.parts, (t, known, p))?;
+        let (balance, rest) = self.values.split_at(self.balance.len());
+        let (rates, coupling) = rest.split_at(self.rates.len());
+        self.balance.scatter(balance, &mut self.unknowns);
+        ldl.solve(&mut self.unknowns);
+        let (dim, k) = (self.pattern.rows(), self.balance.rows());
+        for j in 0..self.pattern.columns() {
+            let starts = self.rates.column_starts();
+            self.column.fill(0.0);
+            for (&i, rate) in self.rates.column(j).iter().zip(&rates[starts[j]..]) {
+                self.column[i] = *rate;
+            }
+            for ((i, s), coupling) in self.coupling.entries().zip(coupling) {
+                self.column[i] += coupling * self.unknowns[s + j * k];
+            }
+            match layout {
+                Layout::Dense => entries[j * dim..(j + 1) * dim].copy_from_slice(&self.column),
+                Layout::Sparse => {
+                    let start = self.pattern.column_starts()[j];
+                    for (&i, entry) in self.pattern.column(j).iter().zip(&mut entries[start..]) {
+                        *entry = self.column[i];
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number of the irreducible block of M that each row belongs to; the inverse of a block is full.
+fn blocks(m: &Matrix<Expr<'_>>) -> Vec<usize> {
+    let k = m.rows();
+    let mut block: Vec<usize> = (0..k).collect();
+    for i in 0..k {
+        for j in (0..i).filter(|&j| !m[(i, j)].is_zero()) {
+            let (joined, into) = (block[i], block[j]);
+            block.iter_mut().filter(|b| **b == joined).for_each(|b| *b = into);
+        }
+    }
+    block
+}
+
+/// The pattern of ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q.
+fn whole(blocks: &[usize], balance: &Pattern, rates: &Pattern, coupling: &Pattern) -> Pattern {
+    let column = |j: usize| {
+        let moved: Vec<usize> = balance.column(j).iter().map(|&s| blocks[s]).collect();
+        let through = (0..blocks.len()).filter(|&s| moved.contains(&blocks[s]));
+        let rows = through.flat_map(|s| coupling.column(s)).chain(rates.column(j));
+        rows.copied().collect::<Vec<_>>()
+    };
+    Pattern::from_columns(rates.rows(), (0..rates.columns()).map(column))
+}
+
+/// (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
+#[derive(Clone, Debug)]
+struct Product {
+    /// F′ of (t, (y, w, v)).
+    balance: Evaluator,
+    /// ẏ′ of (t, (y, w, v, w′)).
+    rates: Evaluator,
+    /// y, w, v, w′
+    known: Vec<f64>,
+}
+
+impl Product {
+    fn new(system: &FirstOrder<'_>, backend: Backend) -> Result<Product, ExprError> {
+        let graph = system.graph;
+        let (v, changes) = (system.fresh("δ", &system.state), system.fresh("δ", &system.unknowns));
+        let mut along: Vec<_> = system.state.iter().copied().zip(v.iter().copied()).collect();
+        let balance = graph.directional(&system.balance(), &along);
+        along.extend(system.unknowns.iter().copied().zip(changes.iter().copied()));
+        let rates = graph.directional(&system.rates, &along);
+        let more: Vec<Expr<'_>> = system.unknowns.iter().chain(&v).copied().collect();
+        let all: Vec<Expr<'_>> = more.iter().chain(&changes).copied().collect();
+        let inputs = system.inputs(&all);
+        Ok(Product {
+            balance: derivative(graph, &system.inputs(&more), &balance, backend)?,
+            known: vec![0.0; inputs.state.len()],
+            rates: derivative(graph, &inputs, &rates, backend)?,
+        })
+    }
+
+    fn eval(
+        &mut self,
+        t: f64,
+        known: &[f64],
+        p: &[f64],
+        v: &[f64],
+        ldl: &mut DenseLdl,
+        product: &mut [f64],
+    ) -> Result<(), Fault> {
+        let given = known.len() + v.len();
+        self.known[..known.len()].copy_from_slice(known);
+        self.known[known.len()..given].copy_from_slice(v);
+        let (inputs, changes) = self.known.split_at_mut(given);
+        self.balance.eval(t, inputs, p, changes);
+        check_finite(changes, &self.balance, (t, inputs, p))?;
+        ldl.solve(changes);
+        self.rates.eval(t, &self.known, p, product);
+        check_finite(product, &self.rates, (t, &self.known, p))
+    }
+}
+
+#[cfg(test)]
+mod tests;

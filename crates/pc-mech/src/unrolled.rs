@@ -1,0 +1,146 @@
+//! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
+
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
+
+use crate::columns::{Columns, Layout, derivative};
+use crate::fault::{Fault, blame, check_finite};
+use crate::first_order::{FirstOrder, Linearised};
+use crate::ldl::Factors;
+use crate::options::CompileOptions;
+use crate::pivots::Pivots;
+
+/// ẏ = g(t, y, M⁻¹ r) and its derivatives.
+#[derive(Clone, Debug)]
+pub(crate) struct Unrolled {
+    /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
+    rates: Evaluator,
+    outputs: Vec<f64>,
+    pivots: Pivots,
+    cost: Cost,
+    jacobian: Option<Columns>,
+    /// Of the state (y, v).
+    jvp: Option<Evaluator>,
+    /// y, v
+    known: Vec<f64>,
+    parameter_jacobian: Option<Columns>,
+    observables: Evaluator,
+}
+
+impl Unrolled {
+    /// # Errors
+    /// As for [`Program::new`].
+    pub(crate) fn new(system: &FirstOrder<'_>, options: &CompileOptions) -> Result<Unrolled, ExprError> {
+        let graph = system.graph;
+        let inputs = system.inputs(&[]);
+        let factors = Factors::of(graph, &system.mass);
+        let unknowns = system.solve(&factors);
+        let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns.iter().copied()).collect();
+        let rates = graph.substitute(&system.rates, &values);
+        let (pivots, moving) = Pivots::new(system, &factors)?;
+        let outputs: Vec<Expr<'_>> = rates.iter().chain(&moving).copied().collect();
+        let program = Program::new(graph, &inputs, &outputs)?;
+        let cost =
+            if moving.is_empty() { program.cost() } else { Program::new(graph, &inputs, &rates)?.cost() };
+
+        let linearised = Linearised::new(system, &factors, &unknowns);
+        let columns = |wanted: bool, symbols: &[Expr<'_>]| {
+            wanted
+                .then(|| Columns::new(graph, &inputs, &linearised.columns(symbols), options.backend))
+                .transpose()
+        };
+        let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
+        let observed = Program::new(graph, &inputs, &graph.substitute(&observed, &values))?;
+        Ok(Unrolled {
+            outputs: vec![0.0; program.outputs_len()],
+            rates: Evaluator::new(program, options.backend),
+            pivots,
+            cost,
+            jacobian: columns(options.jacobian, &system.state)?,
+            jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
+            known: vec![0.0; 2 * system.state.len()],
+            parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
+            observables: Evaluator::new(observed, Backend::Interpreter),
+        })
+    }
+
+    /// Says that the parameters may have changed.
+    pub(crate) fn forget(&mut self) {
+        self.pivots.forget();
+    }
+
+    pub(crate) fn cost(&self) -> &Cost {
+        &self.cost
+    }
+
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
+        self.observables.eval(t, y, p, values);
+    }
+
+    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]) -> Result<(), Fault> {
+        if self.outputs.len() == ydot.len() {
+            self.rates.eval(t, y, p, ydot);
+            self.pivots.check(y, p, &[])?;
+            return check_finite(ydot, &self.rates, (t, y, p));
+        }
+        self.rates.eval(t, y, p, &mut self.outputs);
+        let (rates, moving) = self.outputs.split_at(y.len());
+        self.pivots.check(y, p, moving)?;
+        // One pass, number by number: a copy in wider pieces would wait for the numbers just written.
+        for (ydot, &rate) in ydot.iter_mut().zip(rates) {
+            *ydot = rate;
+            if !rate.is_finite() {
+                blame(&self.rates, (t, y, p))?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn jacobian(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        entries: &mut [f64],
+        layout: Layout,
+    ) -> Result<(), Fault> {
+        let jacobian = self.jacobian.as_mut().ok_or(Fault::NotCompiled { what: "Jacobian" })?;
+        jacobian.eval((t, y, p), entries, layout)
+    }
+
+    pub(crate) fn parameter_jacobian(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        entries: &mut [f64],
+    ) -> Result<(), Fault> {
+        let what = "derivative by parameters";
+        let jacobian = self.parameter_jacobian.as_mut().ok_or(Fault::NotCompiled { what })?;
+        jacobian.eval((t, y, p), entries, Layout::Dense)
+    }
+
+    pub(crate) fn jvp(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        v: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Fault> {
+        let jvp = self.jvp.as_mut().ok_or(Fault::NotCompiled { what: "product with its Jacobian" })?;
+        let (state, direction) = self.known.split_at_mut(y.len());
+        state.copy_from_slice(y);
+        direction.copy_from_slice(v);
+        jvp.eval(t, &self.known, p, product);
+        check_finite(product, jvp, (t, &self.known, p))
+    }
+
+    pub(crate) fn pattern(&self) -> Option<&Pattern> {
+        self.jacobian.as_ref().map(Columns::pattern)
+    }
+}
+
+/// (∂ẏ/∂y) v as a program of the state (y, v): derived forwards along v, without a Jacobian.
+fn jvp<'g>(
+    system: &FirstOrder<'g>,
+    linearised: &Linearised<'_, 'g>,
+    backend: Backend,
+) -> Result<Evaluator, ExprError> {
+    let v = system.fresh("δ", &system.state);
+    let along: Vec<_> = system.state.iter().copied().zip(v.iter().copied()).collect();
+    derivative(system.graph, &system.inputs(&v), &linearised.along(&along), backend)
+}
