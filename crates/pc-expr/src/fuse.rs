@@ -90,6 +90,29 @@ impl Program {
         self.without(&code, &absorbed)
     }
 
+    /// The program of the first outputs alone.
+    ///
+    /// # Panics
+    /// If there are fewer than `outputs`.
+    #[must_use]
+    pub fn leading(&self, outputs: usize) -> Program {
+        let mut program = self.clone();
+        program.outputs.truncate(outputs);
+        assert_eq!(program.outputs.len(), outputs, "as many outputs as there are");
+        let first = self.first_result();
+        let mut needed = vec![false; self.registers_len()];
+        for output in &program.outputs {
+            needed[output.index()] = true;
+        }
+        for (i, instruction) in self.code.iter().enumerate().rev() {
+            if needed[first + i] {
+                instruction.operands().for_each(|operand| needed[operand.index()] = true);
+            }
+        }
+        let unneeded: Vec<bool> = needed[first..].iter().map(|needed| !needed).collect();
+        program.without(&self.code, &unneeded)
+    }
+
     /// How often each register is read, outputs included.
     pub(crate) fn uses(&self) -> Vec<u32> {
         let mut uses = vec![0; self.registers_len()];
@@ -123,6 +146,19 @@ mod tests {
     use std::sync::Arc;
 
     use crate::{Graph, Inputs, Interpreter, Kernel, Program};
+
+    #[test]
+    fn the_first_outputs_take_no_more_than_their_own_operations() {
+        let graph = Graph::new();
+        let [a, b] = graph.symbols(["a", "b"]);
+        let inputs = Inputs { time: None, state: vec![a, b], parameters: vec![] };
+        let program = Program::new(&graph, &inputs, &[a * b, a.sin(), a * b + b.exp()]).unwrap();
+        let first = program.leading(2);
+        assert_eq!(first.cost().iter().collect::<Vec<_>>(), [("mul", 1), ("sin", 1)]);
+        let mut values = [0.0; 2];
+        Interpreter::new(Arc::new(first)).eval(0.0, &[0.5, 3.0], &[], &mut values);
+        assert_eq!(values, [1.5, 0.5f64.sin()]);
+    }
 
     #[test]
     fn products_are_fused_once() {

@@ -162,7 +162,7 @@ impl Motion {
     /// factorisation where M is factorised in numbers.
     pub fn cost(&self) -> Cost {
         match &self.form {
-            Form::Unrolled(unrolled) => unrolled.cost().clone(),
+            Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
             Form::Staged(staged) => staged.cost().clone(),
         }
     }

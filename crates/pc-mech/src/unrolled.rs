@@ -16,7 +16,6 @@ pub(crate) struct Unrolled {
     rates: Evaluator,
     outputs: Vec<f64>,
     pivots: Pivots,
-    cost: Cost,
     jacobian: Option<Columns>,
     /// Of the state (y, v).
     jvp: Option<Evaluator>,
@@ -39,8 +38,6 @@ impl Unrolled {
         let (pivots, moving) = Pivots::new(system, &factors)?;
         let outputs: Vec<Expr<'_>> = rates.iter().chain(&moving).copied().collect();
         let program = Program::new(graph, &inputs, &outputs)?;
-        let cost =
-            if moving.is_empty() { program.cost() } else { Program::new(graph, &inputs, &rates)?.cost() };
 
         let linearised = Linearised::new(system, &factors, &unknowns);
         let columns = |wanted: bool, symbols: &[Expr<'_>]| {
@@ -54,7 +51,6 @@ impl Unrolled {
             outputs: vec![0.0; program.outputs_len()],
             rates: Evaluator::new(program, options.backend),
             pivots,
-            cost,
             jacobian: columns(options.jacobian, &system.state)?,
             jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
             known: vec![0.0; 2 * system.state.len()],
@@ -68,8 +64,9 @@ impl Unrolled {
         self.pivots.forget();
     }
 
-    pub(crate) fn cost(&self) -> &Cost {
-        &self.cost
+    /// The operations of ẏ; those of the pivots are not counted.
+    pub(crate) fn cost(&self, dim: usize) -> Cost {
+        self.rates.program().leading(dim).cost()
     }
 
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use pc_mech::{Graph, System, VectorField};
+use pc_mech::{CompileOptions, Graph, System, VectorField};
 use pc_model::{BUILTIN, Builtin, Model};
 
 use crate::error::Error;
@@ -16,11 +16,12 @@ const PENDULUM: usize = 16;
 const RUNS: usize = 150;
 /// It gets no more runs once they took so long together.
 const PATIENCE: Duration = Duration::from_secs(10);
-const STAGES: [&str; 5] = ["parse", "assemble", "poincare", "compile", "first calls"];
+const STAGES: [&str; 5] = ["parse", "assemble", "poincare", "compile", "first call"];
 
-/// One derivation: milliseconds of each stage, and what came out.
+/// One derivation: milliseconds of each stage and of the Jacobian, and what came out.
 struct Run {
     stages: [f64; STAGES.len()],
+    jacobian: f64,
     nodes: usize,
     operations: usize,
 }
@@ -51,8 +52,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     report.line(format!(
         "ms, as minimum / 10th percentile / median of up to {RUNS} runs ({} s at most), the models taking turns.\n\
          `parse`: text to document, `assemble`: to a system with its structure coefficients, `poincare`: to equations, \
-         `compile`: to programs of right-hand side, Jacobian and observables, `first calls`: of right-hand side and \
-         Jacobian, for which machine code is made.\n`nodes` were made in the graph by all of it; `operations` is the \
+         `compile`: to programs of right-hand side and observables, `first call`: of the right-hand side, for which \
+         machine code is made; `total` of these.\n`Jacobian`: compiled with its Jacobian instead, up to the first call \
+         of that; explicit methods need none.\n`nodes` were made in the graph by all of it; `operations` is the \
          cost of the right-hand side.\n",
         PATIENCE.as_secs()
     ));
@@ -76,8 +78,11 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         }
     }
 
-    let columns: Vec<&str> =
-        ["model", "runs", "nodes", "operations"].into_iter().chain(STAGES).chain(["total"]).collect();
+    let columns: Vec<&str> = ["model", "runs", "nodes", "operations"]
+        .into_iter()
+        .chain(STAGES)
+        .chain(["total", "Jacobian"])
+        .collect();
     report.columns(&columns);
     for derivation in &derivations {
         let last = derivation.runs.last();
@@ -89,6 +94,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         ];
         cells.extend((0..STAGES.len()).map(|stage| triple(&derivation.times(|run| run.stages[stage]), 3)));
         cells.push(triple(&derivation.times(|run| run.stages.iter().sum()), 3));
+        cells.push(triple(&derivation.times(|run| run.jacobian), 3));
         report.row(&cells);
     }
     Ok(())
@@ -130,16 +136,19 @@ fn derive(
 ) -> Result<Run, Error> {
     let equations = system.poincare()?;
     let poincare = clock.lap();
-    let mut motion = equations.compile()?;
+    let mut motion = equations.compile_for(CompileOptions::default().jacobian(false))?;
     let compile = clock.lap();
     let mut rates = vec![0.0; start.len()];
-    let mut jacobian = vec![0.0; start.len() * start.len()];
     motion.rhs(t, start, &mut rates)?;
+    let first_call = clock.lap();
+    let nodes = system.graph().len();
+    let mut motion = equations.compile()?;
+    let mut jacobian = vec![0.0; start.len() * start.len()];
     motion.jacobian(t, start, &mut jacobian)?;
-    let first_calls = clock.lap();
     Ok(Run {
-        stages: [parse, assemble, poincare, compile, first_calls],
-        nodes: system.graph().len(),
+        stages: [parse, assemble, poincare, compile, first_call],
+        jacobian: clock.lap(),
+        nodes,
         operations: motion.cost().total(),
     })
 }
