@@ -1,5 +1,7 @@
 //! Chetaev's canonical equations and Lagrange's equations of one system, against Poincaré's.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 use pc_mech::{Graph, LieAlgebra, MechError, Style, System, VectorField};
 
 /// The heavy top in Euler's angles (ψ, θ, φ), quasi-velocities: the body angular velocity.
