@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::Graph;
+use pc_mech::{Graph, MechError};
 use pc_model::{Builtin, Model};
 use pc_solve::{Method, Options, solve};
 use pc_tests::reference::REFERENCES;
@@ -51,4 +51,43 @@ fn adams_reaches_the_references() {
 #[test]
 fn bdf_reaches_the_references() {
     run(Method::Bdf);
+}
+
+/// The same end states through momenta, of all models whose Lagrangian is quadratic in the quasi-velocities.
+#[test]
+fn the_canonical_equations_reach_the_references() {
+    let mut refused = Vec::new();
+    for reference in REFERENCES {
+        let name = reference.model;
+        let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let canonical = match assembly.system.canonical() {
+            Ok(canonical) => canonical,
+            Err(error) => {
+                assert!(matches!(error, MechError::NotQuadratic { .. }), "{name}: {error}");
+                refused.push(name);
+                continue;
+            }
+        };
+        let mut transform = canonical.legendre_transform().unwrap();
+        let start = transform.to_momenta(assembly.t_start, &assembly.start);
+        for method in [Method::Adams, Method::Bdf] {
+            let mut motion = model.compile_canonical(&canonical, assembly.t_start, &start).unwrap();
+            let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
+            let trajectory =
+                solve(&mut motion, assembly.t_start, &start, &[reference.t_end], &options).unwrap();
+            let (t, end) = trajectory.last().unwrap();
+            let end = transform.to_quasi_velocities(t, end);
+            for (i, expected) in reference.state.iter().enumerate() {
+                let error = (end[i] - expected).abs();
+                assert!(
+                    error <= TOLERANCE,
+                    "{name} by {method}: component {i} is {}, not {expected}",
+                    end[i]
+                );
+            }
+        }
+    }
+    assert_eq!(refused, ["relativistic-particle"]);
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use pc_cli::args::RunForm;
 use pc_cli::derive::{balance, brackets, kinematics};
 use pc_cli::output::Destination;
 use pc_cli::plan::Plan;
@@ -72,11 +73,11 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         atol: 1e-14,
         method: Method::Adams,
     };
-    let table = integrate(&model, || Ok(plan(11)))?;
+    let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;
     show_table(&table);
 
     section("what the motion keeps: largest change of each integral");
-    let fine = integrate(&model, || Ok(plan(1001)))?;
+    let fine = integrate(&model, RunForm::Poincare, || Ok(plan(1001)))?;
     for (name, meaning) in [
         ("energy", "kinetic plus potential energy"),
         ("area", "angular momentum about the vertical"),

@@ -101,9 +101,9 @@ pub struct RunArguments {
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
-    /// Form of the equations: poincare
-    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = run_form)]
-    pub form: RunForm,
+    /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
+    #[arg(long, value_name = "FORM", value_parser = run_form)]
+    pub form: Option<RunForm>,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -179,6 +179,8 @@ pub enum Form {
 pub enum RunForm {
     /// Equations for the quasi-velocities.
     Poincare,
+    /// Equations for the momenta.
+    Canonical,
 }
 
 /// Integration method.
@@ -195,7 +197,7 @@ fn form(text: &str) -> Result<Form, String> {
 }
 
 fn run_form(text: &str) -> Result<RunForm, String> {
-    choice(text, &["canonical", "lagrange", "voronets"])
+    choice(text, &["lagrange", "voronets"])
 }
 
 fn method(text: &str) -> Result<Method, String> {

@@ -18,6 +18,7 @@ pub mod conservation;
 pub mod derive;
 pub mod emit;
 pub mod error;
+pub mod flow;
 pub mod input;
 mod interrupt;
 pub mod latex;

@@ -4,7 +4,7 @@ use pc_model::Model;
 use pc_model::document;
 use pc_solve::{Method, Options};
 
-use crate::args::{self, RunArguments};
+use crate::args::{self, RunArguments, RunForm};
 use crate::error::CliError;
 
 /// Rows of a table if nobody says how many.
@@ -28,6 +28,15 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The form of the equations as the command line and the file want it.
+    pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
+        let written = model.document().simulation.form.as_ref().map(|form| form.value);
+        arguments.form.unwrap_or(match written {
+            Some(document::Form::Canonical) => RunForm::Canonical,
+            Some(document::Form::Poincare) | None => RunForm::Poincare,
+        })
+    }
+
     /// The plan for a model as the command line and the file want it.
     ///
     /// # Errors

@@ -7,9 +7,10 @@ use pc_mech::Graph;
 use pc_model::Model;
 use pc_solve::{SolveError, Statistics, solve_observed};
 
-use crate::args::RunArguments;
+use crate::args::{RunArguments, RunForm};
 use crate::conservation::keeps_energy;
 use crate::error::CliError;
+use crate::flow::Flow;
 use crate::output::Destination;
 use crate::plan::Plan;
 use crate::plot::Picture;
@@ -26,6 +27,8 @@ pub struct Run {
     pub parameters: Vec<(String, f64)>,
     /// How it was to be computed.
     pub plan: Plan,
+    /// Names of the components of the state that was integrated.
+    pub state: Vec<String>,
     /// What was reached.
     pub table: Table,
     /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
@@ -68,7 +71,8 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
     let picture = Destination::plot(arguments.plot.as_deref())?;
     let model = input::open(&arguments.model)?;
-    let run = integrate(&model, || Plan::new(&model, arguments))?;
+    let form = Plan::form(&model, arguments);
+    let run = integrate(&model, form, || Plan::new(&model, arguments))?;
 
     let written = write(&run, &destination, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
@@ -82,13 +86,18 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 }
 
 /// Derives, compiles and integrates the motion of a model; `plan` is asked for once the model is known to be sound.
+/// Whatever the form, the table shows quasi-velocities.
 ///
 /// # Errors
 /// [`CliError`] if there is no motion at all; one that could not be completed is a [`Run`].
-pub fn integrate(model: &Model, plan: impl FnOnce() -> Result<Plan, CliError>) -> Result<Run, CliError> {
+pub fn integrate(
+    model: &Model,
+    form: RunForm,
+    plan: impl FnOnce() -> Result<Plan, CliError>,
+) -> Result<Run, CliError> {
     let graph = Graph::new();
     let (assembly, equations) = input::derive(model, &graph)?;
-    let mut motion = model.compile(&equations, assembly.t_start, &assembly.start)?;
+    let mut flow = Flow::new(model, &assembly, &equations, form)?;
     let plan = plan()?;
 
     interrupt::catch();
@@ -99,7 +108,7 @@ pub fn integrate(model: &Model, plan: impl FnOnce() -> Result<Plan, CliError>) -
     };
     let start = Instant::now();
     let solved =
-        solve_observed(&mut motion, plan.t_start, &assembly.start, &plan.times(), &plan.options(), observer);
+        solve_observed(&mut flow.motion, plan.t_start, &flow.start, &plan.times(), &plan.options(), observer);
     let wall = start.elapsed();
     drop(progress);
 
@@ -111,7 +120,8 @@ pub fn integrate(model: &Model, plan: impl FnOnce() -> Result<Plan, CliError>) -
     Ok(Run {
         title: input::title(model).to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
-        table: Table::new(&mut motion, &trajectory),
+        state: flow.motion.names().to_vec(),
+        table: Table::new(&mut flow, &trajectory),
         keeps_energy: keeps_energy(&assembly.system),
         statistics: *trajectory.statistics(),
         plan,
@@ -129,15 +139,9 @@ fn write(run: &Run, destination: &Destination, picture: Option<&Destination>) ->
 }
 
 impl Run {
-    /// Names of the components of the state.
-    fn state_names(&self) -> Vec<String> {
-        let columns = self.table.coordinates().start..self.table.quasi_velocities().end;
-        self.table.columns()[columns].to_vec()
-    }
-
     /// An error unless the run was completed.
     fn outcome(self) -> Result<(), CliError> {
-        let names = self.state_names();
+        let names = self.state;
         match self.ending {
             Ending::Completed => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),

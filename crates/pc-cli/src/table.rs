@@ -1,7 +1,8 @@
 //! The table of a motion: t, coordinates, quasi-velocities, integrals, energy, outputs.
 
-use pc_mech::Motion;
 use pc_solve::Trajectory;
+
+use crate::flow::Flow;
 
 /// A row for each output time.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,21 +16,20 @@ pub struct Table {
 }
 
 impl Table {
-    /// The states of a trajectory with the observables of its motion.
-    pub fn new(motion: &mut Motion, trajectory: &Trajectory) -> Table {
-        let names = motion.names().iter().chain(motion.observable_names()).cloned();
+    /// The states of a trajectory, in quasi-velocities, with the observables of its motion.
+    pub fn new(flow: &mut Flow, trajectory: &Trajectory) -> Table {
+        let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
         let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).collect();
         let mut values = Vec::with_capacity(columns.len() * trajectory.len());
         for (t, y) in trajectory.iter() {
             values.push(t);
-            values.extend_from_slice(y);
-            values.extend(motion.observe(t, y));
+            values.extend(flow.row(t, y));
         }
         Table {
             columns,
-            coordinates: motion.coordinates(),
-            quasi_velocities: motion.names().len() - motion.coordinates(),
-            conserved: motion.conserved_len(),
+            coordinates: flow.motion.coordinates(),
+            quasi_velocities: flow.quasi_velocities(),
+            conserved: flow.motion.conserved_len(),
             values,
         }
     }

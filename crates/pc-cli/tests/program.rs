@@ -163,6 +163,26 @@ fn json_and_npz_hold_the_table_of_the_csv() {
 }
 
 #[test]
+fn the_canonical_form_gives_the_same_table() {
+    let end = |form: &str| {
+        let output = run(&["run", "heavy-top-euler", "--form", form, "--rtol", "1e-12", "--samples", "2"]);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let table = stdout(&output);
+        let row = table.lines().last().expect("a row").to_owned();
+        let numbers: Vec<f64> = row.split(',').map(|text| text.parse().expect("a number")).collect();
+        (table.lines().next().expect("a header").to_owned(), numbers)
+    };
+    let ((header, poincare), (same_header, canonical)) = (end("poincare"), end("canonical"));
+    assert_eq!(header, same_header);
+    for (a, b) in poincare.iter().zip(&canonical) {
+        assert!((a - b).abs() <= 1e-8, "{poincare:?}\n{canonical:?}"); // both to 1e-12 a step
+    }
+    let model = FREE.replace("t_end", "form = \"canonical\"\nt_end");
+    assert_eq!(stdout(&run_on(&model, &["run", "-"])), stdout(&run_on(FREE, &["run", "-"])));
+    refuses(&["run", "relativistic-particle", "--form", "canonical"], 4, "quadratic in the quasi-velocities");
+}
+
+#[test]
 fn a_model_may_come_from_standard_input_and_its_parameters_from_the_command_line() {
     let output = run_on(FREE, &["run", "-", "--set", "l=5", "--set", "m=4"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
@@ -200,7 +220,7 @@ fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
     refuses(&["run", "euler-top", "--atol", "NaN"], 2, "finite");
     refuses(&["run", "euler-top", "--t-end", "0"], 2, "nothing to integrate");
     refuses(&["run", "euler-top", "--method", "taylor"], 2, "not supported yet");
-    refuses(&["run", "euler-top", "--form", "canonical"], 2, "not supported yet");
+    refuses(&["run", "euler-top", "--form", "voronets"], 2, "not supported yet");
     refuses(&["derive", "euler-top", "--format", "html"], 2, "possible values: text, latex, json");
     refuses(&["sweep", "euler-top"], 2, "sweep");
     refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json or .npz");

@@ -48,6 +48,7 @@ mod pattern;
 mod print;
 mod program;
 mod rank;
+mod relations;
 mod sharing;
 mod vector_field;
 

@@ -48,6 +48,7 @@ mod unrolled;
 pub use canonical::Canonical;
 pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
+pub use legendre::LegendreTransform;
 pub use motion::Motion;
 pub use options::CompileOptions;
 pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};

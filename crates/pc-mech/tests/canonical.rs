@@ -74,7 +74,11 @@ fn forms_agree(system: &System<'_>, t: f64, x: &[f64], eta: &[f64]) {
         })
         .collect();
     let y = graph.evaluate(&momenta, &values).unwrap();
-    let state: Vec<f64> = x.iter().chain(&y).copied().collect();
+    let mut transform = canonical.legendre_transform().unwrap();
+    let original = state;
+    let state = transform.to_momenta(t, &original);
+    close(&state[n..], &y);
+    close(&transform.to_quasi_velocities(t, &state), &original);
     let mut motion = canonical.compile_for(pc_mech::CompileOptions::default()).unwrap();
     let mut found = vec![0.0; n + k];
     motion.rhs(t, &state, &mut found).unwrap();

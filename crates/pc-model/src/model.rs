@@ -2,11 +2,11 @@
 
 use pc_expr::Graph;
 use pc_mech::{
-    AlgebraError, Equations, Expr, Frame, LieAlgebra, MechError, Motion, Number, StructureCoefficients,
-    System, VectorField,
+    AlgebraError, Canonical, CompileOptions, Equations, Expr, Frame, LieAlgebra, MechError, Motion, Number,
+    StructureCoefficients, System, VectorField,
 };
 
-use crate::document::{AlgebraDefinition, Bracket, Document, Form, Method, NamedExpression};
+use crate::document::{AlgebraDefinition, Bracket, Document, Method, NamedExpression};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
 use crate::scope::{Scope, Stage, entry};
@@ -90,8 +90,31 @@ impl Model {
         t_start: f64,
         start: &[f64],
     ) -> Result<Motion, ModelError> {
+        self.started(equations.compile(), t_start, start)
+    }
+
+    /// Compiles canonical equations of this model and tries them at the start (x, y).
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub fn compile_canonical(
+        &self,
+        equations: &Canonical<'_>,
+        t_start: f64,
+        start: &[f64],
+    ) -> Result<Motion, ModelError> {
+        self.started(equations.compile_for(CompileOptions::default()), t_start, start)
+    }
+
+    /// What was compiled, if it can be evaluated at the start.
+    fn started(
+        &self,
+        compiled: Result<Motion, MechError>,
+        t_start: f64,
+        start: &[f64],
+    ) -> Result<Motion, ModelError> {
         let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
-        let mut motion = equations.compile().map_err(|error| refuse(error.to_string()))?;
+        let mut motion = compiled.map_err(|error| refuse(error.to_string()))?;
         let mut rate = vec![0.0; start.len()];
         motion.rhs(t_start, start, &mut rate).map_err(|failure| refuse(failure.to_string()))?;
         Ok(motion)
@@ -133,11 +156,6 @@ impl Model {
             && !matches!(method.value, Method::Bdf | Method::Adams)
         {
             return refuse(&method.place, "methods other than bdf and adams are");
-        }
-        if let Some(form) = &simulation.form
-            && form.value != Form::Poincare
-        {
-            return refuse(&form.place, "the canonical form is");
         }
         Ok(())
     }

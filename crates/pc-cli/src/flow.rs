@@ -1,0 +1,73 @@
+//! The vector field that is integrated, and what a table shows of its states.
+
+use pc_expr::VectorField;
+use pc_mech::{Equations, LegendreTransform, Motion};
+use pc_model::{Assembly, Model, ModelError};
+
+use crate::args::RunForm;
+
+/// Equations of motion of a model in one of their forms, tried at the start.
+#[derive(Debug)]
+pub struct Flow {
+    /// The vector field.
+    pub motion: Motion,
+    /// Its state at the start.
+    pub start: Vec<f64>,
+    /// Coordinates and quasi-velocities, the columns of a table whatever the form.
+    pub names: Vec<String>,
+    /// From momenta to quasi-velocities, where the state has momenta.
+    transform: Option<LegendreTransform>,
+}
+
+impl Flow {
+    /// The equations in the form that is asked for.
+    ///
+    /// # Errors
+    /// [`ModelError`] if there is no such form, or nothing can be evaluated at the start.
+    pub fn new(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        equations: &Equations<'_>,
+        form: RunForm,
+    ) -> Result<Flow, ModelError> {
+        let (t, start) = (assembly.t_start, &assembly.start);
+        let system = &assembly.system;
+        let symbols = system.frame().coordinates().iter().chain(system.quasi_velocities());
+        let names = symbols.map(ToString::to_string).collect();
+        match form {
+            RunForm::Poincare => Ok(Flow {
+                motion: model.compile(equations, t, start)?,
+                start: start.clone(),
+                names,
+                transform: None,
+            }),
+            RunForm::Canonical => {
+                let refused = |error| model.derivation_error(error);
+                let canonical = system.canonical().map_err(refused)?;
+                let mut transform = canonical.legendre_transform().map_err(refused)?;
+                let start = transform.to_momenta(t, start);
+                Ok(Flow {
+                    motion: model.compile_canonical(&canonical, t, &start)?,
+                    start,
+                    names,
+                    transform: Some(transform),
+                })
+            }
+        }
+    }
+
+    /// Coordinates and quasi-velocities of a state, then the observables.
+    pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let mut row = match &mut self.transform {
+            Some(transform) => transform.to_quasi_velocities(t, state),
+            None => state.to_vec(),
+        };
+        row.extend(self.motion.observe(t, state));
+        row
+    }
+
+    /// Number of quasi-velocities.
+    pub fn quasi_velocities(&self) -> usize {
+        self.motion.dim() - self.motion.coordinates()
+    }
+}

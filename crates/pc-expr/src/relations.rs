@@ -1,0 +1,291 @@
+//! Linear relations with rational coefficients between expressions.
+//!
+//! A relation Σ a_j f_j = 0 holds at every point, so each random point of GF(2⁶¹ − 1) gives an equation for the a_j.
+//! Points are added until two of them in a row say nothing new; the null space is then read back as fractions.
+//! That is a proposal: only what the graph itself folds to zero is returned.
+
+use rustc_hash::FxHashMap;
+
+use crate::cone::Cone;
+use crate::dag::{Atom, Folding, Node, NodeId};
+use crate::expr::Expr;
+use crate::fingerprint::{Fingerprint, First};
+use crate::graph::Graph;
+use crate::number::Number;
+
+/// Numerators and denominators below this size are told from each other: 2·(2³⁰ − 1)² < 2⁶¹ − 1.
+const LARGEST: u64 = 1 << 30;
+/// Points that must say nothing new before no more are tried.
+const IDLE_POINTS: usize = 2;
+
+impl Graph {
+    /// A basis of the rational relations Σ_j a_j f_j = 0 between the columns f_1..f_N, each of them m expressions.
+    ///
+    /// What comes out is a list of vectors (a_1, …, a_N) with whole coprime entries. The last non-zero entry of each,
+    /// which is positive, stands where all other vectors have zero, and in ascending order: simple columns should
+    /// come first. Every relation is certified: Σ_j a_j f_ji is folded to zero for each i, so that with
+    /// [`Folding::Structural`] few are found. Not found are relations with coefficients that are not rational or, in
+    /// this basis, have numerators or denominators of 2³⁰ and more, and relations that fingerprints do not see, such
+    /// as those between logarithms.
+    ///
+    /// # Panics
+    /// If the columns have different lengths.
+    ///
+    /// ```
+    /// use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let x = graph.symbol("x");
+    /// let columns = [1.into(), x.cos().powi(2), x.sin() * x.cos(), (2.0 * x).cos()].map(|f| vec![f]);
+    /// let relations = graph.linear_relations(&columns); // cos 2x = 2 cos²x − 1
+    /// assert_eq!(relations, [[1, -2, 0, 1].map(Into::into)]);
+    /// ```
+    pub fn linear_relations<'g>(&'g self, columns: &[Vec<Expr<'g>>]) -> Vec<Vec<Number>> {
+        let components = columns.first().map_or(0, Vec::len);
+        assert!(columns.iter().all(|column| column.len() == components), "columns of one length");
+        let sampler = Sampler::new(self, &columns.concat());
+        let mut echelon = Echelon::new(columns.len());
+        let mut idle = 0;
+        for point in 0.. {
+            let values = sampler.at(point);
+            let rank = echelon.rank();
+            for i in 0..components {
+                echelon.insert((0..columns.len()).map(|j| values[j * components + i]).collect());
+            }
+            idle = if echelon.rank() > rank { 0 } else { idle + 1 };
+            if idle == IDLE_POINTS {
+                break;
+            }
+        }
+        let holds = |a: &Vec<Number>| {
+            let coefficients = || a.iter().map(|&a| Expr::from(a));
+            (0..components).all(|i| self.dot(coefficients(), columns.iter().map(|f| f[i])).is_zero())
+        };
+        let proposals = echelon.null_space().into_iter().filter_map(|vector| fractions(&vector));
+        proposals.map(|vector| whole(&vector)).filter(holds).collect()
+    }
+}
+
+/// Expressions to be evaluated in GF(2⁶¹ − 1) at any number of points.
+///
+/// The fingerprint of a symbol depends on its name: another point is another set of names. Sums and products are
+/// evaluated in the field; calls are written once more, with the other names, in a graph that is forgotten again.
+struct Sampler<'g> {
+    graph: &'g Graph,
+    outputs: Vec<Atom>,
+    cone: Cone,
+    symbols: Vec<Expr<'g>>,
+    calls: Vec<Expr<'g>>,
+}
+
+impl<'g> Sampler<'g> {
+    fn new(graph: &'g Graph, outputs: &[Expr<'g>]) -> Sampler<'g> {
+        let symbols = graph.symbols_of(outputs);
+        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
+        let cone = graph.with(|dag| Cone::below(dag, outputs.iter().copied()));
+        let called = |&&id: &&NodeId| graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
+        let calls = cone.order.iter().filter(called).map(|&id| graph.expr(Atom::Node(id))).collect();
+        Sampler { graph, outputs, cone, symbols, calls }
+    }
+
+    /// The values at point number `point`.
+    fn at(&self, point: usize) -> Vec<First> {
+        let mut values = self.unknowns(point);
+        self.graph.with(|dag| {
+            let of =
+                |values: &FxHashMap<NodeId, First>, id: &NodeId| values.get(id).copied().unwrap_or_default();
+            for &id in &self.cone.order {
+                let value = match dag.node(id) {
+                    Node::Constant(c) => constant(c),
+                    Node::Symbol(_) | Node::Call { .. } => continue,
+                    Node::Sum { constant: c, terms } => dag
+                        .terms(terms)
+                        .iter()
+                        .fold(constant(c), |sum, (child, q)| sum + constant(*q) * of(&values, child)),
+                    Node::Product { factors } => dag
+                        .factors(factors)
+                        .iter()
+                        .fold(First::ONE, |product, (child, e)| product * of(&values, child).powi(*e)),
+                };
+                values.insert(id, value);
+            }
+            let output = |atom: &Atom| match atom {
+                Atom::Constant(c) => constant(*c),
+                Atom::Node(id) => of(&values, id),
+            };
+            self.outputs.iter().map(output).collect()
+        })
+    }
+
+    /// The values of symbols and calls.
+    fn unknowns(&self, point: usize) -> FxHashMap<NodeId, First> {
+        let page = Graph::with_folding(Folding::Structural);
+        let renamed = |symbol: &Expr<'g>| page.symbol(&format!("{symbol}@{point}"));
+        let renamed: Vec<_> = self.symbols.iter().map(|symbol| (*symbol, renamed(symbol))).collect();
+        // Every symbol below a call has another name, so that none is unbound.
+        let calls = self.graph.evaluate(&self.calls, &renamed).unwrap_or_default();
+        let calls = self.calls.iter().copied().zip(calls);
+        renamed
+            .iter()
+            .copied()
+            .chain(calls)
+            .filter_map(|(original, image)| match original.atom() {
+                Atom::Node(id) => Some((id, value(&page, image))),
+                Atom::Constant(_) => None,
+            })
+            .collect()
+    }
+}
+
+fn constant(c: Number) -> First {
+    Fingerprint::constant(c).first()
+}
+
+fn value(graph: &Graph, expression: Expr<'_>) -> First {
+    match expression.atom() {
+        Atom::Constant(c) => constant(c),
+        Atom::Node(id) => graph.with(|dag| dag.fingerprint(id).first()),
+    }
+}
+
+/// Rows with distinct leading columns, 1 in the leading column.
+struct Echelon {
+    columns: usize,
+    /// The row that leads in this column.
+    leading: Vec<Option<Vec<First>>>,
+}
+
+impl Echelon {
+    fn new(columns: usize) -> Echelon {
+        Echelon { columns, leading: vec![None; columns] }
+    }
+
+    fn rank(&self) -> usize {
+        self.leading.iter().flatten().count()
+    }
+
+    /// Adds a row, if it is independent of those that are there.
+    fn insert(&mut self, mut row: Vec<First>) {
+        for column in 0..self.columns {
+            if row[column] == First::ZERO {
+                continue;
+            }
+            let Some(known) = &self.leading[column] else {
+                let scale = row[column].inverse();
+                row.iter_mut().for_each(|x| *x = *x * scale);
+                self.leading[column] = Some(row);
+                return;
+            };
+            subtract(&mut row, known, column);
+        }
+    }
+
+    /// A basis of the vectors that all rows annihilate, one for each column that does not lead: 1 there and 0 in the
+    /// columns after it and in the others that do not lead.
+    fn null_space(mut self) -> Vec<Vec<First>> {
+        for column in (0..self.columns).rev() {
+            let Some(known) = self.leading[column].take() else { continue };
+            for row in self.leading[..column].iter_mut().flatten() {
+                subtract(row, &known, column);
+            }
+            self.leading[column] = Some(known);
+        }
+        let free = (0..self.columns).filter(|&column| self.leading[column].is_none());
+        let vector = |free: usize| {
+            let entry = |column: usize| match &self.leading[column] {
+                Some(row) => -row[free],
+                None if column == free => First::ONE,
+                None => First::ZERO,
+            };
+            (0..self.columns).map(entry).collect()
+        };
+        free.map(vector).collect()
+    }
+}
+
+/// row ← row − row[column]·known, where known leads in the column.
+fn subtract(row: &mut [First], known: &[First], column: usize) {
+    let factor = row[column];
+    if factor == First::ZERO {
+        return;
+    }
+    for (x, &y) in row[column..].iter_mut().zip(&known[column..]) {
+        if y != First::ZERO {
+            *x = *x - factor * y;
+        }
+    }
+}
+
+/// All entries as fractions, if they are small ones.
+fn fractions(vector: &[First]) -> Option<Vec<Number>> {
+    vector.iter().map(|&x| fraction(x)).collect()
+}
+
+/// The fraction p/q = x, |p| and q below [`LARGEST`], if there is one: rational reconstruction, the convergent of
+/// x/(2⁶¹ − 1) at which the remainders of Euclid's algorithm have fallen to half their length.
+fn fraction(x: First) -> Option<Number> {
+    let (mut r0, mut r1) = ((-First::ONE).to_bits() + 1, x.to_bits());
+    let (mut s0, mut s1) = (0i64, 1i64);
+    while r1 >= LARGEST {
+        let q = r0 / r1;
+        (r0, r1) = (r1, r0 - q * r1);
+        (s0, s1) = (s1, s0 - q as i64 * s1);
+        if s1.unsigned_abs() >= LARGEST {
+            return None;
+        }
+    }
+    Some(Number::ratio(r1 as i64, s1))
+}
+
+/// The vector without common factor and denominators, as far as these stay exact.
+fn whole(vector: &[Number]) -> Vec<Number> {
+    let mut entries = vector.iter().copied().filter(|a| !a.is_zero());
+    let common = entries.next().and_then(|first| entries.try_fold(first.abs(), Number::content));
+    match common {
+        Some(common) => vector.iter().map(|&a| a * common.recip()).collect(),
+        None => vector.to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractions_are_read_back() {
+        for (p, q) in [(1, 3), (-7, 12), (0, 1), (1_073_741_789, 1_073_741_783), (-1, 1_073_741_789)] {
+            let x = First::integer(p) * First::integer(q).inverse();
+            assert_eq!(fraction(x), Some(Number::ratio(p, q)));
+        }
+    }
+
+    #[test]
+    fn relations_end_in_their_own_column() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        let half = Expr::ratio(1, 2);
+        let columns = [x, y, x + half * y, x * y, 3.0 * (x - y)].map(|f| vec![f]);
+        let expected = [[-2, -1, 2, 0, 0], [-3, 3, 0, 0, 1]].map(|row| row.map(Number::integer).to_vec());
+        assert_eq!(graph.linear_relations(&columns), expected);
+    }
+
+    #[test]
+    fn all_components_count() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        let columns = [vec![x, y], vec![y, x], vec![x + y, x + y], vec![2.0 * x, 3.0 * y]];
+        assert_eq!(graph.linear_relations(&columns), [[-1, -1, 1, 0].map(Number::integer)]);
+        assert!(graph.linear_relations(&[]).is_empty());
+        assert!(graph.linear_relations(&[vec![x], vec![x.sqrt()], vec![x.log()]]).is_empty());
+    }
+
+    /// Circle and exponential keep their laws at every point.
+    #[test]
+    fn addition_theorems_are_relations() {
+        let graph = Graph::new();
+        let [a, b] = graph.symbols(["a", "b"]);
+        let columns = [a.sin() * b.cos(), a.cos() * b.sin(), (a + b).sin(), a.exp(), (-a).exp(), a.cosh()];
+        let relations = graph.linear_relations(&columns.map(|f| vec![f]));
+        let expected = [[-1, -1, 1, 0, 0, 0], [0, 0, 0, -1, -1, 2]];
+        assert_eq!(relations, expected.map(|row| row.map(Number::integer).to_vec()));
+    }
+}
