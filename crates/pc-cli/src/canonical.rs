@@ -12,9 +12,9 @@ pub fn text(equations: &Canonical<'_>, operations: &Operations) -> String {
     sections(&[
         ("Kinematics", kinematics(system, equations.velocities())),
         ("Brackets", brackets(system)),
-        ("Momenta", lines(&momenta(equations, Style::Text))),
-        ("Hamiltonian", vec![equations.hamiltonian().to_string()]),
-        ("Equations", lines(&equations.balance(Style::Text))),
+        ("Momenta", lines(&momenta(equations, Style::Book))),
+        ("Hamiltonian", vec![equations.hamiltonian().display(Style::Book)]),
+        ("Equations", lines(&equations.balance(Style::Book))),
         ("Operations of one right-hand side", operations.lines()),
     ])
 }

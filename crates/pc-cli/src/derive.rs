@@ -112,7 +112,7 @@ pub fn text(equations: &Equations<'_>, operations: &Operations) -> String {
         ("Brackets", brackets(equations.system())),
         ("Mass matrix", mass_matrix(equations)),
         ("Equations", balance(equations)),
-        ("Energy", vec![equations.energy().to_string()]),
+        ("Energy", vec![equations.energy().display(Style::Book)]),
         ("Operations of one right-hand side", operations.lines()),
     ])
 }
@@ -130,7 +130,7 @@ pub fn sections(parts: &[(&str, Vec<String>)]) -> String {
 /// ẋ_i = `velocities`, a line each; none where these are the velocities themselves.
 pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
     let rates: Vec<String> = system.frame().coordinates().iter().map(|x| format!("{x}'")).collect();
-    let velocities: Vec<String> = velocities.iter().map(Expr::to_string).collect();
+    let velocities: Vec<String> = velocities.iter().map(|v| v.display(Style::Book)).collect();
     if rates == velocities {
         return Vec::new();
     }
@@ -139,7 +139,7 @@ pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
 
 /// M η̇ = r, a line an equation.
 pub fn balance(equations: &Equations<'_>) -> Vec<String> {
-    let sides = equations.balance(Style::Text);
+    let sides = equations.balance(Style::Book);
     aligned(sides.iter().map(|(left, right)| (left, right)))
 }
 
@@ -156,7 +156,8 @@ pub fn brackets(system: &System<'_>) -> Vec<String> {
     let k = structure.operators();
     let mut lines = Vec::new();
     for (r, s) in (0..=k).flat_map(|r| (r + 1..=k).map(move |s| (r, s))) {
-        let sum = combination((1..=k).map(|m| (structure.get(r, s, m).to_string(), name[m].clone())));
+        let sum =
+            combination((1..=k).map(|m| (structure.get(r, s, m).display(Style::Book), name[m].clone())));
         if sum != "0" {
             lines.push(format!("[{}, {}] = {sum}", name[r], name[s]));
         }
@@ -187,7 +188,7 @@ fn mass_matrix(equations: &Equations<'_>) -> Vec<String> {
         .mass_matrix()
         .to_rows()
         .iter()
-        .map(|row| row.iter().map(Expr::to_string).collect())
+        .map(|row| row.iter().map(|entry| entry.display(Style::Book)).collect())
         .collect();
     let k = rows.len();
     let entries = || (0..k).flat_map(|r| (0..k).map(move |s| (r, s)));

@@ -69,7 +69,7 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
     let mut sum = String::new();
     for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
         let (sign, size) = match coefficient.strip_prefix('-') {
-            Some(rest) if !rest.contains([' ', '(']) => ("-", rest),
+            Some(rest) if !is_sum(rest) => ("-", rest),
             _ => ("+", coefficient.as_str()),
         };
         sum += match (sum.is_empty(), sign) {
@@ -80,11 +80,15 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
         };
         sum += &match size {
             "1" => element,
-            _ if size.contains(' ') => format!("({size})*{element}"),
-            _ => format!("{size}*{element}"),
+            _ if is_sum(size) => format!("({size}) {element}"),
+            _ => format!("{size} {element}"),
         };
     }
     if sum.is_empty() { "0".to_owned() } else { sum }
+}
+
+fn is_sum(text: &str) -> bool {
+    text.contains(" + ") || text.contains(" - ")
 }
 
 /// Number of characters, each one column wide.
@@ -120,8 +124,8 @@ mod tests {
         let sum =
             |terms: &[(&str, &str)]| combination(terms.iter().map(|&(c, x)| (c.to_owned(), x.to_owned())));
         assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
-        assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3*X2 - a*X3");
-        assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b)*X2");
+        assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
+        assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
     }
 
     #[test]

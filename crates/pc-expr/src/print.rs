@@ -5,6 +5,7 @@ use crate::expr::Expr;
 use crate::function::Function;
 use crate::number::Number;
 
+mod book;
 mod latex;
 
 /// How an expression is written.
@@ -12,6 +13,8 @@ mod latex;
 pub enum Style {
     /// The expression language, which the parser reads back.
     Text,
+    /// As a book sets it, in plain characters: `½ m v² cos(θ)`.
+    Book,
     /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
     Latex,
 }
@@ -56,20 +59,21 @@ impl Style {
     fn number(self, c: Number) -> Piece {
         match self {
             Style::Text => number(c),
+            Style::Book => book::number(c),
             Style::Latex => latex::number(c),
         }
     }
 
     fn symbol(self, name: &str) -> Piece {
         Piece::atom(match self {
-            Style::Text => name.to_owned(),
+            Style::Text | Style::Book => name.to_owned(),
             Style::Latex => latex::symbol(name),
         })
     }
 
     fn call(self, function: Function, args: Vec<Piece>) -> Piece {
         match self {
-            Style::Text => {
+            Style::Text | Style::Book => {
                 let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
                 Piece::atom(format!("{}({})", function.name(), args.join(", ")))
             }
@@ -80,6 +84,7 @@ impl Style {
     fn power(self, base: Piece, exponent: Piece) -> Piece {
         let text = match self {
             Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
+            Style::Book => book::power(base, exponent),
             Style::Latex => latex::power(&base, &exponent.text),
         };
         Piece { text, binding: Binding::Power }
@@ -89,6 +94,7 @@ impl Style {
         let factors: Vec<String> = factors.into_iter().map(|p| p.at_least(Binding::Product)).collect();
         match self {
             Style::Text => factors.join("*"),
+            Style::Book => factors.join(" "),
             Style::Latex => latex::juxtaposed(&factors),
         }
     }
@@ -96,10 +102,10 @@ impl Style {
     fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
         match self {
             Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
-            Style::Text if below.len() == 1 => {
+            _ if below.len() == 1 => {
                 format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
             }
-            Style::Text => format!("{}/({})", self.product(above), self.product(below)),
+            _ => format!("{}/({})", self.product(above), self.product(below)),
         }
     }
 }

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Bounded, trees};
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, parse};
-use pc_expr::{Expr, Folding, Function, Graph, Scalar};
+use pc_expr::{Expr, Folding, Function, Graph, Scalar, Style};
 use proptest::prelude::*;
 
 /// The value of a syntax tree.
@@ -130,5 +130,23 @@ fn texts() {
     ];
     for (expr, text) in table {
         assert_eq!(expr.to_string(), text);
+    }
+}
+
+#[test]
+fn expressions_as_a_book_sets_them() {
+    let graph = Graph::new();
+    let [m, v, x, gamma1] = graph.symbols(["m", "v", "x", "γ1"]);
+    for (expr, text) in [
+        (m * v.square() / 2.0, "½ m v²"),
+        (-x.powi(12) * 0.75, "-¾ x¹²"),
+        (x.sin().square() * v - m, "v sin(x)² - m"),
+        ((x + v).powi(3) / (2.0 * m), "(v + x)³/(2 m)"),
+        (m * (v - x) * gamma1.cos(), "m cos(γ1) (v - x)"),
+        (x.pow(0.3) + x.exp().powi(2) / 3.0, "x^0.3 + ⅓ exp(x)²"),
+        (Expr::from(0.5).pow(-x), "½^(-x)"),
+        (5.0 * x / 7.0, "5/7 x"),
+    ] {
+        assert_eq!(expr.display(Style::Book), text);
     }
 }
