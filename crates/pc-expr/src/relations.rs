@@ -1,8 +1,8 @@
 //! Linear relations with rational coefficients between expressions.
 //!
-//! A relation Σ a_j f_j = 0 holds at every point, so each random point of GF(2⁶¹ − 1) gives an equation for the a_j.
-//! Points are added until two of them in a row say nothing new; the null space is then read back as fractions.
-//! That is a proposal: only what the graph itself folds to zero is returned.
+//! A relation Σ a_j f_j = 0 holds at every point, so each random point of GF(2⁶¹ − 1) gives an equation for
+//! the a_j. Points are added until two of them in a row say nothing new; the null space is then read back as
+//! fractions. That is a proposal: only what the graph itself folds to zero is returned.
 
 use rustc_hash::FxHashMap;
 
@@ -13,20 +13,21 @@ use crate::fingerprint::{Fingerprint, First};
 use crate::graph::Graph;
 use crate::number::Number;
 
-/// Numerators and denominators below this size are told from each other: 2·(2³⁰ − 1)² < 2⁶¹ − 1.
-const LARGEST: u64 = 1 << 30;
 /// Points that must say nothing new before no more are tried.
 const IDLE_POINTS: usize = 2;
 
 impl Graph {
-    /// A basis of the rational relations Σ_j a_j f_j = 0 between the columns f_1..f_N, each of them m expressions.
+    /// A basis of the rational relations Σ_j a_j f_j = 0 between the columns f_1..f_N, each of them m
+    /// expressions.
     ///
-    /// What comes out is a list of vectors (a_1, …, a_N) with whole coprime entries. The last non-zero entry of each,
-    /// which is positive, stands where all other vectors have zero, and in ascending order: simple columns should
-    /// come first. Every relation is certified: Σ_j a_j f_ji is folded to zero for each i, so that with
-    /// [`Folding::Structural`] few are found. Not found are relations with coefficients that are not rational or, in
-    /// this basis, have numerators or denominators of 2³⁰ and more, and relations that fingerprints do not see, such
-    /// as those between logarithms.
+    /// What comes out is a list of vectors (a_1, …, a_N) with whole coprime entries, the first of them
+    /// positive. The last one stands where all other vectors have zero, and in ascending order: simple
+    /// columns should come first.
+    ///
+    /// Every relation is certified: Σ_j a_j f_ji is folded to zero for each i, so that with
+    /// [`Folding::Structural`] few are found. Not found are relations whose coefficients, divided by the
+    /// last, are not rational or are p/q with p·q beyond about 2⁵⁰; those that constants beyond the range of
+    /// exact [`Number`]s have blurred; and those that fingerprints do not see, as between logarithms.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -60,15 +61,16 @@ impl Graph {
             let coefficients = || a.iter().map(|&a| Expr::from(a));
             (0..components).all(|i| self.dot(coefficients(), columns.iter().map(|f| f[i])).is_zero())
         };
-        let proposals = echelon.null_space().into_iter().filter_map(|vector| fractions(&vector));
-        proposals.map(|vector| whole(&vector)).filter(holds).collect()
+        let proposal = |vector: Vec<First>| whole(&vector.into_iter().map(fraction).collect::<Vec<_>>());
+        echelon.null_space().into_iter().map(proposal).filter(holds).collect()
     }
 }
 
 /// Expressions to be evaluated in GF(2⁶¹ − 1) at any number of points.
 ///
-/// The fingerprint of a symbol depends on its name: another point is another set of names. Sums and products are
-/// evaluated in the field; calls are written once more, with the other names, in a graph that is forgotten again.
+/// The fingerprint of a symbol depends on its name: another point is another set of names. Sums and products
+/// are evaluated in the field; calls are written once more, with the other names, in a graph that is
+/// forgotten again.
 struct Sampler<'g> {
     graph: &'g Graph,
     outputs: Vec<Atom>,
@@ -179,8 +181,8 @@ impl Echelon {
         }
     }
 
-    /// A basis of the vectors that all rows annihilate, one for each column that does not lead: 1 there and 0 in the
-    /// columns after it and in the others that do not lead.
+    /// A basis of the vectors that all rows annihilate, one for each column that does not lead: 1 there and
+    /// 0 in the columns after it and in the others that do not lead.
     fn null_space(mut self) -> Vec<Vec<First>> {
         for column in (0..self.columns).rev() {
             let Some(known) = self.leading[column].take() else { continue };
@@ -215,35 +217,31 @@ fn subtract(row: &mut [First], known: &[First], column: usize) {
     }
 }
 
-/// All entries as fractions, if they are small ones.
-fn fractions(vector: &[First]) -> Option<Vec<Number>> {
-    vector.iter().map(|&x| fraction(x)).collect()
-}
-
-/// The fraction p/q = x, |p| and q below [`LARGEST`], if there is one: rational reconstruction, the convergent of
-/// x/(2⁶¹ − 1) at which the remainders of Euclid's algorithm have fallen to half their length.
-fn fraction(x: First) -> Option<Number> {
+/// The fraction p/q = x with the smallest p·q, by maximal quotient rational reconstruction (M. Monagan,
+/// ISSAC 2004): in Euclid's algorithm for 2⁶¹ − 1 and x, p and q stand before the largest quotient.
+fn fraction(x: First) -> Number {
     let (mut r0, mut r1) = ((-First::ONE).to_bits() + 1, x.to_bits());
     let (mut s0, mut s1) = (0i64, 1i64);
-    while r1 >= LARGEST {
-        let q = r0 / r1;
-        (r0, r1) = (r1, r0 - q * r1);
-        (s0, s1) = (s1, s0 - q as i64 * s1);
-        if s1.unsigned_abs() >= LARGEST {
-            return None;
+    let (mut largest, mut found) = (0, Number::ZERO);
+    while r1 != 0 {
+        let quotient = r0 / r1;
+        if quotient > largest {
+            (largest, found) = (quotient, Number::ratio(r1 as i64, s1));
         }
+        (r0, r1) = (r1, r0 - quotient * r1);
+        (s0, s1) = (s1, s0 - quotient as i64 * s1);
     }
-    Some(Number::ratio(r1 as i64, s1))
+    found
 }
 
-/// The vector without common factor and denominators, as far as these stay exact.
+/// The vector without common factor and denominators, as far as these stay exact; the first entry is
+/// positive.
 fn whole(vector: &[Number]) -> Vec<Number> {
     let mut entries = vector.iter().copied().filter(|a| !a.is_zero());
-    let common = entries.next().and_then(|first| entries.try_fold(first.abs(), Number::content));
-    match common {
-        Some(common) => vector.iter().map(|&a| a * common.recip()).collect(),
-        None => vector.to_vec(),
-    }
+    let Some(first) = entries.next() else { return vector.to_vec() };
+    let common = entries.try_fold(first.abs(), Number::content).unwrap_or(Number::ONE);
+    let scale = if first.is_negative() { -common.recip() } else { common.recip() };
+    vector.iter().map(|&a| a * scale).collect()
 }
 
 #[cfg(test)]
@@ -252,9 +250,9 @@ mod tests {
 
     #[test]
     fn fractions_are_read_back() {
-        for (p, q) in [(1, 3), (-7, 12), (0, 1), (1_073_741_789, 1_073_741_783), (-1, 1_073_741_789)] {
+        for (p, q) in [(1, 3), (-7, 12), (0, 1), (-1, 1), (866_124_913, 1_000_000), (-1, 1_073_741_789)] {
             let x = First::integer(p) * First::integer(q).inverse();
-            assert_eq!(fraction(x), Some(Number::ratio(p, q)));
+            assert_eq!(fraction(x), Number::ratio(p, q));
         }
     }
 
@@ -264,7 +262,7 @@ mod tests {
         let [x, y] = graph.symbols(["x", "y"]);
         let half = Expr::ratio(1, 2);
         let columns = [x, y, x + half * y, x * y, 3.0 * (x - y)].map(|f| vec![f]);
-        let expected = [[-2, -1, 2, 0, 0], [-3, 3, 0, 0, 1]].map(|row| row.map(Number::integer).to_vec());
+        let expected = [[2, 1, -2, 0, 0], [3, -3, 0, 0, -1]].map(|row| row.map(Number::integer).to_vec());
         assert_eq!(graph.linear_relations(&columns), expected);
     }
 
@@ -273,7 +271,7 @@ mod tests {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let columns = [vec![x, y], vec![y, x], vec![x + y, x + y], vec![2.0 * x, 3.0 * y]];
-        assert_eq!(graph.linear_relations(&columns), [[-1, -1, 1, 0].map(Number::integer)]);
+        assert_eq!(graph.linear_relations(&columns), [[1, 1, -1, 0].map(Number::integer)]);
         assert!(graph.linear_relations(&[]).is_empty());
         assert!(graph.linear_relations(&[vec![x], vec![x.sqrt()], vec![x.log()]]).is_empty());
     }
@@ -285,7 +283,7 @@ mod tests {
         let [a, b] = graph.symbols(["a", "b"]);
         let columns = [a.sin() * b.cos(), a.cos() * b.sin(), (a + b).sin(), a.exp(), (-a).exp(), a.cosh()];
         let relations = graph.linear_relations(&columns.map(|f| vec![f]));
-        let expected = [[-1, -1, 1, 0, 0, 0], [0, 0, 0, -1, -1, 2]];
+        let expected = [[1, 1, -1, 0, 0, 0], [0, 0, 0, 1, 1, -2]];
         assert_eq!(relations, expected.map(|row| row.map(Number::integer).to_vec()));
     }
 }

@@ -26,28 +26,48 @@
 //! ```
 
 mod book;
+mod bracket;
 mod canonical;
+mod casimir;
 mod columns;
+mod conserved;
+mod cyclic;
+mod definite;
+mod dense;
 mod dense_ldl;
 mod elimination;
 mod emit;
 mod error;
 mod fault;
 mod first_order;
+mod hamilton_jacobi;
+mod integral;
 mod lagrange;
 mod ldl;
 mod legendre;
 mod motion;
+mod newton;
 mod options;
 mod pivots;
 mod poincare;
+mod polynomials;
+mod roots;
+mod second_variation;
+mod spectrum;
 mod staged;
+mod steady;
 mod system;
 mod unrolled;
+mod variation;
 
+pub use bracket::PoissonBracket;
 pub use canonical::Canonical;
+pub use conserved::{Conservation, Rates};
+pub use cyclic::CyclicDisplacement;
 pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
+pub use hamilton_jacobi::CompleteIntegral;
+pub use integral::Ansatz;
 pub use legendre::LegendreTransform;
 pub use motion::Motion;
 pub use options::CompileOptions;
@@ -56,4 +76,8 @@ pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Folding, Graph, Language, Number, Pattern, Style, VectorField,
 };
 pub use poincare::Equations;
+pub use second_variation::SecondVariation;
+pub use spectrum::{Eigenvalue, Spectrum, Verdict};
+pub use steady::{SteadyMotion, SteadyOptions};
 pub use system::{System, SystemBuilder};
+pub use variation::Variation;

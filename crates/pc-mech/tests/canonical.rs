@@ -2,7 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use pc_mech::{Graph, LieAlgebra, MechError, Style, System, VectorField};
+mod common;
+
+use pc_mech::{Graph, MechError, Style, System, VectorField};
 
 /// The heavy top in Euler's angles (ψ, θ, φ), quasi-velocities: the body angular velocity.
 fn top(graph: &Graph) -> System<'_> {
@@ -151,24 +153,7 @@ fn lagranges_equations_are_poincares() {
 #[test]
 fn the_canonical_top_prints_as_in_the_paper() {
     let graph = Graph::new();
-    let [a, b, c, m1, m2, m3] = graph.symbols(["A", "B", "C", "m1", "m2", "m3"]);
-    let mut builder = System::builder(&graph);
-    for symbol in [a, b, c, m1, m2, m3] {
-        builder = builder.parameter(symbol, 1.0);
-    }
-    let top = builder
-        .coordinates(["γ1", "γ2", "γ3"])
-        .quasi_velocities(["ω1", "ω2", "ω3"])
-        .kinematics(|_, g, w| {
-            [g[1] * w[2] - g[2] * w[1], g[2] * w[0] - g[0] * w[2], g[0] * w[1] - g[1] * w[0]]
-        })
-        .algebra(&LieAlgebra::so3())
-        .lagrangian(|_, g, w| {
-            let kinetic = (a * w[0].square() + b * w[1].square() + c * w[2].square()) / 2.0;
-            kinetic - m1 * g[0] - m2 * g[1] - m3 * g[2]
-        })
-        .build()
-        .unwrap();
+    let top = common::top_of_parameters(&graph).build().unwrap();
     let canonical = top.canonical().unwrap();
     let lines: Vec<String> =
         canonical.balance(Style::Text).into_iter().map(|(left, right)| format!("{left} = {right}")).collect();

@@ -1,0 +1,219 @@
+//! The Poisson bracket of coordinates and momenta (12).
+
+use pc_algebra::{Frame, LieAlgebra, Matrix, StructureCoefficients};
+use pc_expr::{Expr, Graph};
+
+use crate::canonical::Canonical;
+use crate::polynomials::independent;
+use crate::system::System;
+
+/// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).
+///
+/// Of a system, z = (x, y), it is
+///
+///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m   (12),
+///
+/// and generates the motion, ẋ_i = (x_i, H), ẏ_s = (y_s, H), where b_0 = 0, c_0s = 0 and Q = 0. The term
+/// c_0s^m ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f).
+/// What serves them is the [extended](System::extended_bracket) bracket.
+///
+/// Symbols that are not among the variables count as constants.
+#[derive(Clone, Debug)]
+pub struct PoissonBracket<'g> {
+    graph: &'g Graph,
+    variables: Vec<Expr<'g>>,
+    tensor: Matrix<Expr<'g>>,
+    time_momentum: Option<Expr<'g>>,
+}
+
+impl<'g> System<'g> {
+    /// The bracket (12) in the n + k variables (x, y), y being the [momenta](System::momentum_symbols).
+    ///
+    /// ```
+    /// use pc_mech::{Graph, System};
+    /// let graph = Graph::new();
+    /// let [x, p] = graph.symbols(["x", "p_x"]);
+    /// let builder = System::builder(&graph).coordinates(["x"]);
+    /// let particle = builder.lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
+    /// assert_eq!(particle.bracket().of(x.square(), p), 2.0 * x);
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn bracket(&self) -> PoissonBracket<'g> {
+        let y = self.momentum_symbols();
+        let variables = self.frame.coordinates().iter().chain(&y).copied().collect();
+        let n = self.frame.coordinates().len();
+        // Of the rows (t, x, y_0, y) those of x and y.
+        let row = |i: usize| if i < n { i + 1 } else { i + 2 };
+        let tensor = extended_tensor(&self.frame, &self.structure, &y);
+        PoissonBracket {
+            graph: self.graph(),
+            tensor: Matrix::from_fn(n + y.len(), n + y.len(), |i, j| tensor[(row(i), row(j))]),
+            variables,
+            time_momentum: None,
+        }
+    }
+
+    /// The bracket in the n + k + 2 variables (t, x, y_0, y): (12) with r, s from 0 (m from 1), y_0
+    /// conjugate to t.
+    ///
+    /// With H + y_0 it generates the motion of every system without forces Q, also where b_0 or c_0s are not
+    /// 0: ẋ_i = (x_i, H + y_0) is (11), ẏ_s = (y_s, H + y_0) is (10), and ẏ_0 = (y_0, H) = −dH/dt.
+    pub fn extended_bracket(&self) -> PoissonBracket<'g> {
+        let (t, x, y) = (self.frame.time(), self.frame.coordinates(), self.momentum_symbols());
+        let y0 = self.time_momentum_symbol(&y);
+        let variables = [t].iter().chain(x).chain(&[y0]).chain(&y).copied().collect();
+        let tensor = extended_tensor(&self.frame, &self.structure, &y);
+        PoissonBracket { graph: self.graph(), tensor, variables, time_momentum: Some(y0) }
+    }
+
+    /// The symbol of y_0: `p_t`, or one with more `p_` where that is taken.
+    fn time_momentum_symbol(&self, momenta: &[Expr<'g>]) -> Expr<'g> {
+        let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
+        let state = self.frame.coordinates().iter().chain(&self.quasi_velocities).chain(momenta).copied();
+        let taken: Vec<Expr<'g>> = state.chain(parameters).collect();
+        let mut name = format!("p_{}", self.frame.time());
+        while taken.contains(&self.graph().symbol(&name)) {
+            name.insert_str(0, "p_");
+        }
+        self.graph().symbol(&name)
+    }
+}
+
+/// The brackets of (t, x, y_0, y): (t, y_0) = 1, (x_i, y_s) = b_is, (y_s, y_r) = c_rs^m y_m with r, s from
+/// 0; all others are 0.
+fn extended_tensor<'g>(
+    frame: &Frame<'g>,
+    structure: &StructureCoefficients<'g>,
+    y: &[Expr<'g>],
+) -> Matrix<Expr<'g>> {
+    let (n, k) = (frame.coordinates().len(), y.len());
+    let (coordinate, momentum) = (|i: usize| 1 + i, |s: usize| 1 + n + s);
+    let contraction = |r, s| -> Expr<'g> { (1..=k).map(|m| structure.get(r, s, m) * y[m - 1]).sum() };
+    let size = n + k + 2;
+    let mut tensor = Matrix::from_fn(size, size, |_, _| Expr::ZERO);
+    let mut set = |i: usize, j: usize, value: Expr<'g>| {
+        tensor[(i, j)] = value;
+        tensor[(j, i)] = -value;
+    };
+    set(0, momentum(0), Expr::ONE);
+    for i in 0..n {
+        set(coordinate(i), momentum(0), frame.b0()[i]);
+        for s in 1..=k {
+            set(coordinate(i), momentum(s), frame.b()[(i, s - 1)]);
+        }
+    }
+    for r in 0..=k {
+        for s in r + 1..=k {
+            set(momentum(s), momentum(r), contraction(r, s));
+        }
+    }
+    tensor
+}
+
+impl<'g> PoissonBracket<'g> {
+    /// The Lie–Poisson bracket of an algebra, (y_s, y_r) = c_rs^m y_m, in the variables `y1`, `y2`, …: (12)
+    /// for n = 0, with the sign of *body* momenta.
+    ///
+    /// ```
+    /// use pc_mech::{Graph, LieAlgebra, PoissonBracket};
+    /// let graph = Graph::new();
+    /// let [y1, y2, y3] = graph.symbols(["y1", "y2", "y3"]);
+    /// let bracket = PoissonBracket::lie_poisson(&graph, &LieAlgebra::so3());
+    /// assert_eq!(bracket.of(y1, y2), -y3);
+    /// assert!(bracket.is_casimir(y1.square() + y2.square() + y3.square()));
+    /// ```
+    pub fn lie_poisson(graph: &'g Graph, algebra: &LieAlgebra) -> PoissonBracket<'g> {
+        let k = algebra.dim();
+        let y: Vec<Expr<'g>> = (1..=k).map(|s| graph.symbol(&format!("y{s}"))).collect();
+        let entry = |s: usize, r: usize| -> Expr<'g> {
+            (0..k).map(|m| Expr::from(algebra.constant(r, s, m)) * y[m]).sum()
+        };
+        PoissonBracket { graph, tensor: Matrix::from_fn(k, k, entry), variables: y, time_momentum: None }
+    }
+
+    /// The graph of all its expressions.
+    pub fn graph(&self) -> &'g Graph {
+        self.graph
+    }
+
+    /// The variables z: (x, y), or (t, x, y_0, y) of the extended bracket.
+    pub fn variables(&self) -> &[Expr<'g>] {
+        &self.variables
+    }
+
+    /// The symbol y_0 of the extended bracket: its Hamiltonian is H + y_0.
+    pub fn time_momentum(&self) -> Option<Expr<'g>> {
+        self.time_momentum
+    }
+
+    /// The Poisson tensor P_ij = (z_i, z_j), square and skew.
+    pub fn tensor(&self) -> &Matrix<Expr<'g>> {
+        &self.tensor
+    }
+
+    /// (f, g)
+    ///
+    /// The bracket of two integrals of the motion that it generates is an integral (Poisson's theorem); see
+    /// [`closure`](PoissonBracket::closure).
+    pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Expr<'g> {
+        self.rates(&[f], g)[0]
+    }
+
+    /// The rates (f, h) of the functions f along the flow of h, ż_i = (z_i, h).
+    pub fn rates(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Vec<Expr<'g>> {
+        let field = self.variables.iter().copied().zip(self.field(h)).collect::<Vec<_>>();
+        self.graph.directional(functions, &field)
+    }
+
+    /// The components (z_i, h) = P_ij ∂h/∂z_j of the vector field of h, as many as variables.
+    pub fn field(&self, h: Expr<'g>) -> Vec<Expr<'g>> {
+        let slope = self.graph.gradient(h, &self.variables);
+        let component = |i: usize| self.graph.dot(self.tensor.row(i).iter().copied(), slope.iter().copied());
+        (0..self.variables.len()).map(component).collect()
+    }
+
+    /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)): zero, by Jacobi's identity.
+    pub fn jacobi_defect(&self, f: Expr<'g>, g: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
+        let cycle = [(f, g, h), (g, h, f), (h, f, g)];
+        self.graph.sum(cycle.map(|(f, g, h)| self.of(f, self.of(g, h))))
+    }
+
+    /// The functions and what their brackets, the brackets of these and so on add to them: functionally
+    /// independent, the given ones first, as far as they are independent themselves. Integrals give
+    /// integrals.
+    pub fn closure(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let new = |known: &[Expr<'g>], f: &[Expr<'g>]| {
+            independent(self.graph, &self.variables, known, f.iter().copied())
+        };
+        let mut all = new(&[], functions);
+        let mut last = 1;
+        while last < all.len() {
+            for first in 0..last {
+                let bracket = self.of(all[first], all[last]);
+                all.extend(new(&all, &[bracket]));
+            }
+            last += 1;
+        }
+        all
+    }
+
+    /// Rank of the Poisson tensor at almost all points, always even.
+    pub fn rank(&self) -> usize {
+        self.graph.generic_rank(&self.tensor.to_rows())
+    }
+
+    /// Number of variables less rank: so many independent Casimirs there are near almost every point.
+    pub fn corank(&self) -> usize {
+        self.variables.len() - self.rank()
+    }
+}
+
+impl<'g> Canonical<'g> {
+    /// The function f(t, x, η) in terms of (t, x, y).
+    #[must_use]
+    pub fn in_momenta(&self, f: Expr<'g>) -> Expr<'g> {
+        let (system, eta) = (self.system(), self.quasi_velocities());
+        let values: Vec<_> = system.quasi_velocities().iter().copied().zip(eta.iter().copied()).collect();
+        system.graph().substitute(&[f], &values)[0]
+    }
+}

@@ -1,0 +1,139 @@
+//! Rates of change along the motion, and whether they vanish.
+
+use pc_expr::{Expr, Graph};
+
+use crate::canonical::Canonical;
+use crate::poincare::Equations;
+use crate::system::System;
+
+/// What is known of a function along the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Conservation<'g> {
+    /// Its rate vanishes identically: it is an integral.
+    Conserved,
+    /// Its rate vanishes identically for the values that the parameters have.
+    ConservedHere,
+    /// The rate, which the graph does not fold to zero.
+    Changing(Expr<'g>),
+}
+
+impl Conservation<'_> {
+    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    pub fn is_conserved(self) -> bool {
+        !matches!(self, Conservation::Changing(_))
+    }
+}
+
+/// The derivative along the motion, df/dt = ∂f/∂t + ẋ_i ∂f/∂x_i + η̇_s ∂f/∂η_s, or with y_s in place of η_s.
+///
+/// Of [`Equations`] for functions of (t, x, η, η̇), nonholonomic ones included, and of [`Canonical`]
+/// equations for functions of (t, x, y).
+#[derive(Clone, Debug)]
+pub struct Rates<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) time: Expr<'g>,
+    pub(crate) coordinates: Vec<Expr<'g>>,
+    /// η or y
+    pub(crate) moving: Vec<Expr<'g>>,
+    parameters: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The symbols of η̇ with their expressions in (t, x, η).
+    accelerations: Vec<(Expr<'g>, Expr<'g>)>,
+    /// Each symbol that changes, with its rate.
+    pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'g> Equations<'g> {
+    /// The derivative along the motion of functions of (t, x, η, η̇).
+    pub fn rates(&self) -> Rates<'g> {
+        let (system, accelerations) = (self.system(), self.accelerations());
+        let symbols = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
+        Rates::new(system, system.quasi_velocities(), self.velocities(), &accelerations, symbols)
+    }
+}
+
+impl<'g> Canonical<'g> {
+    /// The derivative along the motion of functions of (t, x, y).
+    pub fn rates(&self) -> Rates<'g> {
+        Rates::new(self.system(), self.momenta(), self.velocities(), self.right_hand_side(), Vec::new())
+    }
+}
+
+impl<'g> Rates<'g> {
+    fn new(
+        system: &System<'g>,
+        moving: &[Expr<'g>],
+        velocities: &[Expr<'g>],
+        right: &[Expr<'g>],
+        accelerations: Vec<(Expr<'g>, Expr<'g>)>,
+    ) -> Rates<'g> {
+        let (time, x) = (system.frame().time(), system.frame().coordinates());
+        let state = x.iter().chain(moving).copied();
+        let flow = state.zip(velocities.iter().chain(right).copied()).chain([(time, Expr::ONE)]);
+        Rates {
+            graph: system.graph(),
+            time,
+            coordinates: x.to_vec(),
+            moving: moving.to_vec(),
+            parameters: system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect(),
+            accelerations,
+            flow: flow.collect(),
+        }
+    }
+
+    /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
+    pub fn of(&self, f: Expr<'g>) -> Expr<'g> {
+        self.of_all(&[f])[0]
+    }
+
+    /// The rates of several functions, as many as these.
+    pub fn of_all(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let functions = self.graph.substitute(functions, &self.accelerations);
+        self.graph.directional(&functions, &self.flow)
+    }
+
+    /// Whether the motion keeps f constant. [`Conservation::Changing`] is no proof of the contrary where the
+    /// rate contains roots, logarithms or the like: the graph knows few of their identities.
+    pub fn verdict(&self, f: Expr<'g>) -> Conservation<'g> {
+        let rate = self.of(f);
+        if rate.is_zero() {
+            Conservation::Conserved
+        } else if self.graph.substitute(&[rate], &self.parameters)[0].is_zero() {
+            Conservation::ConservedHere
+        } else {
+            Conservation::Changing(rate)
+        }
+    }
+
+    /// The derivative with the parameters replaced by their numbers.
+    #[must_use]
+    pub fn with_parameters_bound(&self) -> Rates<'g> {
+        let bind = |pairs: &[(Expr<'g>, Expr<'g>)]| -> Vec<_> {
+            pairs.iter().map(|&(s, rate)| (s, self.graph.substitute(&[rate], &self.parameters)[0])).collect()
+        };
+        Rates {
+            flow: bind(&self.flow),
+            accelerations: bind(&self.accelerations),
+            parameters: Vec::new(),
+            ..self.clone()
+        }
+    }
+}
+
+impl<'g> System<'g> {
+    /// The rate of the energy H = y_s η_s − L along the motion,
+    ///
+    ///   dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s,
+    ///
+    /// in terms of (t, x, η): X_0 H at fixed y is −X_0 L at fixed η, so that no y has to be solved for η.
+    /// Where neither L nor the frame depends on time and b_0 = 0, what is left is the power Q_s η_s of the
+    /// forces.
+    pub fn energy_rate(&self) -> Expr<'g> {
+        let (graph, eta) = (self.graph(), self.quasi_velocities());
+        let explicit = self.frame.apply(0, &[self.lagrangian])[0];
+        let y = self.momenta();
+        let drift = self.structure.nonzero().filter(|&(r, ..)| r == 0);
+        let drift = drift.map(|(_, r, m, c)| c * eta[r - 1] * y[m - 1]);
+        let power = self.forces.iter().zip(eta).map(|(&q, &eta)| q * eta);
+        graph.sum(drift.chain(power).chain([-explicit]))
+    }
+}

@@ -1,0 +1,186 @@
+//! Rates along the motion, the energy's among them, and cyclic displacements.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use pc_mech::{Conservation, Expr, Graph, LieAlgebra, Number, System, SystemBuilder, VectorField};
+
+/// A top with the moments of inertia A, B, C as parameters.
+fn top<'g>(graph: &'g Graph, inertia: [f64; 3], m: [f64; 3]) -> System<'g> {
+    let symbols = graph.symbols(["A", "B", "C"]);
+    let builder = common::top(graph, symbols, m.map(Expr::from));
+    let builder =
+        symbols.into_iter().zip(inertia).fold(builder, |builder, (i, value)| builder.parameter(i, value));
+    builder.build().unwrap()
+}
+
+/// b, b_0, L and Q depend on time, b_0 ≠ 0, c_0s ≠ 0, L has terms linear in η.
+fn driven(graph: &Graph) -> SystemBuilder<'_> {
+    common::driven(graph).forces(|t, x, eta| [x[1] - eta[0] / 3.0, t * eta[1] * x[0]])
+}
+
+fn quadratic<'g>(t: Expr<'g>, x: &[Expr<'g>], eta: &[Expr<'g>]) -> Expr<'g> {
+    let kinetic = (eta[0].square() + t.sin() * eta[0] * eta[1] + 3.0 * eta[1].square()) / 2.0;
+    kinetic + t * x[1] * eta[0] + x[0] * eta[1] - x[0].square() * x[1] / 2.0
+}
+
+#[test]
+fn verdicts_on_the_top() {
+    let graph = Graph::new();
+    let lagrange = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]);
+    let [a, b, c, g1, g2, g3, w1, w2, w3] =
+        graph.symbols(["A", "B", "C", "γ1", "γ2", "γ3", "ω1", "ω2", "ω3"]);
+    let rates = lagrange.poincare().unwrap().rates();
+    let area = a * w1 * g1 + b * w2 * g2 + c * w3 * g3;
+    for integral in [lagrange.energy(), area, g1.square() + g2.square() + g3.square()] {
+        assert_eq!(rates.verdict(integral), Conservation::Conserved);
+    }
+    assert_eq!(rates.verdict(w3), Conservation::ConservedHere); // A = B
+    assert_eq!(rates.with_parameters_bound().verdict(w3), Conservation::Conserved);
+    assert_eq!(rates.verdict(g3), Conservation::Changing(g1 * w2 - g2 * w1));
+    assert!(!rates.verdict(g3).is_conserved() && rates.verdict(w3).is_conserved());
+    // η̇ may stand in the function: C ω3' = (A − B) ω1 ω2.
+    let w3_rate = graph.symbol("ω3'");
+    assert_eq!(rates.verdict(c * w3_rate - (a - b) * w1 * w2), Conservation::Conserved);
+    // The same in momenta.
+    let canonical = lagrange.canonical().unwrap();
+    let rates = canonical.rates();
+    assert_eq!(rates.verdict(canonical.hamiltonian()), Conservation::Conserved);
+    assert_eq!(canonical.in_momenta(lagrange.energy()), canonical.hamiltonian());
+    assert_eq!(rates.verdict(canonical.in_momenta(area)), Conservation::Conserved);
+    assert_eq!(rates.verdict(canonical.in_momenta(w3)), Conservation::ConservedHere);
+}
+
+/// ∂E/∂t + ẋ ∂E/∂x + η̇ ∂E/∂η with E = y·η − L and the rates that the compiled motion has.
+fn energy_rate_along<'g>(system: &System<'g>, point: &[(Expr<'g>, f64)]) -> f64 {
+    let graph = system.graph();
+    let (t, x) = (system.frame().time(), system.frame().coordinates());
+    let symbols: Vec<Expr<'g>> = x.iter().chain(system.quasi_velocities()).chain([&t]).copied().collect();
+    let at = |symbol: Expr<'g>| point.iter().find(|(s, _)| *s == symbol).map_or(0.0, |&(_, value)| value);
+    let state: Vec<f64> = symbols[..symbols.len() - 1].iter().map(|&symbol| at(symbol)).collect();
+    let mut rates = vec![1.0; symbols.len()];
+    let mut motion = system.poincare().unwrap().compile().unwrap();
+    motion.rhs(at(t), &state, &mut rates[..state.len()]).unwrap();
+    let slopes = graph.evaluate(&graph.gradient(system.energy(), &symbols), point).unwrap();
+    slopes.iter().zip(&rates).map(|(slope, rate)| slope * rate).sum()
+}
+
+/// dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s against the derivative of y·η − L along the motion: in numbers
+/// to the rounding of some hundred operations, and where no roots are in the way as expressions.
+#[test]
+fn the_energy_changes_at_the_rate_it_should() {
+    let graph = Graph::new();
+    let hoop = System::builder(&graph)
+        .coordinates(["θ"])
+        .quasi_velocities(["η"])
+        .kinematics(|t, x, eta| [eta[0] * (-t / 5.0).exp() + t.sin() * x[0].cos()])
+        .lagrangian(|t, x, eta| (eta[0].square() + 9.0 * x[0].sin().square()) / 2.0 + (4.0 + t) * x[0].cos())
+        .build()
+        .unwrap();
+    // A bead on a wire that turns in its plane, n > k: η = (1 + t/2) ṙ, c_01^1 = −1/(2 + t).
+    let wire = System::builder(&graph)
+        .coordinates(["X", "Y"])
+        .quasi_velocities(["η"])
+        .kinematics(|t, x, eta| {
+            let slide = eta[0] / (1.0 + t / 2.0);
+            [slide * t.cos() - x[1], slide * t.sin() + x[0]]
+        })
+        .lagrangian(|t, x, eta| {
+            let slide = eta[0] / (1.0 + t / 2.0);
+            let velocity = [slide * t.cos() - x[1], slide * t.sin() + x[0]];
+            (velocity[0].square() + velocity[1].square()) / 2.0 - 3.0 * x[1]
+        })
+        .build()
+        .unwrap();
+    let relativistic = driven(&graph)
+        .lagrangian(|t, x, eta| {
+            t.cos() * x[0] - 9.0 * (1.0 - (eta[0].square() + eta[1].square()) / 9.0).sqrt()
+        })
+        .build()
+        .unwrap();
+    let quadratic = driven(&graph).lagrangian(quadratic).build().unwrap();
+    for system in [&quadratic, &hoop, &wire, &relativistic] {
+        assert!(system.structure().nonzero().any(|(r, ..)| r == 0));
+        for i in 0..20 {
+            let value = |j: usize| 0.7 * ((i * 7 + j * 13) as f64 * 0.618).sin();
+            let eta = system.quasi_velocities();
+            let symbols = [system.frame().time()];
+            let symbols = symbols.iter().chain(system.frame().coordinates()).chain(eta);
+            let point: Vec<_> = symbols.enumerate().map(|(j, &symbol)| (symbol, value(j))).collect();
+            let found = graph.evaluate(&[system.energy_rate()], &point).unwrap()[0];
+            let expected = energy_rate_along(system, &point);
+            assert!((found - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{found} {expected}");
+        }
+    }
+    for system in [&quadratic, &hoop, &wire] {
+        assert_eq!(system.poincare().unwrap().rates().of(system.energy()), system.energy_rate());
+    }
+    assert!(top(&graph, [1.0, 2.0, 3.0], [1.0, 0.0, 1.0]).energy_rate().is_zero());
+}
+
+fn cyclic(system: &System<'_>) -> Vec<(Vec<Number>, bool)> {
+    let rates = system.poincare().unwrap().rates();
+    let displacements = system.cyclic_displacements();
+    for displacement in &displacements {
+        assert_eq!(rates.verdict(displacement.momentum), Conservation::Conserved, "{displacement:?}");
+    }
+    displacements.into_iter().map(|d| (d.coefficients, d.commutes)).collect()
+}
+
+fn whole<const N: usize>(coefficients: [i32; N]) -> Vec<Number> {
+    coefficients.map(Number::integer).to_vec()
+}
+
+/// Coordinates that do not occur in L are cyclic, and so are directions in which L does not change.
+#[test]
+fn cyclic_coordinates_are_cyclic_displacements() {
+    let graph = Graph::new();
+    let m = graph.symbol("m");
+    let top = System::builder(&graph)
+        .coordinates(["ψ", "θ", "φ"])
+        .lagrangian(|_, x, v| {
+            let (precession, spin) = (v[0] * x[1].sin(), v[2] + v[0] * x[1].cos());
+            (v[1].square() + precession.square() + spin.square() / 2.0) / 2.0 - m * x[1].cos()
+        })
+        .build()
+        .unwrap();
+    assert_eq!(cyclic(&top), [(whole([1, 0, 0]), true), (whole([0, 0, 1]), true)]);
+    let slope = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, x, v| {
+            let kinetic = v[0].square() + v[1].square() + v[2].square();
+            m * kinetic / 2.0 - m * (2.0 * x[0] + 3.0 * x[1] - x[2])
+        })
+        .build()
+        .unwrap();
+    let expected = [(whole([3, -2, 0]), true), (whole([1, 0, 2]), true)];
+    assert_eq!(cyclic(&slope), expected);
+    // Friction along x spoils what contains x.
+    let rough = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .forces(|_, _, v| [-v[0], Expr::ZERO])
+        .build()
+        .unwrap();
+    assert_eq!(cyclic(&rough), [(whole([0, 1]), true)]);
+}
+
+/// Lagrange's top in body axes: X_3 does not commute with X_1 and X_2, but A = B.
+#[test]
+fn lagranges_top_has_one_by_its_symmetry() {
+    let graph = Graph::new();
+    let lagrange = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]);
+    assert_eq!(cyclic(&lagrange), []);
+    assert_eq!(cyclic(&lagrange.with_parameters_bound()), [(whole([0, 0, 1]), false)]);
+    let ball = top(&graph, [2.0, 2.0, 2.0], [3.0, 0.0, 4.0]).with_parameters_bound();
+    assert_eq!(cyclic(&ball), [(whole([3, 0, 4]), false)]);
+    // The central displacement of Heisenberg's algebra, whatever the metric.
+    let heisenberg = System::builder(&graph)
+        .quasi_velocities(["u", "v", "w"])
+        .algebra(&LieAlgebra::named("heisenberg").unwrap())
+        .lagrangian(|_, _, eta| (eta[0].square() + (eta[1] + 2.0 * eta[2]).square() + eta[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    assert_eq!(cyclic(&heisenberg), [(whole([0, 0, 1]), true)]);
+}
