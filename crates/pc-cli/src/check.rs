@@ -1,15 +1,14 @@
 //! `pc check`: whether a model holds together.
 
-use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood, VectorField};
+use pc_mech::{Conservation, Equations, Expr, Graph, MechError, Neighbourhood, Number, System, VectorField};
 use pc_model::{Assembly, Model};
 use serde_json::{Value, json};
 
 use crate::args::{CheckArguments, Format};
-use crate::conservation::{Rates, Verdict};
 use crate::derive::{Operations, counted, recognised};
 use crate::error::CliError;
 use crate::input;
-use crate::text::{assignments, columns, labelled, print, short, small, wrapped};
+use crate::text::{assignments, columns, combination, labelled, print, short, small, wrapped};
 
 /// Prints what can be said of a model before it is run.
 ///
@@ -75,15 +74,24 @@ impl Report {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let rates = Rates::new(equations, assembly.t_start, &assembly.start);
-        let declared = system.integrals().iter().map(|(name, value)| (name.as_str(), *value, "declared"));
+        let rates = equations.rates();
+        let verdict = |function| match rates.verdict(function) {
+            Conservation::Conserved => Verdict::Conserved,
+            Conservation::ConservedHere => Verdict::ConservedHere,
+            Conservation::Changing(rate) => {
+                let value = graph.evaluate(&[rate], &near.centre).ok();
+                Verdict::Rate(value.map(|values| values[0]).filter(|value| value.is_finite()))
+            }
+        };
+        let declared = system.integrals().iter().map(|(name, value)| (name.clone(), *value, "declared"));
         let integrals = declared
-            .chain([("energy", equations.energy(), "energy")])
+            .chain([("energy".to_owned(), equations.energy(), "energy")])
+            .chain(cyclic_momenta(system))
             .map(|(name, value, how)| Integral {
-                name: name.to_owned(),
+                name,
                 expression: value.to_string(),
                 how,
-                verdict: rates.verdict(value),
+                verdict: verdict(value),
             })
             .collect();
         Ok(Report {
@@ -201,6 +209,36 @@ impl Report {
             "integrals": integrals,
         })
     }
+}
+
+/// The momenta of cyclic displacements that are not declared as integrals, for the values of the parameters.
+fn cyclic_momenta<'g>(system: &System<'g>) -> Vec<(String, Expr<'g>, &'static str)> {
+    let bound = system.with_parameters_bound();
+    let is_declared = |momentum: Expr<'g>| {
+        let mut known = bound.integrals().iter().filter(|(_, known)| !known.is_zero());
+        known.any(|&(_, known)| (momentum / known).constant().is_some())
+    };
+    let name = |coefficients: &[Number]| {
+        let names = system.quasi_velocities().iter().map(ToString::to_string);
+        format!("momentum of {}", combination(coefficients.iter().map(ToString::to_string).zip(names)))
+    };
+    bound
+        .cyclic_displacements()
+        .into_iter()
+        .filter(|cyclic| !is_declared(cyclic.momentum))
+        .map(|cyclic| (name(&cyclic.coefficients), cyclic.momentum, "cyclic displacement"))
+        .collect()
+}
+
+/// What is known of the rate of change of a function along the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict {
+    /// It vanishes identically.
+    Conserved,
+    /// It vanishes identically for these values of the parameters.
+    ConservedHere,
+    /// It is not seen to vanish; its value at the start, if it has one.
+    Rate(Option<f64>),
 }
 
 impl Verdict {

@@ -14,7 +14,6 @@
 pub mod args;
 pub mod canonical;
 pub mod check;
-pub mod conservation;
 pub mod derive;
 pub mod emit;
 pub mod error;

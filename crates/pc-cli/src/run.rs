@@ -8,7 +8,6 @@ use pc_model::Model;
 use pc_solve::{SolveError, Statistics, solve_observed};
 
 use crate::args::{RunArguments, RunForm};
-use crate::conservation::keeps_energy;
 use crate::error::CliError;
 use crate::flow::Flow;
 use crate::output::Destination;
@@ -122,7 +121,7 @@ pub fn integrate(
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
         table: Table::new(&mut flow, &trajectory),
-        keeps_energy: keeps_energy(&assembly.system),
+        keeps_energy: assembly.system.energy_rate().is_zero(),
         statistics: *trajectory.statistics(),
         plan,
         ending,

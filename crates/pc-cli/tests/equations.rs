@@ -76,6 +76,23 @@ fn integrals_are_proved_or_not() {
 }
 
 #[test]
+fn momenta_of_cyclic_displacements_are_found() {
+    let model = "[parameters]\nA = 1\nC = 2\nmgl = 3\n[coordinates]\ng1 = 0\ng2 = 0\ng3 = 1\n[quasi_velocities]\nw1 = 1\n\
+                 w2 = 0\nw3 = 1\n[kinematics]\ng1 = \"g2*w3 - g3*w2\"\ng2 = \"g3*w1 - g1*w3\"\ng3 = \"g1*w2 - g2*w1\"\n\
+                 [algebra]\nname = \"so3\"\n[lagrangian]\nkinetic = \"(A*(w1^2 + w2^2) + C*w3^2)/2\"\n\
+                 potential = \"mgl*g3\"\n";
+    let path = std::env::temp_dir().join(format!("pc-cyclic-{}.toml", std::process::id()));
+    std::fs::write(&path, model).expect("a file");
+    let report = json(&["check", path.to_str().expect("UTF-8")]);
+    std::fs::remove_file(&path).expect("the file");
+    let found = report["integrals"].as_array().expect("a list").last().expect("an integral").clone();
+    assert_eq!(found["name"], "momentum of w3");
+    assert_eq!(found["expression"], "2*w3");
+    assert_eq!(found["how"], "cyclic displacement");
+    assert!(found["verdict"].as_str().expect("text").contains("(proved)"));
+}
+
+#[test]
 fn a_check_as_an_object() {
     let report = json(&["check", "heavy-top-lagrange"]);
     assert_eq!(report["rank"], 2);
