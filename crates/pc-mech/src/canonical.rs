@@ -3,12 +3,12 @@
 use pc_expr::{Expr, Style};
 
 use crate::book::expanded;
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::ldl::Factors;
+use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
+use crate::compiled::options::CompileOptions;
 use crate::error::MechError;
-use crate::first_order::FirstOrder;
-use crate::ldl::Factors;
 use crate::legendre::Legendre;
-use crate::motion::{LONGEST_ELIMINATION, Motion};
-use crate::options::CompileOptions;
 use crate::system::System;
 
 /// The canonical equations in coordinates and momenta y_s = ∂L/∂η_s, with H(t, x, y) = y_s η_s − L:

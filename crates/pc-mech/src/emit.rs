@@ -5,9 +5,9 @@ mod rust;
 
 use pc_expr::{Body, Calls, Expr, Language, Layout, Place, Program, Slot};
 
+use crate::compiled::first_order::{FirstOrder, Linearised};
+use crate::compiled::ldl::Factors;
 use crate::error::MechError;
-use crate::first_order::{FirstOrder, Linearised};
-use crate::ldl::Factors;
 use crate::poincare::Equations;
 
 /// Equations longer than this are not shown in the comment at the head of a file.

@@ -1,14 +1,16 @@
 //! Hamilton–Jacobi's equation in quasi-velocities, and Jacobi's theorem.
 
+mod roots;
+
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::canonical::Canonical;
+use crate::compiled::fault::{Fault, check_finite};
 use crate::error::MechError;
-use crate::fault::{Fault, check_finite};
-use crate::newton;
-use crate::roots::vanishes;
-use crate::steady::check_length;
+use crate::numeric::newton;
+use crate::stability::steady::check_length;
+use roots::vanishes;
 
 /// The most steps of Newton's method for one position.
 const MOST_STEPS: usize = 100;
@@ -170,7 +172,7 @@ impl<'g> CompleteIntegral<'g> {
             Ok((difference, Matrix::from_fn(k, k, |s, i| values[k + s * k + i])))
         })?;
         if !end.is_solution(ENOUGH) {
-            let residual = crate::dense::norm(&end.values);
+            let residual = crate::numeric::dense::norm(&end.values);
             let coordinates = self.coordinates.iter().cloned().zip(end.point).collect();
             return Err(MechError::NoPosition { residual, iterations: end.iterations, t, coordinates });
         }

@@ -3,8 +3,8 @@
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
+use crate::compiled::ldl::Factors;
 use crate::error::MechError;
-use crate::ldl::Factors;
 use crate::system::System;
 
 /// The equations of motion ẋ = b η + b_0, M η̇ = r.

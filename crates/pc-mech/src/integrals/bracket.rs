@@ -4,7 +4,7 @@ use pc_algebra::{Frame, LieAlgebra, Matrix, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
 use crate::canonical::Canonical;
-use crate::polynomials::independent;
+use crate::integrals::polynomials::independent;
 use crate::system::System;
 
 /// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).

@@ -2,12 +2,12 @@
 
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
 
-use crate::columns::{Columns, Layout, derivative};
-use crate::fault::{Fault, blame, check_finite};
-use crate::first_order::{FirstOrder, Linearised};
-use crate::ldl::Factors;
-use crate::options::CompileOptions;
-use crate::pivots::Pivots;
+use crate::compiled::columns::{Columns, Layout, derivative};
+use crate::compiled::fault::{Fault, blame, check_finite};
+use crate::compiled::first_order::{FirstOrder, Linearised};
+use crate::compiled::ldl::Factors;
+use crate::compiled::options::CompileOptions;
+use crate::compiled::pivots::Pivots;
 
 /// ẏ = g(t, y, M⁻¹ r) and its derivatives.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Program};
 
-use crate::fault::Fault;
-use crate::first_order::FirstOrder;
-use crate::ldl::Factors;
+use crate::compiled::fault::Fault;
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::ldl::Factors;
 
 /// A pivot this small against the largest diagonal entry of M is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;

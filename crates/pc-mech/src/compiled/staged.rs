@@ -4,11 +4,11 @@
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
 
-use crate::columns::{Layout, derivative, nonzeros};
-use crate::dense_ldl::DenseLdl;
-use crate::fault::{Fault, check_finite};
-use crate::first_order::FirstOrder;
-use crate::options::CompileOptions;
+use crate::compiled::columns::{Layout, derivative, nonzeros};
+use crate::compiled::dense_ldl::DenseLdl;
+use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::options::CompileOptions;
 
 /// ẏ = g(t, y, w) and its derivatives, with w from M w = r.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use pc_expr::{Graph, VectorField};
 
-use crate::motion::Motion;
-use crate::options::CompileOptions;
+use crate::compiled::motion::Motion;
+use crate::compiled::options::CompileOptions;
 use crate::poincare::Equations;
 use crate::system::System;
 

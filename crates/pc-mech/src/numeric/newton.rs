@@ -2,8 +2,8 @@
 
 use pc_algebra::Matrix;
 
-use crate::dense::{SingularValues, norm};
 use crate::error::MechError;
+use crate::numeric::dense::{SingularValues, norm};
 
 /// How often a step is halved before the iteration is taken to have ended.
 const HALVINGS: usize = 40;

@@ -2,8 +2,8 @@
 
 use pc_expr::Expr;
 
-use crate::bracket::PoissonBracket;
-use crate::polynomials::{Generator, combination, independent, monomials};
+use crate::integrals::bracket::PoissonBracket;
+use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
 impl<'g> PoissonBracket<'g> {
     /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: then f is an integral

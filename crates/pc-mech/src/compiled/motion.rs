@@ -2,15 +2,15 @@
 
 use pc_expr::{Cost, Expr, Failure, Pattern, VectorField};
 
-use crate::columns::Layout;
-use crate::elimination;
+use crate::compiled::columns::Layout;
+use crate::compiled::elimination;
+use crate::compiled::fault::Fault;
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::options::CompileOptions;
+use crate::compiled::staged::Staged;
+use crate::compiled::unrolled::Unrolled;
 use crate::error::MechError;
-use crate::fault::Fault;
-use crate::first_order::FirstOrder;
-use crate::options::CompileOptions;
 use crate::poincare::Equations;
-use crate::staged::Staged;
-use crate::unrolled::Unrolled;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
 /// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.

@@ -4,8 +4,8 @@ use std::fmt;
 
 use pc_algebra::Matrix;
 
-use crate::dense::{SingularValues, eigenvalues, norm, product};
 use crate::error::MechError;
+use crate::numeric::dense::{SingularValues, eigenvalues, norm, product};
 
 /// What is known of the stability of an equilibrium or a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use pc_algebra::Matrix;
 
-use crate::dense::{norm, symmetric_eigenvalues};
 use crate::error::MechError;
+use crate::numeric::dense::{norm, symmetric_eigenvalues};
 
 /// Steps of the search for each pair of forms: a step lessens the volume by e^(−1/(2K + 2)).
 const STEPS: usize = 1000;

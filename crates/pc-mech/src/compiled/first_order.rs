@@ -3,7 +3,7 @@
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph, Inputs};
 
-use crate::ldl::Factors;
+use crate::compiled::ldl::Factors;
 
 /// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric.
 ///

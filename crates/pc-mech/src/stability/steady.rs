@@ -3,10 +3,10 @@
 use pc_algebra::Matrix;
 use pc_expr::{Pattern, VectorField};
 
+use crate::compiled::motion::Motion;
 use crate::error::MechError;
-use crate::motion::Motion;
-use crate::newton;
-use crate::spectrum::{Spectrum, Verdict};
+use crate::numeric::newton;
+use crate::stability::spectrum::{Spectrum, Verdict};
 
 /// How a steady motion is looked for.
 ///
@@ -147,7 +147,7 @@ impl Motion {
         for (&j, &value) in free.iter().zip(&end.point) {
             state[j] = value;
         }
-        let residual = crate::dense::norm(&end.values);
+        let residual = crate::numeric::dense::norm(&end.values);
         if !end.is_solution(options.tolerance) {
             let state = self.names().iter().cloned().zip(state).collect();
             return Err(MechError::NoSteadyMotion { residual, iterations: end.iterations, t, state });

@@ -4,12 +4,12 @@
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
-use crate::definite::{combination, definite_combination};
-use crate::dense::{SingularValues, norm, product, symmetric_eigenvalues};
 use crate::error::MechError;
+use crate::numeric::dense::{SingularValues, norm, product, symmetric_eigenvalues};
 use crate::poincare::Equations;
-use crate::spectrum::Verdict;
-use crate::steady::check_length;
+use crate::stability::definite::{combination, definite_combination};
+use crate::stability::spectrum::Verdict;
+use crate::stability::steady::check_length;
 
 /// The second variation of F = H + λ_j I_j at a steady motion where dF = 0, on the deviations with dI_j = 0.
 #[derive(Clone, Debug, PartialEq)]

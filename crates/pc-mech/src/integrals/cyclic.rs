@@ -2,7 +2,7 @@
 
 use pc_expr::{Expr, Number};
 
-use crate::polynomials::combination;
+use crate::integrals::polynomials::combination;
 use crate::system::System;
 
 /// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion keeps.

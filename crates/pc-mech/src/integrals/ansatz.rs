@@ -2,8 +2,8 @@
 
 use pc_expr::{Expr, Function, Number, Scalar};
 
-use crate::conserved::Rates;
-use crate::polynomials::{Generator, combination, independent, monomials};
+use crate::integrals::conserved::Rates;
+use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
 /// What first integrals are looked for among: Σ a_jl m_j f_l with rational a_jl, the m_j being the monomials
 /// in the quasi-velocities (or momenta) up to a degree, the f_l given functions of (t, x).

@@ -1,0 +1,17 @@
+//! From expressions to a compiled motion.
+//!
+//! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Its mass
+//! matrix is eliminated in expressions ([`unrolled`], by [`ldl`]) or in numbers ([`staged`], by [`dense_ldl`]), as
+//! [`elimination`] finds cheaper.
+
+pub(crate) mod columns;
+pub(crate) mod dense_ldl;
+pub(crate) mod elimination;
+pub(crate) mod fault;
+pub(crate) mod first_order;
+pub(crate) mod ldl;
+pub(crate) mod motion;
+pub(crate) mod options;
+pub(crate) mod pivots;
+pub(crate) mod staged;
+pub(crate) mod unrolled;
