@@ -9,17 +9,11 @@ use pc_mech::{Graph, MechError, Style, System, VectorField};
 /// The heavy top in Euler's angles (ψ, θ, φ), quasi-velocities: the body angular velocity.
 fn top(graph: &Graph) -> System<'_> {
     let [a, b, c, mgl] = graph.symbols(["A", "B", "C", "mgl"]);
-    System::builder(graph)
+    common::in_eulers_angles(graph)
         .parameter(a, 1.0)
         .parameter(b, 1.5)
         .parameter(c, 0.5)
         .parameter(mgl, 2.0)
-        .coordinates(["ψ", "θ", "φ"])
-        .quasi_velocities(["ω1", "ω2", "ω3"])
-        .kinematics(|_, x, w| {
-            let across = w[0] * x[2].sin() + w[1] * x[2].cos();
-            [across / x[1].sin(), w[0] * x[2].cos() - w[1] * x[2].sin(), w[2] - x[1].cot() * across]
-        })
         .lagrangian(|_, x, w| {
             (a * w[0].square() + b * w[1].square() + c * w[2].square()) / 2.0 - mgl * x[1].cos()
         })

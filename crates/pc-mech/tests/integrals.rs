@@ -90,13 +90,7 @@ fn kovalevskayas_top_has_hers() {
 #[test]
 fn angles_enter_by_sine_and_cosine() {
     let graph = Graph::new();
-    let system = System::builder(&graph)
-        .coordinates(["ψ", "θ", "φ"])
-        .quasi_velocities(["ω1", "ω2", "ω3"])
-        .kinematics(|_, x, w| {
-            let across = w[0] * x[2].sin() + w[1] * x[2].cos();
-            [across / x[1].sin(), w[0] * x[2].cos() - w[1] * x[2].sin(), w[2] - x[1].cot() * across]
-        })
+    let system = common::in_eulers_angles(&graph)
         .lagrangian(|_, x, w| {
             (2.0 * w[0].square() + 3.0 * w[1].square() + 4.0 * w[2].square()) / 2.0
                 - x[1].cos()

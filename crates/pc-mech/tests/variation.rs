@@ -2,18 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod common;
+
 use pc_mech::{CompileOptions, Graph, MechError, Motion, System, Variation, VectorField};
 
 /// A heavy top with three moments of inertia in Euler's angles, in canonical form.
 fn top() -> Motion {
     let graph = Graph::new();
-    let top = System::builder(&graph)
-        .coordinates(["ψ", "θ", "φ"])
-        .quasi_velocities(["ω1", "ω2", "ω3"])
-        .kinematics(|_, x, w| {
-            let across = w[0] * x[2].sin() + w[1] * x[2].cos();
-            [across / x[1].sin(), w[0] * x[2].cos() - w[1] * x[2].sin(), w[2] - x[1].cot() * across]
-        })
+    let top = common::in_eulers_angles(&graph)
         .lagrangian(|_, x, w| {
             let kinetic = (w[0].square() + 1.5 * w[1].square() + 0.5 * w[2].square()) / 2.0;
             kinetic - 2.0 * x[1].cos() - 0.3 * x[1].sin() * x[2].sin()

@@ -32,6 +32,16 @@ pub(crate) fn top_of_parameters(graph: &Graph) -> SystemBuilder<'_> {
         .fold(top(graph, [a, b, c], [m1, m2, m3]), |builder, symbol| builder.parameter(symbol, 1.0))
 }
 
+/// Euler's angles ψ, θ, φ with the body angular velocity.
+pub(crate) fn in_eulers_angles(graph: &Graph) -> SystemBuilder<'_> {
+    System::builder(graph).coordinates(["ψ", "θ", "φ"]).quasi_velocities(["ω1", "ω2", "ω3"]).kinematics(
+        |_, x, w| {
+            let across = w[0] * x[2].sin() + w[1] * x[2].cos();
+            [across / x[1].sin(), w[0] * x[2].cos() - w[1] * x[2].sin(), w[2] - x[1].cot() * across]
+        },
+    )
+}
+
 /// A driven frame: b and b_0 depend on time, b_0 ≠ 0, c_0s ≠ 0.
 pub(crate) fn driven(graph: &Graph) -> SystemBuilder<'_> {
     System::builder(graph).coordinates(["x", "y"]).quasi_velocities(["u", "v"]).kinematics(|t, x, eta| {
