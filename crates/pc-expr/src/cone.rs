@@ -12,11 +12,14 @@ pub(crate) struct Cone {
 impl Cone {
     /// Everything below `roots`; iterative, so that no depth overflows the stack.
     pub(crate) fn below(dag: &Dag, roots: impl IntoIterator<Item = Atom>) -> Cone {
-        let mut seen = FxHashSet::default();
+        // A bit for each node of the graph: cheaper than hashing those of the cone.
+        let mut seen = vec![0_u64; dag.len() / 64 + 1];
         let mut open: Vec<NodeId> = Vec::new();
         let mut order = Vec::new();
-        let mut reach = |node, open: &mut Vec<NodeId>| {
-            if seen.insert(node) {
+        let mut reach = |node: NodeId, open: &mut Vec<NodeId>| {
+            let (word, bit) = (&mut seen[node.index() / 64], 1 << (node.index() % 64));
+            if *word & bit == 0 {
+                *word |= bit;
                 open.push(node);
                 order.push(node);
             }
