@@ -19,7 +19,7 @@ pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 /// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// n coordinates, then k quasi-velocities.
+    /// n coordinates, then k quasi-velocities or momenta.
     names: Vec<String>,
     coordinates: usize,
     /// What the pivots of M belong to.
@@ -110,7 +110,7 @@ impl FirstOrder<'_> {
 }
 
 impl Motion {
-    /// Names of the components of the state: coordinates, then quasi-velocities.
+    /// Names of the components of the state: coordinates, then quasi-velocities or momenta.
     pub fn names(&self) -> &[String] {
         &self.names
     }
