@@ -88,6 +88,21 @@ pub trait VectorField {
         Err(Failure::fatal(NoParameterJacobian))
     }
 
+    /// Whether the states lie on a surface that f is tangent to and numerical errors leave.
+    fn has_projection(&self) -> bool {
+        false
+    }
+
+    /// Moves `y` to the surface of the states at time t, by as little as a method's error is.
+    ///
+    /// Called only if [`has_projection`](VectorField::has_projection) answers true.
+    ///
+    /// # Errors
+    /// [`Failure`] where no state of the surface is found near `y`.
+    fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Name of component `i` of y, for messages.
     fn component_name(&self, i: usize) -> String {
         format!("y[{i}]")
@@ -127,6 +142,12 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
         (**self).parameter_jacobian(t, y, jacobian)
+    }
+    fn has_projection(&self) -> bool {
+        (**self).has_projection()
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        (**self).project(t, y)
     }
     fn component_name(&self, i: usize) -> String {
         (**self).component_name(i)

@@ -10,6 +10,7 @@ use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
 use crate::error::NonFinite;
+use crate::offset::Offset;
 
 const SUCCESS: c_int = 0;
 const RECOVERABLE: c_int = 1;
@@ -19,6 +20,8 @@ const FATAL: c_int = -1;
 pub(crate) struct Callbacks<F> {
     pub(crate) field: F,
     dim: usize,
+    /// From the vectors of CVODES to states.
+    offset: Option<Offset>,
     /// The last failure since it was taken.
     failure: Option<Failure>,
     panic: Option<Box<dyn Any + Send>>,
@@ -26,7 +29,8 @@ pub(crate) struct Callbacks<F> {
 
 impl<F: VectorField> Callbacks<F> {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> c_int {
-        self.guard(|field| {
+        self.guard(|field, offset| {
+            let y = offset.map_or(y, |offset| offset.state_of(y));
             field.rhs(t, y, ydot)?;
             match ydot.iter().position(|rate| !rate.is_finite()) {
                 None => Ok(()),
@@ -41,7 +45,8 @@ impl<F: VectorField> Callbacks<F> {
 
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> c_int {
         let dim = self.dim;
-        self.guard(|field| {
+        self.guard(|field, offset| {
+            let y = offset.map_or(y, |offset| offset.state_of(y));
             field.jacobian(t, y, jacobian)?;
             match jacobian.iter().position(|entry| !entry.is_finite()) {
                 None => Ok(()),
@@ -56,13 +61,13 @@ impl<F: VectorField> Callbacks<F> {
     }
 
     /// Evaluates, keeps a failure or panic for the caller of CVODES, and answers as CVODES expects.
-    fn guard(&mut self, evaluate: impl FnOnce(&mut F) -> Result<(), Failure>) -> c_int {
+    fn guard(&mut self, evaluate: impl FnOnce(&mut F, Option<&mut Offset>) -> Result<(), Failure>) -> c_int {
         if self.panic.is_some() {
             return FATAL;
         }
-        let field = &mut self.field;
+        let (field, offset) = (&mut self.field, self.offset.as_mut());
         // Unwind safe: the panic goes on in the caller as soon as CVODES has returned.
-        match catch_unwind(AssertUnwindSafe(|| evaluate(field))) {
+        match catch_unwind(AssertUnwindSafe(|| evaluate(field, offset))) {
             Ok(Ok(())) => SUCCESS,
             Ok(Err(failure)) => {
                 let answer = if failure.is_recoverable() { RECOVERABLE } else { FATAL };
@@ -81,8 +86,12 @@ impl<F: VectorField> Callbacks<F> {
 pub(crate) struct UserData<F>(NonNull<Callbacks<F>>);
 
 impl<F> UserData<F> {
-    pub(crate) fn new(field: F, dim: usize) -> Self {
-        let callbacks = Callbacks { field, dim, failure: None, panic: None };
+    pub(crate) fn new(field: F, dim: usize) -> Self
+    where
+        F: VectorField,
+    {
+        let offset = field.has_projection().then(|| Offset::new(dim));
+        let callbacks = Callbacks { field, dim, offset, failure: None, panic: None };
         UserData(NonNull::from(Box::leak(Box::new(callbacks))))
     }
 
@@ -100,6 +109,13 @@ impl<F> UserData<F> {
         let callbacks = std::mem::ManuallyDrop::new(self).0;
         // SAFETY: made by `Box::leak` in `new`, and `drop` will not run.
         unsafe { Box::from_raw(callbacks.as_ptr()) }.field
+    }
+
+    /// The vector field and the offset of its states, if it has a projection.
+    pub(crate) fn projection(&mut self) -> Option<(&mut F, &mut Offset)> {
+        // SAFETY: owned and live, borrowed exclusively.
+        let callbacks = unsafe { self.0.as_mut() };
+        callbacks.offset.as_mut().map(|offset| (&mut callbacks.field, offset))
     }
 
     pub(crate) fn take_failure(&mut self) -> Option<Failure> {

@@ -309,6 +309,7 @@ impl<F: VectorField> Cvode<F> {
             let value = self.work.as_slice()[i];
             return Err(self.failed(Reason::Overflow { component, value, t }, failure));
         }
+        self.project(t, true)?;
         std::mem::swap(&mut self.step_state, &mut self.work);
         self.direction.get_or_insert(1.0_f64.copysign(towards - self.step_time));
         let before = std::mem::replace(&mut self.step_time, t);
@@ -339,11 +340,20 @@ impl<F: VectorField> Cvode<F> {
         let order = i32::try_from(order).unwrap_or(i32::MAX);
         // SAFETY: memory and vector are live and of one context; a step has been taken.
         let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, order, self.work.raw()) };
-        if code == sys::CV_SUCCESS {
-            return Ok(());
+        if code != sys::CV_SUCCESS {
+            let reason = Reason::Cvode { code: code.into(), message: self.context.take_messages() };
+            return Err(self.error(reason, None));
         }
-        let reason = Reason::Cvode { code: code.into(), message: self.context.take_messages() };
-        Err(self.error(reason, None))
+        if order == 0 { self.project(t, false) } else { Ok(()) }
+    }
+
+    /// Makes a state of what CVODES has written for time `t`, at the end of a step or within it.
+    fn project(&mut self, t: f64, step: bool) -> Result<(), SolveError> {
+        let Some((field, offset)) = self.callbacks.projection() else { return Ok(()) };
+        match offset.project(field, t, self.work.as_mut_slice(), step) {
+            Ok(()) => Ok(()),
+            Err(failure) => Err(self.failed(Reason::Projection { t }, Some(failure))),
+        }
     }
 
     /// The error of a failed step, after going to the end of the last successful one.

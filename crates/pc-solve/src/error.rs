@@ -39,7 +39,7 @@ impl SolveError {
         match self {
             SolveError::Integration(error) => match error.reason {
                 Reason::Cvode { code, .. } => Some(code),
-                Reason::Overflow { .. } | Reason::Stalled => None,
+                Reason::Overflow { .. } | Reason::Projection { .. } | Reason::Stalled => None,
             },
             SolveError::Input(_) | SolveError::Setup { .. } => None,
         }
@@ -78,6 +78,10 @@ impl fmt::Display for IntegrationError {
             Reason::Overflow { component, value, t } => {
                 write!(f, "{component} is {value} at t = {t}, after reaching t = {time}")
             }
+            Reason::Projection { t } => write!(
+                f,
+                "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
+            ),
             Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
         }
     }
@@ -108,6 +112,12 @@ pub enum Reason {
         /// NaN or an infinity.
         value: f64,
         /// End of that step.
+        t: f64,
+    },
+
+    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs to.
+    Projection {
+        /// Time of that state.
         t: f64,
     },
 

@@ -40,6 +40,11 @@ impl Vector {
         // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector changes.
         unsafe { slice::from_raw_parts(self.data.as_ptr(), self.len) }
     }
+
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
+        // SAFETY: as for `as_slice`, and borrowed exclusively.
+        unsafe { slice::from_raw_parts_mut(self.data.as_ptr(), self.len) }
+    }
 }
 
 impl Drop for Vector {

@@ -32,6 +32,7 @@ mod cvode;
 mod error;
 mod fn_field;
 mod handles;
+mod offset;
 mod options;
 mod solve;
 mod statistics;

@@ -1,0 +1,49 @@
+//! Projection of the states of a multistep method without a restart.
+
+use pc_expr::{Failure, VectorField};
+
+/// The states are y = z + d with z integrated by CVODES. A projection changes d alone: the history of z, on which a
+/// multistep method of any order rests, stays as smooth as it was, and f(t, z + d) changes by no more than the error
+/// of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
+pub(crate) struct Offset {
+    d: Vec<f64>,
+    /// z + d
+    state: Vec<f64>,
+}
+
+impl Offset {
+    /// d = 0.
+    pub(crate) fn new(dim: usize) -> Offset {
+        Offset { d: vec![0.0; dim], state: vec![0.0; dim] }
+    }
+
+    /// y = z + d
+    pub(crate) fn state_of(&mut self, z: &[f64]) -> &[f64] {
+        for ((state, z), d) in self.state.iter_mut().zip(z).zip(&self.d) {
+            *state = z + d;
+        }
+        &self.state
+    }
+
+    /// Replaces z at time t by the projection of y; a `step` goes on from there.
+    ///
+    /// # Errors
+    /// Those of the projection; z is y then.
+    pub(crate) fn project(
+        &mut self,
+        field: &mut impl VectorField,
+        t: f64,
+        z: &mut [f64],
+        step: bool,
+    ) -> Result<(), Failure> {
+        self.state_of(z);
+        z.copy_from_slice(&self.state);
+        field.project(t, z)?;
+        if step {
+            for ((d, projected), state) in self.d.iter_mut().zip(z).zip(&self.state) {
+                *d += *projected - state;
+            }
+        }
+        Ok(())
+    }
+}
