@@ -30,24 +30,8 @@ pub struct Canonical<'g> {
 impl<'g> System<'g> {
     /// The symbols of the momenta y_s: `p_` before the name of the quasi-velocity, `p_x` for the velocity `x'`.
     pub fn momentum_symbols(&self) -> Vec<Expr<'g>> {
-        let graph = self.graph();
-        let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
-        let taken: Vec<Expr<'g>> = self
-            .frame
-            .coordinates()
-            .iter()
-            .chain(&self.quasi_velocities)
-            .chain(parameters)
-            .copied()
-            .collect();
-        let free = |eta: &Expr<'g>| {
-            let mut name = format!("p_{}", eta.to_string().trim_end_matches('\''));
-            while taken.contains(&graph.symbol(&name)) {
-                name.insert_str(0, "p_");
-            }
-            graph.symbol(&name)
-        };
-        self.quasi_velocities.iter().map(free).collect()
+        let name = |eta: &Expr<'g>| format!("p_{}", eta.to_string().trim_end_matches('\''));
+        self.quasi_velocities.iter().map(|eta| self.unused(name(eta), "p_")).collect()
     }
 
     /// The canonical equations (10), (11).
@@ -161,6 +145,7 @@ impl<'g> Canonical<'g> {
             parameters: system.parameters.clone(),
             unknowns: eta.clone(),
             names: eta.iter().map(Expr::to_string).collect(),
+            multipliers: 0,
             mass: self.legendre.mass.clone(),
             right: self.legendre.impulse(&self.momenta),
             rates: graph.shorten(&rates, &system.collecting_order()),

@@ -2,7 +2,8 @@
 //!
 //! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Its mass
 //! matrix is eliminated in expressions ([`unrolled`], by [`ldl`]) or in numbers ([`staged`], by [`dense_ldl`]), as
-//! [`elimination`] finds cheaper.
+//! [`elimination`] finds cheaper. Under constraints w has multipliers, the matrix is [`saddle`]-shaped, and the states
+//! lie on a [`surface`].
 
 pub(crate) mod columns;
 pub(crate) mod dense_ldl;
@@ -13,5 +14,8 @@ pub(crate) mod ldl;
 pub(crate) mod motion;
 pub(crate) mod options;
 pub(crate) mod pivots;
+pub(crate) mod saddle;
+pub(crate) mod solver;
 pub(crate) mod staged;
+pub(crate) mod surface;
 pub(crate) mod unrolled;

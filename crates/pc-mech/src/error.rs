@@ -68,6 +68,53 @@ pub enum MechError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// A condition on velocities that is not affine in them.
+    #[error("the constraint `{constraint}` is not affine in the quasi-velocities")]
+    ConstraintNotAffine {
+        /// Its name.
+        constraint: String,
+    },
+    /// Constraints that leave nothing to move.
+    #[error("{constraints} constraints leave no freedom to {quasi_velocities} quasi-velocities")]
+    TooManyConstraints {
+        /// Number of constraints.
+        constraints: usize,
+        /// Number k of quasi-velocities.
+        quasi_velocities: usize,
+    },
+    /// A constraint that restricts no velocity, or none that those before it leave free.
+    #[error("the constraint `{constraint}` restricts no velocity that those before it leave free")]
+    DependentConstraint {
+        /// Its name.
+        constraint: String,
+    },
+    /// The same at one state only.
+    #[error(
+        "the constraint `{constraint}` restricts no velocity that the others leave free at t = {t}{}",
+        listed(state)
+    )]
+    SingularConstraint {
+        /// Its name.
+        constraint: String,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// A state from which no way was found to where the constraints are satisfied.
+    #[error(
+        "no state that satisfies the constraints {} was found near t = {t}{}",
+        quoted(constraints),
+        listed(state)
+    )]
+    NoProjection {
+        /// Their names.
+        constraints: Vec<String>,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
     /// A derivative was asked for that was not [compiled](crate::CompileOptions).
     #[error("the motion was compiled without its {what}")]
     NotCompiled {
@@ -185,8 +232,12 @@ impl From<Failure> for MechError {
 fn undetermined(names: &[String]) -> String {
     match names {
         [name] => format!("`{name}` is"),
-        _ => format!("{} are", names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")),
+        _ => format!("{} are", quoted(names)),
     }
+}
+
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn listed(values: &[(String, f64)]) -> String {

@@ -34,6 +34,7 @@ mod hamilton_jacobi;
 mod integrals;
 mod lagrange;
 mod legendre;
+mod multipliers;
 mod numeric;
 mod poincare;
 mod stability;
@@ -50,6 +51,7 @@ pub use integrals::bracket::PoissonBracket;
 pub use integrals::conserved::{Conservation, Rates};
 pub use integrals::cyclic::CyclicDisplacement;
 pub use legendre::LegendreTransform;
+pub use multipliers::{Constraint, Multipliers};
 pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Folding, Graph, Language, Number, Pattern, Style, VectorField,

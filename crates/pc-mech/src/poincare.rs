@@ -40,6 +40,13 @@ impl<'g> System<'g> {
     /// # Errors
     /// [`MechError::DegenerateLagrangian`]; [`MechError::Shape`] if there are fewer than `free` quasi-velocities.
     pub fn poincare_constrained(&self, free: usize) -> Result<Equations<'g>, MechError> {
+        let equations = self.equations(free)?;
+        equations.system.check_regular(&equations.mass)?;
+        Ok(equations)
+    }
+
+    /// The same whether or not M is singular.
+    pub(crate) fn equations(&self, free: usize) -> Result<Equations<'g>, MechError> {
         let graph = self.graph();
         let all = &self.quasi_velocities;
         if free > all.len() {
@@ -60,7 +67,6 @@ impl<'g> System<'g> {
 
         let hessian: Vec<Vec<Expr<'g>>> = momenta[..free].iter().map(|&p| graph.gradient(p, eta)).collect();
         let mass = Matrix::from_fn(free, free, |r, s| hessian[r.max(s)][r.min(s)]);
-        system.check_regular(&mass)?;
 
         let along: Vec<_> =
             x.iter().copied().zip(velocities.iter().copied()).chain([(t, Expr::ONE)]).collect();

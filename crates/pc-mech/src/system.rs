@@ -82,6 +82,18 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().copied().chain(parameters).collect()
     }
 
+    /// The symbol of that name, with `mark` before it as often as it takes to be none of the system's.
+    pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
+        let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
+        let taken: Vec<&Expr<'g>> =
+            self.frame.coordinates().iter().chain(&self.quasi_velocities).chain(parameters).collect();
+        let mut name = name;
+        while taken.contains(&&self.graph().symbol(&name)) {
+            name.insert_str(0, mark);
+        }
+        self.graph().symbol(&name)
+    }
+
     /// The same system with its quasi-velocities in another order, a permutation of 0..k.
     ///
     /// # Panics

@@ -70,7 +70,7 @@ impl DenseLdl {
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         let k = self.diagonal.len();
         let (l, d) = (self.matrix.as_ref(), self.matrix.as_ref().diagonal());
-        let columns = MatMut::from_column_major_slice_mut(columns, k, columns.len() / k);
+        let columns = MatMut::from_column_major_slice_mut(columns, k, columns.len() / k.max(1));
         solve::solve_in_place(l, d, columns, Par::Seq, MemStack::new(&mut []));
     }
 }

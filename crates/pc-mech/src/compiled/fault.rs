@@ -7,6 +7,8 @@ use pc_expr::{Evaluator, ExprError};
 pub(crate) enum Fault {
     /// The pivot of the unknown of that index vanished.
     Pivot { index: usize, pivot: f64 },
+    /// The state is not near those that satisfy the constraints.
+    NoProjection,
     /// A part that the motion was compiled without.
     NotCompiled { what: &'static str },
     /// A value is not finite.

@@ -23,6 +23,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) unknowns: Vec<Expr<'g>>,
     /// What to call the unknowns in messages: the quasi-velocities.
     pub(crate) names: Vec<String>,
+    /// How many of them, the last ones, are multipliers: their block of M is zero.
+    pub(crate) multipliers: usize,
     /// M, k × k.
     pub(crate) mass: Matrix<Expr<'g>>,
     /// r, in t and y.

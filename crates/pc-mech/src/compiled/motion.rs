@@ -8,6 +8,7 @@ use crate::compiled::fault::Fault;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::staged::Staged;
+use crate::compiled::surface::Surface;
 use crate::compiled::unrolled::Unrolled;
 use crate::error::MechError;
 use crate::poincare::Equations;
@@ -22,13 +23,16 @@ pub struct Motion {
     /// n coordinates, then k quasi-velocities or momenta.
     names: Vec<String>,
     coordinates: usize,
-    /// What the pivots of M belong to.
+    /// What the pivots of M belong to: quasi-velocities, then constraints.
     quasi_velocities: Vec<String>,
     parameters: Vec<f64>,
     form: Form,
     options: CompileOptions,
     observable_names: Vec<String>,
     conserved: usize,
+    /// The constraints by their names, and where they are satisfied.
+    constraints: Vec<String>,
+    surface: Option<Box<Surface>>,
 }
 
 /// How f is computed.
@@ -73,6 +77,7 @@ impl<'g> Equations<'g> {
             coordinates: x.len(),
             parameters: system.parameters.clone(),
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
+            multipliers: 0,
             mass: self.mass.clone(),
             right: self.right.clone(),
             rates: self.velocities.iter().chain(&unknowns).copied().collect(),
@@ -91,7 +96,9 @@ impl FirstOrder<'_> {
     /// As for [`Equations::compile`].
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
         let short = elimination::operations(&self.mass) <= longest;
-        let form = if short || !elimination::needs_no_pivoting(self.graph, &self.mass) {
+        let written_out =
+            self.multipliers == 0 && (short || !elimination::needs_no_pivoting(self.graph, &self.mass));
+        let form = if written_out {
             Form::Unrolled(Box::new(Unrolled::new(self, options)?))
         } else {
             Form::Staged(Box::new(Staged::new(self, options)?))
@@ -105,6 +112,8 @@ impl FirstOrder<'_> {
             options: *options,
             observable_names: self.observables.iter().map(|(name, _)| name.clone()).collect(),
             conserved: self.conserved,
+            constraints: Vec::new(),
+            surface: None,
         })
     }
 }
@@ -158,6 +167,26 @@ impl Motion {
         values
     }
 
+    /// The same under the constraints of these names.
+    pub(crate) fn on_surface(self, constraints: Vec<String>, surface: Surface) -> Motion {
+        Motion { constraints, surface: Some(Box::new(surface)), ..self }
+    }
+
+    /// Names of the constraints.
+    pub fn constraint_names(&self) -> &[String] {
+        &self.constraints
+    }
+
+    /// What should be zero of each constraint at (t, y): f(t, x) of those on positions, C η + c_0 of the others.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state.
+    pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        let parameters = &self.parameters;
+        self.surface.as_mut().map_or_else(Vec::new, |surface| surface.residuals(t, y, parameters))
+    }
+
     /// Operations of one evaluation of the right-hand side, kinematics included; without those of the
     /// factorisation where M is factorised in numbers.
     pub fn cost(&self) -> Cost {
@@ -176,15 +205,31 @@ impl Motion {
     #[cold]
     fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
         match fault {
-            Fault::Pivot { index, pivot } => Failure::recoverable(MechError::SingularMassMatrix {
-                quasi_velocity: self.quasi_velocities[index].clone(),
-                pivot,
+            Fault::Pivot { index, pivot } => Failure::recoverable(self.singular(index, pivot, t, y)),
+            Fault::NoProjection => Failure::recoverable(MechError::NoProjection {
+                constraints: self.constraints.clone(),
                 t,
-                state: self.names.iter().cloned().zip(y.iter().copied()).collect(),
+                state: self.named(y),
             }),
             Fault::Expr(error) => Failure::recoverable(MechError::from(error)),
             Fault::NotCompiled { what } => Failure::fatal(MechError::NotCompiled { what }),
         }
+    }
+
+    /// The unknown of that index, an acceleration or a multiplier, is not determined.
+    fn singular(&self, index: usize, pivot: f64, t: f64, y: &[f64]) -> MechError {
+        let state = self.named(y);
+        let accelerations = self.quasi_velocities.len() - self.constraints.len();
+        let name = self.quasi_velocities[index].clone();
+        if index < accelerations {
+            MechError::SingularMassMatrix { quasi_velocity: name, pivot, t, state }
+        } else {
+            MechError::SingularConstraint { constraint: name, t, state }
+        }
+    }
+
+    fn named(&self, y: &[f64]) -> Vec<(String, f64)> {
+        self.names.iter().cloned().zip(y.iter().copied()).collect()
     }
 
     fn write_jacobian(
@@ -264,6 +309,15 @@ impl VectorField for Motion {
             Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
         };
         outcome.map_err(|fault| self.failure(fault, t, y))
+    }
+
+    fn has_projection(&self) -> bool {
+        self.surface.is_some()
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let Some(surface) = &mut self.surface else { return Ok(()) };
+        surface.project(t, y, &self.parameters).map_err(|fault| self.failure(fault, t, y))
     }
 
     fn component_name(&self, i: usize) -> String {

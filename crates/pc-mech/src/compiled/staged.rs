@@ -5,10 +5,10 @@ use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
 
 use crate::compiled::columns::{Layout, derivative, nonzeros};
-use crate::compiled::dense_ldl::DenseLdl;
 use crate::compiled::fault::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::options::CompileOptions;
+use crate::compiled::solver::Solver;
 
 /// ẏ = g(t, y, w) and its derivatives, with w from M w = r.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct Staged {
     equations: Evaluator,
     lower: Pattern,
     values: Vec<f64>,
-    ldl: DenseLdl,
+    solver: Solver,
     /// y, then w.
     known: Vec<f64>,
     /// Of (t, (y, w)).
@@ -56,7 +56,7 @@ impl Staged {
             values: vec![0.0; equations.len()],
             equations: compiled(&system.inputs(&[]), &equations, options.backend)?,
             lower,
-            ldl: DenseLdl::new(k),
+            solver: Solver::new(k, system.multipliers),
             known: vec![0.0; known.state.len()],
             rates: compiled(&known, &system.rates, options.backend)?,
             cost: Program::new(graph, &known, &all)?.cost(),
@@ -80,11 +80,11 @@ impl Staged {
         self.equations.eval(t, y, p, &mut self.values);
         check_finite(&self.values, &self.equations, (t, y, p))?;
         let (mass, right) = self.values.split_at(self.lower.len());
-        self.ldl.factorise(&self.lower, mass)?;
+        self.solver.factorise(&self.lower, mass)?;
         let (state, unknowns) = self.known.split_at_mut(self.dim);
         state.copy_from_slice(y);
         unknowns.copy_from_slice(right);
-        self.ldl.solve(unknowns);
+        self.solver.solve(unknowns);
         Ok(())
     }
 
@@ -112,7 +112,7 @@ impl Staged {
     ) -> Result<(), Fault> {
         self.solve(t, y, p)?;
         let stage = self.jacobian.as_mut().ok_or(Fault::NotCompiled { what: "Jacobian" })?;
-        stage.eval(t, &self.known, p, &mut self.ldl, entries, layout)
+        stage.eval(t, &self.known, p, &mut self.solver, entries, layout)
     }
 
     pub(crate) fn parameter_jacobian(
@@ -123,7 +123,7 @@ impl Staged {
         self.solve(t, y, p)?;
         let what = "derivative by parameters";
         let stage = self.parameter_jacobian.as_mut().ok_or(Fault::NotCompiled { what })?;
-        stage.eval(t, &self.known, p, &mut self.ldl, entries, Layout::Dense)
+        stage.eval(t, &self.known, p, &mut self.solver, entries, Layout::Dense)
     }
 
     pub(crate) fn jvp(
@@ -134,7 +134,7 @@ impl Staged {
     ) -> Result<(), Fault> {
         self.solve(t, y, p)?;
         let jvp = self.jvp.as_mut().ok_or(Fault::NotCompiled { what: "product with its Jacobian" })?;
-        jvp.eval(t, &self.known, p, v, &mut self.ldl, product)
+        jvp.eval(t, &self.known, p, v, &mut self.solver, product)
     }
 }
 
@@ -186,7 +186,7 @@ impl Stage {
         t: f64,
         known: &[f64],
         p: &[f64],
-        ldl: &mut DenseLdl,
+        solver: &mut Solver,
         entries: &mut [f64],
         layout: Layout,
     ) -> Result<(), Fault> {
@@ -195,7 +195,7 @@ impl Stage {
         let (balance, rest) = self.values.split_at(self.balance.len());
         let (rates, coupling) = rest.split_at(self.rates.len());
         self.balance.scatter(balance, &mut self.unknowns);
-        ldl.solve(&mut self.unknowns);
+        solver.solve(&mut self.unknowns);
         let (dim, k) = (self.pattern.rows(), self.balance.rows());
         for j in 0..self.pattern.columns() {
             let starts = self.rates.column_starts();
@@ -279,7 +279,7 @@ impl Product {
         known: &[f64],
         p: &[f64],
         v: &[f64],
-        ldl: &mut DenseLdl,
+        solver: &mut Solver,
         product: &mut [f64],
     ) -> Result<(), Fault> {
         let given = known.len() + v.len();
@@ -288,7 +288,7 @@ impl Product {
         let (inputs, changes) = self.known.split_at_mut(given);
         self.balance.eval(t, inputs, p, changes);
         check_finite(changes, &self.balance, (t, inputs, p))?;
-        ldl.solve(changes);
+        solver.solve(changes);
         self.rates.eval(t, &self.known, p, product);
         check_finite(product, &self.rates, (t, &self.known, p))
     }

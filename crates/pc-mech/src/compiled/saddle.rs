@@ -1,0 +1,311 @@
+//! Equations with multipliers in numbers, solved in independent unknowns.
+
+use pc_expr::Pattern;
+
+use crate::compiled::dense_ldl::DenseLdl;
+use crate::compiled::fault::Fault;
+
+/// A pivot of the constraints this small against their largest coefficient is rounding.
+const VANISHING_PIVOT: f64 = 1e-12;
+
+/// The symmetric matrix
+///
+///   ⎡ M  Cᵀ ⎤
+///   ⎣ C  0  ⎦
+///
+/// with M of k rows and C of m. C is eliminated first, always by the largest coefficient left, so that m unknowns
+/// depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The choice of the independent
+/// unknowns is made anew each time and does not show in the solution.
+#[derive(Clone, Debug)]
+pub(crate) struct Saddle {
+    k: usize,
+    m: usize,
+    /// M, k × k, row after row.
+    mass: Vec<f64>,
+    /// C, m × k, then its factors: L below the diagonal of the pivots and U on it and to the right.
+    constraints: Vec<f64>,
+    /// The constraint at each step of the elimination.
+    rows: Vec<usize>,
+    /// The unknown at each step, then the independent ones.
+    columns: Vec<usize>,
+    /// G = −C_D⁻¹ C_I, m × (k − m), row after row; D and I in the order of `columns`.
+    dependence: Vec<f64>,
+    reduced: DenseLdl,
+    full: Pattern,
+    /// Room for a right-hand side.
+    room: Vec<f64>,
+}
+
+impl Saddle {
+    /// That of k unknowns and m ≤ k multipliers.
+    pub(crate) fn new(k: usize, m: usize) -> Saddle {
+        let free = k - m;
+        Saddle {
+            k,
+            m,
+            mass: vec![0.0; k * k],
+            constraints: vec![0.0; m * k],
+            rows: (0..m).collect(),
+            columns: (0..k).collect(),
+            dependence: vec![0.0; m * free],
+            reduced: DenseLdl::new(free),
+            full: Pattern::from_columns(free, (0..free).map(|j| j..free)),
+            room: vec![0.0; k + m],
+        }
+    }
+
+    /// Factorises the matrix, of which `values` stand at the places `lower` on and below the diagonal; all are
+    /// finite.
+    ///
+    /// # Errors
+    /// [`Fault::Pivot`] with the index of the unknown, or k and that of the constraint, whose pivot vanishes.
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+        let k = self.k;
+        self.mass.fill(0.0);
+        self.constraints.fill(0.0);
+        for ((i, j), &value) in lower.entries().zip(values) {
+            if i < k {
+                self.mass[i * k + j] = value;
+                self.mass[j * k + i] = value;
+            } else if j < k {
+                self.constraints[(i - k) * k + j] = value;
+            }
+        }
+        self.eliminate()?;
+        self.express_dependent();
+        let reduced = self.reduced_mass();
+        self.reduced.factorise(&self.full, &reduced).map_err(|fault| match fault {
+            Fault::Pivot { index, pivot } => Fault::Pivot { index: self.columns[self.m + index], pivot },
+            other => other,
+        })
+    }
+
+    /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
+    /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter.
+    fn eliminate(&mut self) -> Result<(), Fault> {
+        let (k, m) = (self.k, self.m);
+        let weight = |mass: f64| if mass > 0.0 { mass.sqrt().recip() } else { 1.0 };
+        let weights: Vec<f64> = (0..k).map(|s| weight(self.mass[s * k + s])).collect();
+        let sizes: Vec<f64> = (0..m)
+            .map(|a| {
+                (0..k).fold(0.0f64, |size, s| size.max((self.constraints[a * k + s] * weights[s]).abs()))
+            })
+            .collect();
+        (0..m).for_each(|a| self.rows[a] = a);
+        (0..k).for_each(|s| self.columns[s] = s);
+        for step in 0..m {
+            let size = |row: usize, column: usize| {
+                let (a, s) = (self.rows[row], self.columns[column]);
+                (self.constraints[a * k + s] * weights[s] / sizes[a]).abs()
+            };
+            let places = (step..m).flat_map(|row| (step..k).map(move |column| (row, column)));
+            let (row, column, largest) = places.fold((step, step, 0.0), |best, (row, column)| {
+                let this = size(row, column);
+                if this > best.2 { (row, column, this) } else { best }
+            });
+            if largest <= VANISHING_PIVOT {
+                let index = k + self.rows[step];
+                return Err(Fault::Pivot { index, pivot: largest });
+            }
+            self.rows.swap(step, row);
+            self.columns.swap(step, column);
+            let (pivot_row, pivot_column) = (self.rows[step] * k, self.columns[step]);
+            let pivot = self.constraints[pivot_row + pivot_column];
+            for below in step + 1..m {
+                let row = self.rows[below] * k;
+                let factor = self.constraints[row + pivot_column] / pivot;
+                self.constraints[row + pivot_column] = factor;
+                for &s in &self.columns[step + 1..] {
+                    self.constraints[row + s] -= factor * self.constraints[pivot_row + s];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The factors, in the order of the elimination.
+    fn factor(&self, row: usize, column: usize) -> f64 {
+        self.constraints[self.rows[row] * self.k + self.columns[column]]
+    }
+
+    /// G, from U_D G = −U_I.
+    fn express_dependent(&mut self) {
+        let (m, free) = (self.m, self.k - self.m);
+        for column in 0..free {
+            for row in (0..m).rev() {
+                let known: f64 = (row + 1..m)
+                    .map(|later| self.factor(row, later) * self.dependence[later * free + column])
+                    .sum();
+                let value = -(self.factor(row, m + column) + known) / self.factor(row, row);
+                self.dependence[row * free + column] = value;
+            }
+        }
+    }
+
+    fn mass(&self, row: usize, column: usize) -> f64 {
+        self.mass[self.columns[row] * self.k + self.columns[column]]
+    }
+
+    /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, its lower triangle column after column.
+    fn reduced_mass(&self) -> Vec<f64> {
+        let (m, free) = (self.m, self.k - self.m);
+        let g = |row: usize, column: usize| self.dependence[row * free + column];
+        // M_DD G + M_DI, and M_ID G + M_II
+        let moved = |row: usize, column: usize| -> f64 {
+            self.mass(row, m + column) + (0..m).map(|d| self.mass(row, d) * g(d, column)).sum::<f64>()
+        };
+        let moved: Vec<f64> = (0..self.k)
+            .flat_map(|row| (0..free).map(move |column| (row, column)))
+            .map(|(r, c)| moved(r, c))
+            .collect();
+        let entry = |i: usize, j: usize| -> f64 {
+            moved[(m + i) * free + j] + (0..m).map(|d| g(d, i) * moved[d * free + j]).sum::<f64>()
+        };
+        (0..free).flat_map(|j| (j..free).map(move |i| (i, j))).map(|(i, j)| entry(i, j)).collect()
+    }
+
+    /// A row of r − M w, of which the first `known` entries of w count, in the order of the elimination.
+    fn rest(&self, right: &[f64], w: &[f64], row: usize, known: usize) -> f64 {
+        right[self.columns[row]] - (0..known).map(|s| self.mass(row, s) * w[s]).sum::<f64>()
+    }
+
+    /// Replaces each of the columns (r, γ), of length k + m, by the solution (w, μ) of M w + Cᵀ μ = r, C w = γ.
+    pub(crate) fn solve(&mut self, columns: &mut [f64]) {
+        for column in columns.chunks_exact_mut(self.k + self.m) {
+            self.solve_one(column);
+        }
+    }
+
+    fn solve_one(&mut self, column: &mut [f64]) {
+        let (k, m) = (self.k, self.m);
+        let free = k - m;
+        let mut room = std::mem::take(&mut self.room);
+        let (w, mu) = room.split_at_mut(k);
+        // w_D at w_I = 0: L U_D w_D = γ
+        for row in 0..m {
+            let known: f64 = (0..row).map(|earlier| self.factor(row, earlier) * w[earlier]).sum();
+            w[row] = column[k + self.rows[row]] - known;
+        }
+        for row in (0..m).rev() {
+            let known: f64 = (row + 1..m).map(|later| self.factor(row, later) * w[later]).sum();
+            w[row] = (w[row] - known) / self.factor(row, row);
+        }
+        // r − M w there, then along (1, Gᵀ)
+        for row in 0..m {
+            mu[row] = self.rest(column, w, row, m);
+        }
+        for i in 0..free {
+            let across: f64 = (0..m).map(|d| self.dependence[d * free + i] * mu[d]).sum();
+            w[m + i] = self.rest(column, w, m + i, m) + across;
+        }
+        self.reduced.solve(&mut w[m..]);
+        for d in 0..m {
+            w[d] += (0..free).map(|i| self.dependence[d * free + i] * w[m + i]).sum::<f64>();
+        }
+        // U_Dᵀ Lᵀ μ = (r − M w)_D
+        for row in 0..m {
+            let known: f64 = (0..row).map(|earlier| self.factor(earlier, row) * mu[earlier]).sum();
+            mu[row] = (self.rest(column, w, row, k) - known) / self.factor(row, row);
+        }
+        for row in (0..m).rev() {
+            let known: f64 = (row + 1..m).map(|later| self.factor(later, row) * mu[later]).sum();
+            mu[row] -= known;
+        }
+        for (s, &place) in self.columns.iter().enumerate() {
+            column[place] = w[s];
+        }
+        for (a, &place) in self.rows.iter().enumerate() {
+            column[k + place] = mu[a];
+        }
+        self.room = room;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in −1..1, the same on every run.
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// M = Nᵀ N + 1 and C, both of random numbers, as one symmetric matrix.
+    fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
+        let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
+        let mut whole = vec![vec![0.0; k + m]; k + m];
+        for i in 0..k {
+            for j in 0..k {
+                whole[i][j] = (0..k).map(|s| n[s * k + i] * n[s * k + j]).sum::<f64>() + f64::from(i == j);
+            }
+        }
+        for a in 0..m {
+            for s in 0..k {
+                whole[k + a][s] = next();
+                whole[s][k + a] = whole[k + a][s];
+            }
+        }
+        whole
+    }
+
+    fn lower(whole: &[Vec<f64>]) -> (Pattern, Vec<f64>) {
+        let size = whole.len();
+        let pattern = Pattern::from_columns(
+            size,
+            (0..size).map(|j| (j..size).filter(|&i| whole[i][j] != 0.0).collect::<Vec<_>>()),
+        );
+        let values = pattern.entries().map(|(i, j)| whole[i][j]).collect();
+        (pattern, values)
+    }
+
+    #[test]
+    fn solutions_satisfy_their_equations() {
+        let mut next = numbers(7);
+        for (k, m) in [(1, 0), (3, 1), (3, 3), (6, 2), (9, 5)] {
+            for _ in 0..20 {
+                let whole = random(k, m, &mut next);
+                let (pattern, values) = lower(&whole);
+                let mut saddle = Saddle::new(k, m);
+                saddle.factorise(&pattern, &values).unwrap();
+                let right: Vec<f64> = (0..k + m).map(|_| next()).collect();
+                let mut solution = right.clone();
+                saddle.solve(&mut solution);
+                for (row, expected) in whole.iter().zip(&right) {
+                    let found: f64 = row.iter().zip(&solution).map(|(a, b)| a * b).sum();
+                    // Rounding, times the condition of random matrices of nine rows.
+                    assert!((found - expected).abs() < 1e-10, "{found} {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_mass_without_inertia_of_its_own_is_held_by_a_constraint() {
+        // M = diag(1, 0), w_1 = w_2
+        let whole = [vec![1.0, 0.0, 1.0], vec![0.0, 0.0, -1.0], vec![1.0, -1.0, 0.0]];
+        let (pattern, values) = lower(&whole);
+        let mut saddle = Saddle::new(2, 1);
+        saddle.factorise(&pattern, &values).unwrap();
+        let mut solution = [3.0, 4.0, 0.0];
+        saddle.solve(&mut solution);
+        assert_eq!(solution, [7.0, 7.0, -4.0]);
+    }
+
+    #[test]
+    fn a_constraint_that_depends_on_others_is_found() {
+        // Twice the same, in other units.
+        let whole = [
+            vec![1.0, 0.0, 1.0, 1e6],
+            vec![0.0, 1.0, 2.0, 2e6],
+            vec![1.0, 2.0, 0.0, 0.0],
+            vec![1e6, 2e6, 0.0, 0.0],
+        ];
+        let (pattern, values) = lower(&whole);
+        let fault = Saddle::new(2, 2).factorise(&pattern, &values).unwrap_err();
+        assert!(matches!(fault, Fault::Pivot { index: 2 | 3, .. }), "{fault:?}");
+    }
+}

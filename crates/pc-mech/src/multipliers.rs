@@ -1,0 +1,277 @@
+//! Constraints held by multipliers, in whatever coordinates.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::compiled::columns::nonzeros;
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
+use crate::compiled::options::CompileOptions;
+use crate::compiled::surface::{Conditions, Surface};
+use crate::error::MechError;
+use crate::poincare::Equations;
+use crate::system::System;
+
+/// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities, affine in η.
+#[derive(Clone, Debug)]
+pub struct Constraint<'g> {
+    name: String,
+    expression: Expr<'g>,
+}
+
+impl<'g> Constraint<'g> {
+    /// The condition that `expression` vanishes: on velocities if a quasi-velocity stands in it, on positions
+    /// otherwise. The name is for messages and reactions.
+    pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
+        Constraint { name: name.into(), expression }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What vanishes.
+    pub fn expression(&self) -> Expr<'g> {
+        self.expression
+    }
+}
+
+/// Poincaré's equations with multipliers,
+///
+///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
+///
+/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
+/// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction conjugate
+/// to the condition, with the power −λ_α c_α0.
+///
+/// All k quasi-velocities are components of the state. At each evaluation those are taken for independent that
+/// determine the others best, so that no position is singular but those of the constraints themselves; the rates do not
+/// depend on the choice. What numerical errors take the motion away from the constraints, its
+/// [projection](pc_expr::VectorField::project) takes back.
+///
+/// ```
+/// use pc_mech::{Constraint, Graph, System, VectorField};
+///
+/// // A pendulum in Cartesian coordinates.
+/// let graph = Graph::new();
+/// let pendulum = System::builder(&graph)
+///     .coordinates(["x", "y"])
+///     .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
+///     .build()?;
+/// let [x, y] = graph.symbols(["x", "y"]);
+/// let circle = Constraint::new("length", x.square() + y.square() - 1.0);
+/// let mut motion = pendulum.with_multipliers(&[circle])?.compile()?;
+/// let mut rates = [0.0; 4];
+/// motion.rhs(0.0, &[1.0, 0.0, 0.0, 2.0], &mut rates)?; // horizontal, ẏ = 2: ẍ = −|ṙ|²
+/// assert_eq!(rates, [0.0, 2.0, -4.0, -10.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Multipliers<'g> {
+    equations: Equations<'g>,
+    constraints: Vec<Constraint<'g>>,
+    /// g = C η + c_0
+    velocities: Vec<Expr<'g>>,
+    /// C, m × k.
+    coefficients: Matrix<Expr<'g>>,
+    /// −(dC/dt) η − dc_0/dt, length m.
+    right: Vec<Expr<'g>>,
+    /// The symbols λ, length m.
+    reactions: Vec<Expr<'g>>,
+    /// Whether the reactions are observed.
+    observed: bool,
+}
+
+impl<'g> System<'g> {
+    /// The equations of motion under constraints, with multipliers.
+    ///
+    /// # Errors
+    /// [`MechError::ConstraintNotAffine`]; [`MechError::TooManyConstraints`] if no velocity is left free;
+    /// [`MechError::DependentConstraint`] for one that follows from those before it, or contradicts them;
+    /// [`MechError::DegenerateLagrangian`] if the constraints leave velocities without inertia.
+    pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
+        let (graph, eta) = (self.graph(), &self.quasi_velocities);
+        let (k, m) = (eta.len(), constraints.len());
+        if m >= k {
+            return Err(MechError::TooManyConstraints { constraints: m, quasi_velocities: k });
+        }
+        let mut velocities = Vec::new();
+        let mut rows = Vec::new();
+        for constraint in constraints {
+            let velocity = self.velocity_of(constraint);
+            let row = graph.gradient(velocity, eta);
+            if row.iter().any(|c| eta.iter().any(|&eta| c.depends_on(eta))) {
+                return Err(MechError::ConstraintNotAffine { constraint: constraint.name.clone() });
+            }
+            rows.push(row);
+            if graph.generic_rank(&rows) < rows.len() {
+                return Err(MechError::DependentConstraint { constraint: constraint.name.clone() });
+            }
+            velocities.push(velocity);
+        }
+        let equations = self.equations(k)?;
+        let along: Vec<_> = self
+            .frame
+            .coordinates()
+            .iter()
+            .copied()
+            .zip(equations.velocities.iter().copied())
+            .chain([(self.frame.time(), Expr::ONE)])
+            .collect();
+        let order = self.collecting_order();
+        let right: Vec<Expr<'g>> =
+            graph.directional(&velocities, &along).into_iter().map(|rate| -rate).collect();
+        let names: Vec<String> =
+            constraints.iter().map(|constraint| format!("λ_{}", constraint.name)).collect();
+        let multipliers = Multipliers {
+            equations,
+            constraints: constraints.to_vec(),
+            coefficients: Matrix::from_fn(m, k, |a, s| rows[a][s]),
+            velocities: graph.shorten(&velocities, &order),
+            right: graph.shorten(&right, &order),
+            reactions: names.into_iter().map(|name| self.unused(name, "λ_")).collect(),
+            observed: false,
+        };
+        let bordered = multipliers.bordered();
+        if graph.generic_rank(&bordered.to_rows()) < bordered.rows() {
+            self.check_regular(&multipliers.equations.mass)?;
+        }
+        Ok(multipliers)
+    }
+
+    /// C η + c_0 of a constraint: itself if it is one on velocities, X_0 f + η_s X_s f otherwise.
+    fn velocity_of(&self, constraint: &Constraint<'g>) -> Expr<'g> {
+        let (graph, eta) = (self.graph(), &self.quasi_velocities);
+        if eta.iter().any(|&eta| constraint.expression.depends_on(eta)) {
+            return constraint.expression;
+        }
+        let rates = self.frame.coordinates().iter().copied().zip(self.frame.velocities(eta));
+        let along: Vec<_> = rates.chain([(self.frame.time(), Expr::ONE)]).collect();
+        graph.directional(&[constraint.expression], &along)[0]
+    }
+}
+
+impl<'g> Multipliers<'g> {
+    /// M, r and the energy of the unconstrained system.
+    pub fn equations(&self) -> &Equations<'g> {
+        &self.equations
+    }
+
+    /// The constraints.
+    pub fn constraints(&self) -> &[Constraint<'g>] {
+        &self.constraints
+    }
+
+    /// C η + c_0 of each constraint, length m.
+    pub fn velocities(&self) -> &[Expr<'g>] {
+        &self.velocities
+    }
+
+    /// C, m × k.
+    pub fn coefficients(&self) -> &Matrix<Expr<'g>> {
+        &self.coefficients
+    }
+
+    /// The symbols λ_α of the reactions, `λ_` before the name of the constraint; outputs of the system may contain
+    /// them.
+    pub fn reactions(&self) -> &[Expr<'g>] {
+        &self.reactions
+    }
+
+    /// Whether a constraint is one on positions.
+    pub fn is_holonomic(&self, constraint: usize) -> bool {
+        let eta = &self.equations.system.quasi_velocities;
+        self.constraints.get(constraint).is_some_and(|c| !eta.iter().any(|&eta| c.expression.depends_on(eta)))
+    }
+
+    /// The same with the reactions as observables, after all others.
+    #[must_use]
+    pub fn observe_reactions(self) -> Multipliers<'g> {
+        Multipliers { observed: true, ..self }
+    }
+
+    /// Compiles as [`compile_for`](Multipliers::compile_for) does with the usual options.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn compile(&self) -> Result<Motion, MechError> {
+        self.compile_for(CompileOptions::default())
+    }
+
+    /// Compiles the equations as a vector field of the state (x, η), with its projection.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
+    /// parameter.
+    pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
+        let first_order = self.first_order();
+        let motion = first_order.compile(&options.into(), LONGEST_ELIMINATION)?;
+        let names = self.constraints.iter().map(|constraint| constraint.name.clone()).collect();
+        Ok(motion.on_surface(names, self.surface(&first_order)?))
+    }
+
+    fn surface(&self, first_order: &FirstOrder<'g>) -> Result<Surface, MechError> {
+        let system = &self.equations.system;
+        let (graph, eta) = (system.graph(), &system.quasi_velocities);
+        let places: Vec<usize> = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a)).collect();
+        let positions: Vec<Expr<'g>> = places.iter().map(|&a| self.constraints[a].expression).collect();
+        let bordered = self.bordered();
+        let size = bordered.rows();
+        let below: Vec<Vec<Expr<'g>>> = (0..size)
+            .map(|j| (0..size).map(|i| if i < j { Expr::ZERO } else { bordered[(i, j)] }).collect())
+            .collect();
+        let (lower, entries) = nonzeros(size, &below);
+        let b = system.frame.b();
+        let displacements: Vec<Expr<'g>> =
+            (0..b.rows()).map(|i| graph.dot(b.row(i).iter().copied(), eta.iter().copied())).collect();
+        let conditions = Conditions {
+            positions: &positions,
+            places,
+            velocities: &self.velocities,
+            displacements: &displacements,
+            lower,
+            bordered: &entries,
+            quasi_velocities: eta.len(),
+        };
+        Ok(Surface::new(&first_order.inputs(&[]), conditions, graph)?)
+    }
+
+    /// The matrix of M η̇ − Cᵀ λ = r, −C η̇ = (dC/dt) η + dc_0/dt.
+    fn bordered(&self) -> Matrix<Expr<'g>> {
+        let (mass, c) = (&self.equations.mass, &self.coefficients);
+        let (k, size) = (mass.rows(), mass.rows() + c.rows());
+        Matrix::from_fn(size, size, |i, j| match (i < k, j < k) {
+            (true, true) => mass[(i, j)],
+            (false, true) => -c[(i - k, j)],
+            (true, false) => -c[(j - k, i)],
+            (false, false) => Expr::ZERO,
+        })
+    }
+
+    /// The case w = (η̇, λ), g = (b η + b_0, η̇).
+    fn first_order(&self) -> FirstOrder<'g> {
+        let plain = self.equations.first_order();
+        let graph = plain.graph;
+        let negative = self.right.iter().map(|&rate| -rate);
+        let name = |reaction: &Expr<'g>| reaction.to_string();
+        let mut observables = plain.observables;
+        if self.observed {
+            observables.extend(self.reactions.iter().map(|reaction| (name(reaction), *reaction)));
+        }
+        FirstOrder {
+            graph,
+            multipliers: self.reactions.len(),
+            unknowns: plain.unknowns.into_iter().chain(self.reactions.iter().copied()).collect(),
+            names: plain
+                .names
+                .into_iter()
+                .chain(self.constraints.iter().map(|constraint| constraint.name.clone()))
+                .collect(),
+            mass: self.bordered(),
+            right: plain.right.into_iter().chain(negative).collect(),
+            observables,
+            ..plain
+        }
+    }
+}
