@@ -31,6 +31,7 @@ mod compiled;
 mod emit;
 mod error;
 mod hamilton_jacobi;
+mod independent;
 mod integrals;
 mod lagrange;
 mod legendre;

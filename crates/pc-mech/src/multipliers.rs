@@ -1,7 +1,7 @@
 //! Constraints held by multipliers, in whatever coordinates.
 
 use pc_algebra::Matrix;
-use pc_expr::Expr;
+use pc_expr::{Expr, Pattern};
 
 use crate::compiled::columns::nonzeros;
 use crate::compiled::first_order::FirstOrder;
@@ -216,12 +216,7 @@ impl<'g> Multipliers<'g> {
         let (graph, eta) = (system.graph(), &system.quasi_velocities);
         let places: Vec<usize> = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a)).collect();
         let positions: Vec<Expr<'g>> = places.iter().map(|&a| self.constraints[a].expression).collect();
-        let bordered = self.bordered();
-        let size = bordered.rows();
-        let below: Vec<Vec<Expr<'g>>> = (0..size)
-            .map(|j| (0..size).map(|i| if i < j { Expr::ZERO } else { bordered[(i, j)] }).collect())
-            .collect();
-        let (lower, entries) = nonzeros(size, &below);
+        let (lower, entries) = self.lower_triangle();
         let b = system.frame.b();
         let displacements: Vec<Expr<'g>> =
             (0..b.rows()).map(|i| graph.dot(b.row(i).iter().copied(), eta.iter().copied())).collect();
@@ -247,6 +242,14 @@ impl<'g> Multipliers<'g> {
             (true, false) => -c[(j - k, i)],
             (false, false) => Expr::ZERO,
         })
+    }
+
+    /// What is not zero of its lower triangle, and where.
+    pub(crate) fn lower_triangle(&self) -> (Pattern, Vec<Expr<'g>>) {
+        let bordered = self.bordered();
+        let size = bordered.rows();
+        let below = |j: usize| (0..size).map(|i| if i < j { Expr::ZERO } else { bordered[(i, j)] }).collect();
+        nonzeros(size, &(0..size).map(below).collect::<Vec<_>>())
     }
 
     /// The case w = (η̇, λ), g = (b η + b_0, η̇).

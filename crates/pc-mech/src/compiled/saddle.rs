@@ -60,6 +60,20 @@ impl Saddle {
     /// # Errors
     /// [`Fault::Pivot`] with the index of the unknown, or k and that of the constraint, whose pivot vanishes.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+        self.eliminate(lower, values)?;
+        self.express_dependent();
+        let reduced = self.reduced_mass();
+        self.reduced.factorise(&self.full, &reduced).map_err(|fault| match fault {
+            Fault::Pivot { index, pivot } => Fault::Pivot { index: self.columns[self.m + index], pivot },
+            other => other,
+        })
+    }
+
+    /// As [`factorise`](Saddle::factorise), but only so far that the dependent unknowns are known.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn eliminate(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
         let k = self.k;
         self.mass.fill(0.0);
         self.constraints.fill(0.0);
@@ -71,18 +85,17 @@ impl Saddle {
                 self.constraints[(i - k) * k + j] = value;
             }
         }
-        self.eliminate()?;
-        self.express_dependent();
-        let reduced = self.reduced_mass();
-        self.reduced.factorise(&self.full, &reduced).map_err(|fault| match fault {
-            Fault::Pivot { index, pivot } => Fault::Pivot { index: self.columns[self.m + index], pivot },
-            other => other,
-        })
+        self.pivot()
+    }
+
+    /// The dependent unknowns.
+    pub(crate) fn dependent(&self) -> &[usize] {
+        &self.columns[..self.m]
     }
 
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
     /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter.
-    fn eliminate(&mut self) -> Result<(), Fault> {
+    fn pivot(&mut self) -> Result<(), Fault> {
         let (k, m) = (self.k, self.m);
         let weight = |mass: f64| if mass > 0.0 { mass.sqrt().recip() } else { 1.0 };
         let weights: Vec<f64> = (0..k).map(|s| weight(self.mass[s * k + s])).collect();

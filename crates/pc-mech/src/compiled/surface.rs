@@ -22,7 +22,7 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) velocities: &'a [Expr<'g>],
     /// b η
     pub(crate) displacements: &'a [Expr<'g>],
-    /// The lower triangle of the mass matrix bordered by ∂g/∂η, and its pattern.
+    /// The lower triangle of the mass matrix bordered by −C = −∂g/∂η, and its pattern.
     pub(crate) lower: Pattern,
     pub(crate) bordered: &'a [Expr<'g>],
     /// Number of quasi-velocities.
@@ -124,10 +124,10 @@ impl Surface {
             check_finite(found, &self.positions, (t, y, p))?;
             self.change.fill(0.0);
             for (&place, &value) in self.places.iter().zip(&*found) {
-                self.change[self.k + place] = -value;
+                self.change[self.k + place] = value;
             }
             self.solver.solve(&mut self.change);
-            // M δπ + Cᵀ μ = 0 and C δπ = −f: δπᵀ M δπ = μ f
+            // M δπ − Cᵀ μ = 0 and −C δπ = f: δπᵀ M δπ = −μ f
             let multipliers = self.places.iter().map(|&place| self.change[self.k + place]);
             let length = multipliers.zip(&*found).map(|(mu, f)| mu * f).sum::<f64>().abs().sqrt();
             self.displaced[..n].copy_from_slice(&y[..n]);
@@ -155,7 +155,7 @@ impl Surface {
             check_finite(&self.residual, &self.velocities, (t, y, p))?;
             self.change[..self.k].fill(0.0);
             for (change, residual) in self.change[self.k..].iter_mut().zip(&self.residual) {
-                *change = -residual;
+                *change = *residual;
             }
             self.solver.solve(&mut self.change);
             for (eta, change) in y[self.coordinates..].iter_mut().zip(&self.change) {
