@@ -38,6 +38,7 @@ mod legendre;
 mod multipliers;
 mod numeric;
 mod poincare;
+mod reduction;
 mod stability;
 mod system;
 

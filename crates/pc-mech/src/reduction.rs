@@ -1,0 +1,93 @@
+//! Coordinates that nothing depends on, left out: Euler–Poincaré equations.
+
+use pc_algebra::{Frame, Matrix};
+use pc_expr::Expr;
+
+use crate::error::MechError;
+use crate::system::System;
+
+impl<'g> System<'g> {
+    /// The system without the coordinates that its motion does not depend on: neither L, Q and c_rs^m do, nor the
+    /// velocities of the coordinates that are kept.
+    ///
+    /// On a group with L invariant, X_s L = 0, and constant c_rs^m no coordinate is left, and the equations (9) are
+    /// those of Euler–Poincaré,
+    ///
+    ///   d/dt ∂L/∂η_s = c_rs^m η_r ∂L/∂η_m + Q_s,
+    ///
+    /// the [canonical](System::canonical) ones those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and outputs in
+    /// which the others stand are left out. What was left out is found again by integrating ẋ = b η + b_0 (3).
+    ///
+    /// # Errors
+    /// [`MechError::Algebra`] if the parts do not fit together, which those of a system that was built do.
+    ///
+    /// ```
+    /// use pc_algebra::{LieGroup, UnitQuaternions};
+    /// use pc_mech::{Graph, System};
+    ///
+    /// // A free rigid body whose attitude is a unit quaternion.
+    /// let graph = Graph::new();
+    /// let q = graph.symbols(["q0", "q1", "q2", "q3"]);
+    /// let body = System::builder(&graph)
+    ///     .coordinates(["q0", "q1", "q2", "q3"])
+    ///     .quasi_velocities(["ω1", "ω2", "ω3"])
+    ///     .frame(UnitQuaternions.left_frame(&graph, graph.symbol("t"), q.to_vec())?)
+    ///     .lagrangian(|_, _, w| (w[0].square() + 2.0 * w[1].square() + 3.0 * w[2].square()) / 2.0)
+    ///     .build()?;
+    /// let euler = body.reduced()?;
+    /// assert_eq!(euler.frame().coordinates(), []);
+    /// assert_eq!(euler.poincare()?.right_hand_side()[0].to_string(), "-ω2*ω3");
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn reduced(&self) -> Result<System<'g>, MechError> {
+        let graph = self.graph();
+        let order = self.collecting_order();
+        let short = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
+        let lagrangian = short(&[self.lagrangian])[0];
+        let forces = short(&self.forces);
+        let structure = self.structure.map(|c| short(&[c])[0]);
+        let brackets = structure.nonzero().map(|(.., c)| c);
+        let dynamics: Vec<Expr<'g>> = brackets.chain(forces.iter().copied()).chain([lagrangian]).collect();
+        let kept = self.kept(&dynamics);
+
+        let x = self.frame.coordinates();
+        let (b, b0) = (self.frame.b(), self.frame.b0());
+        let frame = Frame::new(
+            graph,
+            self.frame.time(),
+            kept.iter().map(|&i| x[i]).collect(),
+            Matrix::from_fn(kept.len(), b.columns(), |i, s| b[(kept[i], s)]),
+            kept.iter().map(|&i| b0[i]).collect(),
+        )?;
+        let dropped: Vec<Expr<'g>> = (0..x.len()).filter(|i| !kept.contains(i)).map(|i| x[i]).collect();
+        let known = |list: &[(String, Expr<'g>)]| -> Vec<(String, Expr<'g>)> {
+            list.iter().filter(|(_, f)| !dropped.iter().any(|&x| f.depends_on(x))).cloned().collect()
+        };
+        Ok(System {
+            frame,
+            structure,
+            quasi_velocities: self.quasi_velocities.clone(),
+            parameters: self.parameters.clone(),
+            lagrangian,
+            forces,
+            integrals: known(&self.integrals),
+            outputs: known(&self.outputs),
+        })
+    }
+
+    /// The coordinates that `dynamics` depend on, and those that the velocities of these do.
+    fn kept(&self, dynamics: &[Expr<'g>]) -> Vec<usize> {
+        let x = self.frame.coordinates();
+        let mut matters: Vec<bool> = x.iter().map(|&x| dynamics.iter().any(|f| f.depends_on(x))).collect();
+        loop {
+            let rows = (0..x.len()).filter(|&i| matters[i]);
+            let row = |i: usize| self.frame.b().row(i).iter().chain([&self.frame.b0()[i]]);
+            let velocities: Vec<Expr<'g>> = rows.flat_map(row).copied().collect();
+            let more = (0..x.len()).find(|&i| !matters[i] && velocities.iter().any(|v| v.depends_on(x[i])));
+            match more {
+                Some(i) => matters[i] = true,
+                None => return (0..x.len()).filter(|&i| matters[i]).collect(),
+            }
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Constraints held by multipliers against the same in independent velocities, and where their states lie.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_algebra::{LieGroup, UnitQuaternions};
+use pc_mech::{
+    AlgebraError, CompileOptions, Constraint, Expr, Graph, MechError, Motion, Multipliers, System,
+    VectorField,
+};
+
+/// A double pendulum in Cartesian coordinates, its point of support moved up and down; a force depends on velocities.
+fn pendulum(graph: &Graph) -> Multipliers<'_> {
+    let [m, l, t, x1, y1, x2, y2] = graph.symbols(["m", "l", "t", "x1", "y1", "x2", "y2"]);
+    let system = System::builder(graph)
+        .parameter(m, 2.0)
+        .parameter(l, 0.8)
+        .coordinates(["x1", "y1", "x2", "y2"])
+        .lagrangian(|_, x, v| {
+            let kinetic = (v[0].square() + v[1].square() + m * (v[2].square() + v[3].square())) / 2.0;
+            kinetic - 10.0 * (x[1] + m * x[3])
+        })
+        .forces(|_, x, v| [-0.1 * v[0], 0.0.into(), x[0] * v[3], -0.2 * v[3] * v[2]])
+        .build()
+        .unwrap();
+    let support = 0.3 * (2.0 * t).sin();
+    let links = [
+        Constraint::new("upper", x1.square() + (y1 - support).square() - 1.0),
+        Constraint::new("lower", (x2 - x1).square() + (y2 - y1).square() - l.square()),
+    ];
+    system.with_multipliers(&links).unwrap()
+}
+
+/// Numbers in −1..1, the same on every run.
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A state of the surface near a random one.
+fn on_surface(motion: &mut Motion, t: f64, next: &mut impl FnMut() -> f64) -> Vec<f64> {
+    loop {
+        let mut y: Vec<f64> = (0..motion.dim()).map(|_| 1.5 * next()).collect();
+        if motion.project(t, &mut y).is_ok() {
+            return y;
+        }
+    }
+}
+
+fn values<'g>(graph: &'g Graph, motion: &Motion, t: f64, y: &[f64]) -> Vec<(Expr<'g>, f64)> {
+    let state = motion.names().iter().map(|name| graph.symbol(name)).zip(y.iter().copied());
+    state.chain([(graph.symbol("t"), t)]).collect()
+}
+
+#[test]
+fn rates_are_those_of_independent_velocities() {
+    let graph = Graph::new();
+    let multipliers = pendulum(&graph);
+    let mut motion = multipliers.compile().unwrap();
+    let mut next = numbers(3);
+    let mut choices = Vec::new();
+    for _ in 0..40 {
+        let t = next();
+        let y = on_surface(&mut motion, t, &mut next);
+        let at = values(&graph, &motion, t, &y);
+        let system = multipliers.in_independent_velocities(&at).unwrap();
+        let free: Vec<usize> = system
+            .quasi_velocities()
+            .iter()
+            .map(|eta| motion.names().iter().position(|name| *name == eta.to_string()).unwrap())
+            .collect();
+        let mut independent = system.poincare().unwrap().compile().unwrap();
+        let state: Vec<f64> = y[..4].iter().copied().chain(free.iter().map(|&s| y[s])).collect();
+        let (mut rates, mut expected) = (vec![0.0; 8], vec![0.0; 6]);
+        motion.rhs(t, &y, &mut rates).unwrap();
+        independent.rhs(t, &state, &mut expected).unwrap();
+        let found = rates[..4].iter().copied().chain(free.iter().map(|&s| rates[s]));
+        for (found, expected) in found.zip(&expected) {
+            // Rounding, times the condition of the choice and the size of rates up to some hundreds.
+            assert!((found - expected).abs() < 1e-11 * (1.0 + expected.abs()), "{found} {expected}");
+        }
+        if !choices.contains(&free) {
+            choices.push(free);
+        }
+    }
+    assert!(choices.len() >= 4, "all choices of independent velocities occur: {choices:?}");
+}
+
+/// The surface is reached, kept, and reached by the shortest way: the way is a combination of M⁻¹ ∂f/∂x.
+#[test]
+fn projection_goes_to_the_surface_by_the_shortest_way() {
+    let graph = Graph::new();
+    let mut motion = pendulum(&graph).compile().unwrap();
+    let mut next = numbers(11);
+    for _ in 0..40 {
+        let t = next();
+        let y = on_surface(&mut motion, t, &mut next);
+        let residuals = motion.constraint_residuals(t, &y);
+        assert!(residuals.iter().all(|r| r.abs() < 1e-14), "{residuals:?}");
+        let mut again = y.clone();
+        motion.project(t, &mut again).unwrap();
+        // The last correction is of the size of the rounding of f, over the least singular value of C.
+        assert!(again.iter().zip(&y).all(|(a, b)| (a - b).abs() < 1e-14), "a state of the surface stays");
+
+        let size = 1e-5;
+        let near: Vec<f64> = y.iter().map(|y| y + size * next()).collect();
+        let mut projected = near.clone();
+        motion.project(t, &mut projected).unwrap();
+        let way: Vec<f64> = projected.iter().zip(&near).map(|(a, b)| a - b).collect();
+        // A displacement δ with C δ = 0 is orthogonal to the way in the kinetic metric diag(1, 1, 2, 2).
+        let support = 0.3 * (2.0 * t).sin();
+        let (r1, r2) = ([y[0], y[1] - support], [y[2] - y[0], y[3] - y[1]]);
+        let turn = [-r1[1], r1[0], -r1[1], r1[0]];
+        let fold = [0.0, 0.0, -r2[1], r2[0]];
+        for tangent in [turn, fold] {
+            let mass = [1.0, 1.0, 2.0, 2.0];
+            let product: f64 = (0..4).map(|i| mass[i] * tangent[i] * way[i]).sum();
+            // The normal at the end and on the way differ by the order of the distance.
+            assert!(product.abs() < 100.0 * size * size, "{product:e}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_are_limits_of_difference_quotients() {
+    let graph = Graph::new();
+    let options = CompileOptions::default().jvp(true).parameter_jacobian(true);
+    let mut motion = pendulum(&graph).compile_for(options).unwrap();
+    let mut next = numbers(5);
+    for _ in 0..10 {
+        let t = next();
+        let y = on_surface(&mut motion, t, &mut next);
+        let mut jacobian = [0.0; 64];
+        motion.jacobian(t, &y, &mut jacobian).unwrap();
+        let step = 1e-5;
+        let rate = |motion: &mut Motion, y: &[f64]| {
+            let mut rate = vec![0.0; 8];
+            motion.rhs(t, y, &mut rate).unwrap();
+            rate
+        };
+        let size = jacobian.iter().fold(1.0f64, |size, j| size.max(j.abs()));
+        // The quotient errs by step² times a third derivative, and by rounding over the step.
+        let tolerance = 1e-6 * size;
+        for j in 0..8 {
+            let at = |h: f64| {
+                y.iter().enumerate().map(|(i, y)| if i == j { y + h } else { *y }).collect::<Vec<_>>()
+            };
+            let (up, down) = (rate(&mut motion, &at(step)), rate(&mut motion, &at(-step)));
+            for i in 0..8 {
+                let quotient = (up[i] - down[i]) / (2.0 * step);
+                assert!((quotient - jacobian[i + 8 * j]).abs() < tolerance, "{i} {j}");
+            }
+        }
+        let v: Vec<f64> = (0..8).map(|_| next()).collect();
+        let mut product = [0.0; 8];
+        motion.jvp(t, &y, &v, &mut product).unwrap();
+        for i in 0..8 {
+            let expected: f64 = (0..8).map(|j| jacobian[i + 8 * j] * v[j]).sum();
+            assert!((product[i] - expected).abs() < 1e-11 * size);
+        }
+        let mut by_parameters = [0.0; 16];
+        motion.parameter_jacobian(t, &y, &mut by_parameters).unwrap();
+        let mass = motion.parameters()[0];
+        motion.parameters_mut()[0] = mass + step;
+        let up = rate(&mut motion, &y);
+        motion.parameters_mut()[0] = mass - step;
+        let down = rate(&mut motion, &y);
+        motion.parameters_mut()[0] = mass;
+        for i in 0..8 {
+            assert!(((up[i] - down[i]) / (2.0 * step) - by_parameters[i]).abs() < tolerance);
+        }
+    }
+}
+
+/// A quaternion whose body is held at two angles: quasi-velocities that are no velocities, conditions of both kinds.
+#[test]
+fn conditions_of_both_kinds_bind_quasi_velocities() {
+    let graph = Graph::new();
+    let [q0, q1, q2, q3, w1, w3] = graph.symbols(["q0", "q1", "q2", "q3", "ω1", "ω3"]);
+    let body = System::builder(&graph)
+        .coordinates(["q0", "q1", "q2", "q3"])
+        .quasi_velocities(["ω1", "ω2", "ω3"])
+        .frame(UnitQuaternions.left_frame(&graph, graph.symbol("t"), vec![q0, q1, q2, q3]).unwrap())
+        .lagrangian(|_, _, w| {
+            (w[0].square() + 2.0 * w[1].square() + 3.0 * w[2].square()) / 2.0 + w[0] * w[2] / 5.0
+        })
+        .build()
+        .unwrap();
+    // The third axis of the body stays at an angle to the vertical, and ω1 + 2 ω3 = 1.
+    let tilt = Constraint::new("tilt", q0.square() - q1.square() - q2.square() + q3.square() - 0.5);
+    let gear = Constraint::new("gear", w1 + 2.0 * w3 - 1.0);
+    let multipliers = body.with_multipliers(&[tilt, gear]).unwrap();
+    assert!(multipliers.is_holonomic(0) && !multipliers.is_holonomic(1));
+    let mut motion = multipliers.observe_reactions().compile().unwrap();
+    let mut y = vec![0.9, 0.3, 0.1, 0.2, 0.3, 0.2, 0.1];
+    motion.project(0.0, &mut y).unwrap();
+    assert!((y[4] + 2.0 * y[6] - 1.0).abs() < 1e-15);
+    let mut rates = [0.0; 7];
+    motion.rhs(0.0, &y, &mut rates).unwrap();
+    assert!((rates[4] + 2.0 * rates[6]).abs() < 1e-14, "ω̇1 + 2 ω̇3 = 0");
+    // M ω̇ − Mω × ω = Cᵀ λ, with γ = (2(q1q3 − q0q2), 2(q2q3 + q0q1), …) and γ̇3 = γ1 ω2 − γ2 ω1
+    let (w, a) = (&y[4..], &rates[4..]);
+    let momentum = |w: &[f64]| [w[0] + w[2] / 5.0, 2.0 * w[1], 3.0 * w[2] + w[0] / 5.0];
+    let (m, left) = (momentum(w), momentum(a));
+    let cross = [m[1] * w[2] - m[2] * w[1], m[2] * w[0] - m[0] * w[2], m[0] * w[1] - m[1] * w[0]];
+    let gamma = [2.0 * (y[1] * y[3] - y[0] * y[2]), 2.0 * (y[2] * y[3] + y[0] * y[1])];
+    let observed = motion.observe(0.0, &y);
+    let [tilt, gear] = [observed[observed.len() - 2], observed[observed.len() - 1]];
+    let right = [gear - tilt * gamma[1], tilt * gamma[0], 2.0 * gear];
+    for s in 0..3 {
+        assert!((left[s] - cross[s] - right[s]).abs() < 1e-13, "{s}");
+    }
+}
+
+#[test]
+fn what_cannot_be_held_is_refused() {
+    let graph = Graph::new();
+    let [x, y, vx, vy] = graph.symbols(["x", "y", "x'", "y'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let refused = |constraints: &[Constraint<'_>]| {
+        system.with_multipliers(constraints).map(|_| ()).unwrap_err().to_string()
+    };
+    let circle = Constraint::new("circle", x.square() + y.square() - 1.0);
+    let rolling = Constraint::new("rolling", x * vx + y * vy);
+    let line = Constraint::new("line", x - y);
+    let third = Constraint::new("third", vx + x * vy);
+    assert_eq!(
+        refused(&[circle.clone(), rolling]),
+        "the constraint `rolling` restricts no velocity that those before it leave free"
+    );
+    assert_eq!(
+        refused(&[circle.clone(), line.clone(), third]),
+        "3 constraints leave no freedom to 3 quasi-velocities"
+    );
+    assert_eq!(
+        refused(&[Constraint::new("speed", vx.square() + vy.square() - 1.0)]),
+        "the constraint `speed` is not affine in the quasi-velocities"
+    );
+    assert_eq!(
+        refused(&[Constraint::new("nothing", graph.symbol("t").sin())]),
+        "the constraint `nothing` restricts no velocity that those before it leave free"
+    );
+
+    // x² + y² = 1 and x = y are independent but where they touch: at the origin.
+    let mut motion = system.with_multipliers(&[circle, line]).unwrap().compile().unwrap();
+    let failure = motion.rhs(0.5, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0], &mut [0.0; 6]).unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        "the constraint `circle` restricts no velocity that the others leave free at t = 0.5, x = 0, y = 0, z = 1, \
+         x' = 0, y' = 0, z' = 0"
+    );
+    let cut = Constraint::new("cut", x.square() + 1.0);
+    let mut motion = system.with_multipliers(&[cut]).unwrap().compile().unwrap();
+    let failure = motion.project(0.0, &mut [0.7, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap_err();
+    let text = failure.to_string();
+    assert!(
+        text.starts_with("no state that satisfies the constraints `cut` was found near t = 0, x = "),
+        "{text}"
+    );
+}
+
+#[test]
+fn independent_velocities_need_integrable_constraints() {
+    let graph = Graph::new();
+    let [x, y, vx, vy, vz] = graph.symbols(["x", "y", "x'", "y'", "z'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let at = [(x, 0.3), (y, 0.5), (graph.symbol("z"), 0.1), (vx, 1.0), (vy, 2.0), (vz, 0.5)];
+    let knife = Constraint::new("knife", vz - y * vx);
+    let error = system.with_multipliers(&[knife]).unwrap().in_independent_velocities(&at).unwrap_err();
+    assert!(matches!(error, MechError::Algebra(AlgebraError::NotClosed { pair: (1, 2), .. })), "{error:?}");
+    // … and y = const is integrable whatever form it has.
+    let groove = Constraint::new("groove", vy * (1.0 + x.square()));
+    let system = system.with_multipliers(&[groove]).unwrap().in_independent_velocities(&at).unwrap();
+    assert_eq!(system.quasi_velocities(), [vx, vz]);
+}
