@@ -41,6 +41,7 @@ mod poincare;
 mod reduction;
 mod stability;
 mod system;
+mod velocities;
 
 pub use canonical::Canonical;
 pub use compiled::motion::Motion;
@@ -64,3 +65,4 @@ pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady::{SteadyMotion, SteadyOptions};
 pub use stability::variation::Variation;
 pub use system::{System, SystemBuilder};
+pub use velocities::VelocityTransform;
