@@ -84,7 +84,47 @@ impl<'g> Frame<'g> {
     }
 }
 
+impl<'g> Frame<'g> {
+    /// The change to the quasi-velocities η' = A η + A_0, with A of k × k and A_0 of length k; whatever the rank of the
+    /// frame.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Shape`]; [`AlgebraError::SingularDefinitions`] if A is singular everywhere.
+    ///
+    /// ```
+    /// # use pc_algebra::{Frame, Matrix, Neighbourhood};
+    /// # use pc_expr::{Expr, Graph};
+    /// // η' = ẋ₁, ẋ₂ − x₁ ẋ₁: X'_1 = ∂/∂x₁ + x₁ ∂/∂x₂, X'_2 = ∂/∂x₂.
+    /// let graph = Graph::new();
+    /// let [t, x1, x2] = graph.symbols(["t", "x1", "x2"]);
+    /// let frame = Frame::coordinate(&graph, t, vec![x1, x2]);
+    /// let a = Matrix::from_fn(2, 2, |i, j| if i == j { Expr::ONE } else if i == 1 { -x1 } else { Expr::ZERO });
+    /// let change = frame.changed_by(&a, &[Expr::ZERO, Expr::ZERO])?;
+    /// assert_eq!(change.frame().b()[(1, 0)], x1);
+    /// # Ok::<(), pc_algebra::AlgebraError>(())
+    /// ```
+    pub fn changed_by(&self, a: &Matrix<Expr<'g>>, a0: &[Expr<'g>]) -> Result<FrameChange<'g>, AlgebraError> {
+        let (graph, k) = (self.graph(), self.operators());
+        shape("the matrix A", a.rows(), k)?;
+        shape("the drift A_0", a0.len(), k)?;
+        let back = inverse(graph, a).ok_or(AlgebraError::SingularDefinitions)?;
+        let back0: Vec<Expr<'g>> =
+            (0..k).map(|m| -graph.dot(back.row(m).iter().copied(), a0.iter().copied())).collect();
+        let b = Matrix::from_fn(self.b().rows(), k, |i, s| {
+            graph.dot(self.b().row(i).iter().copied(), back.column(s))
+        });
+        let b0 = self.velocities(&back0);
+        let to = Frame::new(graph, self.time(), self.coordinates().to_vec(), b, b0)?;
+        Ok(FrameChange { to, matrix: a.clone(), drift: a0.to_vec(), back: (back, back0) })
+    }
+}
+
 impl<'g> FrameChange<'g> {
+    /// The frame it leads to.
+    pub fn frame(&self) -> &Frame<'g> {
+        &self.to
+    }
+
     /// A, k × k.
     pub fn matrix(&self) -> &Matrix<Expr<'g>> {
         &self.matrix
@@ -93,6 +133,18 @@ impl<'g> FrameChange<'g> {
     /// A_0, length k.
     pub fn drift(&self) -> &[Expr<'g>] {
         &self.drift
+    }
+
+    /// B = A⁻¹, k × k.
+    pub fn back(&self) -> &Matrix<Expr<'g>> {
+        &self.back.0
+    }
+
+    /// η = B η' + B_0; `eta` has length k.
+    pub fn old_quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let (graph, (b, b0)) = (self.to.graph(), &self.back);
+        let row = |m: usize| b.row(m).iter().zip(eta).map(|(&b, &eta)| b * eta);
+        (0..eta.len()).map(|m| graph.sum(row(m).chain([b0[m]]))).collect()
     }
 
     /// η' = A η + A_0; `eta` has length k.

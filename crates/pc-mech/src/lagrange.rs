@@ -1,6 +1,6 @@
 //! The same system in the velocities of its coordinates: Lagrange's equations.
 
-use pc_algebra::Frame;
+use pc_algebra::{AlgebraError, Frame};
 use pc_expr::Expr;
 
 use crate::error::MechError;
@@ -20,38 +20,14 @@ impl<'g> System<'g> {
         if coordinates.len() != k {
             return Err(MechError::Redundant { coordinates: coordinates.len(), quasi_velocities: k });
         }
-        let (a, a0) = self.frame.definitions()?;
-        let prime = |x: &Expr<'g>, marks: &str| graph.symbol(&format!("{x}{marks}"));
-        let velocities: Vec<Expr<'g>> = coordinates.iter().map(|x| prime(x, "'")).collect();
-        let accelerations = coordinates.iter().map(|x| prime(x, "''"));
-        let eta: Vec<Expr<'g>> =
-            (0..k).map(|s| graph.dot(a.row(s).iter().copied(), velocities.iter().copied()) + a0[s]).collect();
-
-        // η̇ along ẋ and ẍ, for the integrals and outputs that contain it.
-        let moving = coordinates.iter().chain(&velocities).copied();
-        let rates = velocities.iter().copied().chain(accelerations).chain([Expr::ONE]);
-        let along: Vec<_> = moving.chain([self.frame.time()]).zip(rates).collect();
-        let eta_rates = graph.directional(&eta, &along);
-        let old = self.quasi_velocities.iter().copied().chain(self.accelerations());
-        let values: Vec<_> = old.zip(eta.iter().copied().chain(eta_rates)).collect();
-        let put = |x: Expr<'g>| graph.substitute(&[x], &values)[0];
-        let named =
-            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
-
+        let (rank, operators) = (self.frame.rank(), k);
+        if rank < k {
+            return Err(AlgebraError::DependentOperators { rank, operators }.into());
+        }
+        let velocities: Vec<Expr<'g>> = coordinates.iter().map(|x| graph.symbol(&format!("{x}'"))).collect();
+        let change = self.change(&self.frame.velocities(&self.quasi_velocities))?;
         let frame = Frame::coordinate(graph, self.frame.time(), coordinates.to_vec());
         let structure = frame.structure_coefficients(&Default::default())?;
-        let forces: Vec<Expr<'g>> = self.forces.iter().map(|&q| put(q)).collect();
-        let order: Vec<Expr<'g>> =
-            velocities.iter().copied().chain(self.parameters.iter().map(|&(symbol, _)| symbol)).collect();
-        Ok(System {
-            forces: (0..k).map(|i| graph.dot(a.column(i), forces.iter().copied())).collect(),
-            lagrangian: graph.shorten(&[put(self.lagrangian)], &order)[0],
-            integrals: named(&self.integrals),
-            outputs: named(&self.outputs),
-            parameters: self.parameters.clone(),
-            quasi_velocities: velocities,
-            frame,
-            structure,
-        })
+        self.changed(velocities, &change, frame, structure)
     }
 }

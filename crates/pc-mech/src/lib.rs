@@ -27,6 +27,7 @@
 
 mod book;
 mod canonical;
+mod change;
 mod compiled;
 mod emit;
 mod error;

@@ -1,0 +1,107 @@
+//! The same system in other quasi-velocities.
+
+use pc_algebra::{AlgebraError, Frame, FrameChange, Matrix, StructureCoefficients};
+use pc_expr::Expr;
+
+use crate::error::MechError;
+use crate::system::System;
+
+impl<'g> System<'g> {
+    /// The same system in the quasi-velocities η' = A η + A_0, given by their names and their expressions in the old
+    /// ones. A name may be that of an old one.
+    ///
+    /// With η = B η' + B_0 the forces are Q'_u = B_su Q_s; the structure coefficients are those of
+    /// [`FrameChange::structure_coefficients`].
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]; [`AlgebraError::DefinitionNotAffine`]; [`AlgebraError::SingularDefinitions`] if A is
+    /// singular everywhere.
+    ///
+    /// ```
+    /// use pc_mech::{Graph, System};
+    ///
+    /// // A particle in the plane; u is its velocity across the direction φ.
+    /// let graph = Graph::new();
+    /// let [x, y, phi, vx, vy, w] = graph.symbols(["x", "y", "φ", "x'", "y'", "φ'"]);
+    /// let system = System::builder(&graph)
+    ///     .coordinates(["x", "y", "φ"])
+    ///     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+    ///     .build()?;
+    /// let (s, c) = (phi.sin(), phi.cos());
+    /// let changed = system.in_quasi_velocities(["v", "u", "ω"], &[c * vx + s * vy, c * vy - s * vx, w])?;
+    /// let equations = changed.poincare()?;
+    /// assert_eq!(equations.right_hand_side()[0].to_string(), "u*ω");
+    /// # let _ = (x, y);
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn in_quasi_velocities<S: AsRef<str>>(
+        &self,
+        names: impl IntoIterator<Item = S>,
+        definitions: &[Expr<'g>],
+    ) -> Result<System<'g>, MechError> {
+        let graph = self.graph();
+        let symbols: Vec<Expr<'g>> = names.into_iter().map(|name| graph.symbol(name.as_ref())).collect();
+        let (what, expected) = ("the list of new quasi-velocities", self.quasi_velocities.len());
+        for found in [symbols.len(), definitions.len()] {
+            if found != expected {
+                return Err(MechError::Shape { what, found, expected });
+            }
+        }
+        let change = self.change(definitions)?;
+        let structure = change.structure_coefficients(&self.structure)?;
+        self.changed(symbols, &change, change.frame().clone(), structure)
+    }
+
+    /// The change to quasi-velocities given by their expressions in the old ones.
+    pub(crate) fn change(&self, definitions: &[Expr<'g>]) -> Result<FrameChange<'g>, MechError> {
+        let (graph, eta) = (self.graph(), &self.quasi_velocities);
+        let rows: Vec<Vec<Expr<'g>>> = definitions.iter().map(|&d| graph.gradient(d, eta)).collect();
+        if let Some(row) =
+            rows.iter().position(|row| row.iter().any(|a| eta.iter().any(|&eta| a.depends_on(eta))))
+        {
+            let definition = definitions[row].to_string();
+            return Err(AlgebraError::DefinitionNotAffine { row: row + 1, definition }.into());
+        }
+        let zeros: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let drift = graph.substitute(definitions, &zeros);
+        let matrix = Matrix::from_fn(rows.len(), eta.len(), |u, s| rows[u][s]);
+        Ok(self.frame.changed_by(&matrix, &drift)?)
+    }
+
+    /// This system in the quasi-velocities of a change, which are called `symbols`, with the frame it leads to.
+    pub(crate) fn changed(
+        &self,
+        symbols: Vec<Expr<'g>>,
+        change: &FrameChange<'g>,
+        frame: Frame<'g>,
+        structure: StructureCoefficients<'g>,
+    ) -> Result<System<'g>, MechError> {
+        let graph = self.graph();
+        let old = change.old_quasi_velocities(&symbols);
+        let x = frame.coordinates().iter().copied().zip(frame.velocities(&symbols));
+        let rates = symbols.iter().map(|eta| (*eta, graph.symbol(&format!("{eta}'"))));
+        let along: Vec<_> = x.chain(rates).chain([(frame.time(), Expr::ONE)]).collect();
+        let old_rates = graph.directional(&old, &along);
+        let before = self.quasi_velocities.iter().copied().chain(self.accelerations());
+        let values: Vec<_> = before.zip(old.iter().copied().chain(old_rates)).collect();
+        let put = |list: &[Expr<'g>]| graph.substitute(list, &values);
+        let named = |list: &[(String, Expr<'g>)]| {
+            list.iter().map(|(name, value)| (name.clone(), put(&[*value])[0])).collect()
+        };
+        let forces = put(&self.forces);
+        let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
+        let order: Vec<Expr<'g>> = symbols.iter().copied().chain(parameters).collect();
+        Ok(System {
+            forces: (0..symbols.len())
+                .map(|u| graph.dot(change.back().column(u), forces.iter().copied()))
+                .collect(),
+            lagrangian: graph.shorten(&put(&[self.lagrangian]), &order)[0],
+            integrals: named(&self.integrals),
+            outputs: named(&self.outputs),
+            parameters: self.parameters.clone(),
+            quasi_velocities: symbols,
+            structure,
+            frame,
+        })
+    }
+}
