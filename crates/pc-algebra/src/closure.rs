@@ -110,7 +110,7 @@ impl<'g> Frame<'g> {
                             }))
                         })
                         .collect();
-                    worst = worst.max(self.largest(&defects, near));
+                    worst = worst.max(near.largest(self.graph(), &defects));
                 }
             }
         }
@@ -154,14 +154,6 @@ impl<'g> Frame<'g> {
         }
         let n = commutator.len();
         samples.iter().map(|values| size(&values[..n]) / (1.0 + size(&values[n..]))).fold(0.0, f64::max)
-    }
-
-    fn largest(&self, expressions: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
-        if expressions.iter().all(|x| x.is_zero()) {
-            return 0.0;
-        }
-        let samples = near.samples(self.graph(), expressions, TRIALS);
-        samples.iter().flatten().fold(0.0, |worst, v| worst.max(v.abs()))
     }
 
     /// Constant c with b c_rs = [X_r, X_s]: one linear system over many points, rounded to rationals and then

@@ -2,6 +2,8 @@
 
 use pc_expr::{Expr, Graph};
 
+use crate::closure::TRIALS;
+
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbourhood<'g> {
@@ -26,6 +28,17 @@ impl<'g> Neighbourhood<'g> {
             .collect();
         let values = graph.evaluate(outputs, &values).ok()?;
         values.iter().all(|v| v.is_finite()).then_some(values)
+    }
+
+    /// The largest absolute value of the expressions at the centre and points near it where all are finite; infinity if
+    /// there are none, 0 without expressions.
+    pub fn largest(&self, graph: &'g Graph, expressions: &[Expr<'g>]) -> f64 {
+        if expressions.is_empty() {
+            return 0.0;
+        }
+        let samples = self.samples(graph, expressions, TRIALS);
+        let largest = samples.iter().flatten().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        if samples.is_empty() { f64::INFINITY } else { largest }
     }
 
     /// Values at up to `count` points where all outputs are finite.

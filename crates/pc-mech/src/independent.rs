@@ -44,7 +44,7 @@ impl<'g> Multipliers<'g> {
         let (graph, eta) = (system.graph(), system.quasi_velocities());
         let mut near = Neighbourhood { centre: at.to_vec() };
         near.centre.extend(system.parameters().iter().copied());
-        let dependent = self.dependent(&near)?;
+        let dependent = self.dependent_at(at)?;
         let independent: Vec<usize> = (0..eta.len()).filter(|s| !dependent.contains(s)).collect();
 
         let c = self.coefficients();
@@ -99,19 +99,24 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The quasi-velocities that the constraints determine best there, in their order.
-    fn dependent(&self, near: &Neighbourhood<'g>) -> Result<Vec<usize>, MechError> {
+    /// The indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
+    /// and quasi-velocities, rising; `at` may have other values of parameters.
+    ///
+    /// # Errors
+    /// [`MechError::SingularConstraint`] if the constraints are dependent there;
+    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) if a value is missing.
+    pub fn dependent_at(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<usize>, MechError> {
         let system = self.equations().system();
         let (graph, k, m) = (system.graph(), system.quasi_velocities().len(), self.constraints().len());
         let (lower, entries) = self.lower_triangle();
-        let values = graph.evaluate(&entries, &near.centre)?;
+        let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
         let mut saddle = Saddle::new(k, m);
         saddle.eliminate(&lower, &values).map_err(|fault| {
             let place = match fault {
                 Fault::Pivot { index, .. } => index.saturating_sub(k),
                 _ => 0,
             };
-            let value = |symbol: Expr<'g>| near.centre.iter().find(|(known, _)| *known == symbol);
+            let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);
             let state = system.frame().coordinates().iter().chain(system.quasi_velocities());
             MechError::SingularConstraint {
                 constraint: self.constraints()[place].name().to_owned(),

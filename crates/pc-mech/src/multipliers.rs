@@ -35,6 +35,23 @@ impl<'g> Constraint<'g> {
     pub fn expression(&self) -> Expr<'g> {
         self.expression
     }
+
+    /// Whether it is a condition on the positions of the system.
+    pub fn is_holonomic(&self, system: &System<'g>) -> bool {
+        !system.quasi_velocities.iter().any(|&eta| self.expression.depends_on(eta))
+    }
+
+    /// What vanishes of the velocities of the system: its expression if it is one on velocities, X_0 f + η_s X_s f
+    /// otherwise.
+    pub fn velocity(&self, system: &System<'g>) -> Expr<'g> {
+        if !self.is_holonomic(system) {
+            return self.expression;
+        }
+        let (graph, frame) = (system.graph(), &system.frame);
+        let rates = frame.coordinates().iter().copied().zip(frame.velocities(&system.quasi_velocities));
+        let along: Vec<_> = rates.chain([(frame.time(), Expr::ONE)]).collect();
+        graph.directional(&[self.expression], &along)[0]
+    }
 }
 
 /// Poincaré's equations with multipliers,
@@ -99,7 +116,7 @@ impl<'g> System<'g> {
         let mut velocities = Vec::new();
         let mut rows = Vec::new();
         for constraint in constraints {
-            let velocity = self.velocity_of(constraint);
+            let velocity = constraint.velocity(self);
             let row = graph.gradient(velocity, eta);
             if row.iter().any(|c| eta.iter().any(|&eta| c.depends_on(eta))) {
                 return Err(MechError::ConstraintNotAffine { constraint: constraint.name.clone() });
@@ -139,17 +156,6 @@ impl<'g> System<'g> {
         }
         Ok(multipliers)
     }
-
-    /// C η + c_0 of a constraint: itself if it is one on velocities, X_0 f + η_s X_s f otherwise.
-    fn velocity_of(&self, constraint: &Constraint<'g>) -> Expr<'g> {
-        let (graph, eta) = (self.graph(), &self.quasi_velocities);
-        if eta.iter().any(|&eta| constraint.expression.depends_on(eta)) {
-            return constraint.expression;
-        }
-        let rates = self.frame.coordinates().iter().copied().zip(self.frame.velocities(eta));
-        let along: Vec<_> = rates.chain([(self.frame.time(), Expr::ONE)]).collect();
-        graph.directional(&[constraint.expression], &along)[0]
-    }
 }
 
 impl<'g> Multipliers<'g> {
@@ -181,8 +187,7 @@ impl<'g> Multipliers<'g> {
 
     /// Whether a constraint is one on positions.
     pub fn is_holonomic(&self, constraint: usize) -> bool {
-        let eta = &self.equations.system.quasi_velocities;
-        self.constraints.get(constraint).is_some_and(|c| !eta.iter().any(|&eta| c.expression.depends_on(eta)))
+        self.constraints.get(constraint).is_some_and(|c| c.is_holonomic(&self.equations.system))
     }
 
     /// The same with the reactions as observables, after all others.

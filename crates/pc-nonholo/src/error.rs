@@ -17,7 +17,22 @@ pub enum NonholoError {
         /// The quasi-velocity.
         name: String,
     },
+    /// A constraint that no velocity satisfies together with others.
+    #[error("the constraint `{constraint}` contradicts {}", quoted(others))]
+    Contradictory {
+        /// Its name.
+        constraint: String,
+        /// The constraints that leave no velocity for it; none if it alone leaves none.
+        others: Vec<String>,
+    },
     /// An error of the derivation.
     #[error(transparent)]
     Mech(#[from] MechError),
+}
+
+fn quoted(names: &[String]) -> String {
+    match names {
+        [] => "itself: no velocity satisfies it".to_owned(),
+        _ => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "),
+    }
 }

@@ -30,8 +30,12 @@
 //! # Ok::<(), pc_nonholo::NonholoError>(())
 //! ```
 
+mod adapted;
 mod constrained;
 mod error;
+mod sorted;
 
+pub use adapted::Adapted;
 pub use constrained::Constrained;
 pub use error::NonholoError;
+pub use sorted::{Kind, Redundant, Sorted};

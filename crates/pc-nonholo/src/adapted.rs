@@ -1,0 +1,85 @@
+//! Frames in which constraints are vanishing quasi-velocities.
+
+use pc_mech::{Constraint, Expr, Multipliers, System};
+
+use crate::constrained::Constrained;
+use crate::error::NonholoError;
+
+/// A system in quasi-velocities of which the last are the left-hand sides of its constraints.
+#[derive(Clone, Debug)]
+pub struct Adapted<'g> {
+    system: System<'g>,
+    free: usize,
+}
+
+impl<'g> Adapted<'g> {
+    /// The system of `multipliers` in the quasi-velocities that are left independent, in their order, and the left-hand
+    /// sides C η + c_0 of its constraints, each called by the name of its constraint.
+    ///
+    /// The dependent ones are those that the constraints determine best at the values `at` of time, coordinates,
+    /// quasi-velocities and parameters; where a constraint is that a quasi-velocity vanishes, that one. The frame is
+    /// singular where these are not determined.
+    ///
+    /// # Errors
+    /// [`NonholoError::Mech`], of which [`MechError::SingularConstraint`](pc_mech::MechError::SingularConstraint) says
+    /// that the constraints are dependent at `at`.
+    pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
+        let system = multipliers.equations().system();
+        let eta = system.quasi_velocities();
+        let dependent = match vanishing(eta, multipliers.velocities()) {
+            Some(places) => places,
+            None => multipliers.dependent_at(at)?,
+        };
+        let independent = (0..eta.len()).filter(|s| !dependent.contains(s)).map(|s| eta[s]);
+        let independent: Vec<Expr<'g>> = independent.collect();
+        let names = independent.iter().map(Expr::to_string);
+        let names = names.chain(multipliers.constraints().iter().map(|c| unused(system, c)));
+        let definitions: Vec<Expr<'g>> =
+            independent.iter().chain(multipliers.velocities()).copied().collect();
+        let free = independent.len();
+        Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
+    }
+
+    /// The system, its free quasi-velocities first.
+    pub fn system(&self) -> &System<'g> {
+        &self.system
+    }
+
+    /// Number l of free quasi-velocities.
+    pub fn free(&self) -> usize {
+        self.free
+    }
+
+    /// The constrained system.
+    ///
+    /// # Errors
+    /// [`MechError::DegenerateLagrangian`](pc_mech::MechError::DegenerateLagrangian) if the free quasi-velocities have
+    /// no inertia.
+    pub fn constrained(&self) -> Result<Constrained<'g>, NonholoError> {
+        Constrained::new(&self.system, &self.system.quasi_velocities()[self.free..])
+    }
+}
+
+/// The indices of the quasi-velocities that the constraints say vanish, if that is all they say.
+fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>> {
+    velocities.iter().map(|velocity| eta.iter().position(|eta| eta == velocity)).collect()
+}
+
+/// The name of a constraint, made longer where the system has it.
+fn unused(system: &System<'_>, constraint: &Constraint<'_>) -> String {
+    let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
+    let taken: Vec<String> = system
+        .frame()
+        .coordinates()
+        .iter()
+        .chain(system.quasi_velocities())
+        .chain(parameters)
+        .filter(|symbol| **symbol != constraint.expression())
+        .map(Expr::to_string)
+        .collect();
+    let mut name = constraint.name().to_owned();
+    while taken.contains(&name) {
+        name.push('_');
+    }
+    name
+}

@@ -1,0 +1,176 @@
+//! Constraints sorted by what they do.
+
+use pc_mech::{Constraint, Expr, Graph, Multipliers, Neighbourhood, System};
+
+use crate::adapted::Adapted;
+use crate::error::NonholoError;
+
+/// What a constraint does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// It binds positions, f(t, x) = 0.
+    Position,
+    /// It binds velocities, but with the others it can be written f(t, x) = const: holonomic in disguise.
+    Integrable,
+    /// It binds velocities and leaves all positions within reach.
+    Nonholonomic {
+        /// The largest component along it of the commutators of the velocities allowed, where it was tried.
+        residual: f64,
+    },
+}
+
+/// A constraint that says nothing new.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Redundant {
+    /// Its name.
+    pub constraint: String,
+    /// The constraints it follows from.
+    pub follows_from: Vec<String>,
+}
+
+/// Constraints of a system: those that bind it, each with its kind, and those that follow from them.
+#[derive(Clone, Debug)]
+pub struct Sorted<'g> {
+    multipliers: Option<Multipliers<'g>>,
+    kinds: Vec<Kind>,
+    redundant: Vec<Redundant>,
+}
+
+/// Components of commutators below this are rounding: one that does not vanish is of order one.
+const ROUNDING: f64 = 1e-9;
+
+impl<'g> Sorted<'g> {
+    /// Sorts the constraints of a system: by rank into binding and redundant ones, and by Frobenius' test into
+    /// holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the velocities that all constraints allow,
+    ///
+    ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
+    ///
+    /// the constraint α is integrable if c'_rs^α = 0.
+    ///
+    /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
+    ///
+    /// # Errors
+    /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others; errors of
+    /// [`System::with_multipliers`].
+    pub fn new(
+        system: &System<'g>,
+        constraints: &[Constraint<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Sorted<'g>, NonholoError> {
+        let (mut binding, mut redundant) = (Vec::new(), Vec::new());
+        let mut rows = Rows::default();
+        for constraint in constraints {
+            let velocity = constraint.velocity(system);
+            match rows.add(system, constraint.name(), velocity) {
+                Addition::New => binding.push(constraint.clone()),
+                Addition::Follows(follows_from) => {
+                    redundant.push(Redundant { constraint: constraint.name().to_owned(), follows_from });
+                }
+                Addition::Contradicts(others) => {
+                    let constraint = constraint.name().to_owned();
+                    return Err(NonholoError::Contradictory { constraint, others });
+                }
+            }
+        }
+        if binding.is_empty() {
+            return Ok(Sorted { multipliers: None, kinds: Vec::new(), redundant });
+        }
+        let multipliers = system.with_multipliers(&binding)?;
+        let kinds = kinds(&multipliers, at)?;
+        Ok(Sorted { multipliers: Some(multipliers), kinds, redundant })
+    }
+
+    /// The equations of motion with multipliers, unless nothing binds.
+    pub fn multipliers(&self) -> Option<&Multipliers<'g>> {
+        self.multipliers.as_ref()
+    }
+
+    /// The kind of each constraint that binds, in the order of [`Multipliers::constraints`].
+    pub fn kinds(&self) -> &[Kind] {
+        &self.kinds
+    }
+
+    /// The constraints that follow from others.
+    pub fn redundant(&self) -> &[Redundant] {
+        &self.redundant
+    }
+
+    /// Whether all constraints bind positions or could.
+    pub fn is_holonomic(&self) -> bool {
+        !self.kinds.iter().any(|kind| matches!(kind, Kind::Nonholonomic { .. }))
+    }
+}
+
+fn kinds<'g>(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Vec<Kind>, NonholoError> {
+    let m = multipliers.constraints().len();
+    if (0..m).all(|a| multipliers.is_holonomic(a)) {
+        return Ok(vec![Kind::Position; m]);
+    }
+    let adapted = Adapted::new(multipliers, at)?;
+    let (system, l) = (adapted.system(), adapted.free());
+    let mut near = Neighbourhood { centre: at.to_vec() };
+    near.centre.extend(system.parameters().iter().copied());
+    Ok((0..m)
+        .map(|a| {
+            if multipliers.is_holonomic(a) {
+                return Kind::Position;
+            }
+            let pairs = (0..=l).flat_map(|r| (r + 1..=l).map(move |s| (r, s)));
+            let components: Vec<Expr<'g>> = pairs
+                .map(|(r, s)| system.structure().get(r, s, l + a + 1))
+                .filter(|c| !c.is_zero())
+                .collect();
+            let residual = near.largest(system.graph(), &components);
+            if residual <= ROUNDING { Kind::Integrable } else { Kind::Nonholonomic { residual } }
+        })
+        .collect())
+}
+
+/// Constraints so far: C_α and c_α0.
+#[derive(Default)]
+struct Rows<'g> {
+    names: Vec<String>,
+    rows: Vec<Vec<Expr<'g>>>,
+    whole: Vec<Vec<Expr<'g>>>,
+}
+
+enum Addition {
+    New,
+    Follows(Vec<String>),
+    Contradicts(Vec<String>),
+}
+
+impl<'g> Rows<'g> {
+    fn add(&mut self, system: &System<'g>, name: &str, velocity: Expr<'g>) -> Addition {
+        let (graph, eta) = (system.graph(), system.quasi_velocities());
+        let zeros: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let row = graph.substitute(&graph.gradient(velocity, eta), &zeros);
+        let rest = graph.substitute(&[velocity], &zeros)[0];
+        let whole: Vec<Expr<'g>> = row.iter().copied().chain([rest]).collect();
+        let rank = |known: &[Vec<Expr<'g>>], more: &[Expr<'g>]| {
+            graph.generic_rank(&[known, std::slice::from_ref(&more.to_vec())].concat())
+        };
+        if rank(&self.rows, &row) > self.rows.len() {
+            self.names.push(name.to_owned());
+            self.rows.push(row);
+            self.whole.push(whole);
+            return Addition::New;
+        }
+        let others = self.depends_on(graph, &row);
+        if rank(&self.whole, &whole) > self.whole.len() {
+            Addition::Contradicts(others)
+        } else {
+            Addition::Follows(others)
+        }
+    }
+
+    /// The constraints that `row` is a combination of: without each of them it is not.
+    fn depends_on(&self, graph: &'g Graph, row: &[Expr<'g>]) -> Vec<String> {
+        let independent_without = |a: &usize| {
+            let mut rows = self.rows.clone();
+            rows[*a] = row.to_vec();
+            graph.generic_rank(&rows) == rows.len()
+        };
+        (0..self.rows.len()).filter(independent_without).map(|a| self.names[a].clone()).collect()
+    }
+}

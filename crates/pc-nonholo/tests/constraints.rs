@@ -1,0 +1,93 @@
+//! Constraints as expressions: sorted, and put into frames of their own.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_mech::{Constraint, Expr, Graph, System};
+use pc_nonholo::{Adapted, Kind, Redundant, Sorted};
+
+/// Chaplygin's sleigh in the velocities of its coordinates.
+fn sleigh(graph: &Graph) -> System<'_> {
+    let [m, j, a] = graph.symbols(["m", "J", "a"]);
+    System::builder(graph)
+        .parameter(m, 1.0)
+        .parameter(j, 1.0)
+        .parameter(a, 0.5)
+        .coordinates(["x", "y", "φ"])
+        .lagrangian(|_, x, v| {
+            let (s, c) = (x[2].sin(), x[2].cos());
+            let centre = (v[0] - a * s * v[2]).square() + (v[1] + a * c * v[2]).square();
+            (m * centre + j * v[2].square()) / 2.0
+        })
+        .build()
+        .unwrap()
+}
+
+fn state<'g>(graph: &'g Graph, system: &System<'g>) -> Vec<(Expr<'g>, f64)> {
+    let symbols = system.frame().coordinates().iter().chain(system.quasi_velocities());
+    let values = (1..).map(|i| 0.3 * f64::from(i));
+    symbols.copied().zip(values).chain([(graph.symbol("t"), 0.2)]).collect()
+}
+
+#[test]
+fn the_frame_of_the_blade_is_found() {
+    let graph = Graph::new();
+    let system = sleigh(&graph);
+    let [vx, vy, phi] = graph.symbols(["x'", "y'", "φ"]);
+    let blade = Constraint::new("blade", vy * phi.cos() - vx * phi.sin());
+    let at = [state(&graph, &system), vec![(phi, 0.5)]].concat();
+    let multipliers = system.with_multipliers(&[blade]).unwrap();
+    let adapted = Adapted::new(&multipliers, &at).unwrap();
+    let names: Vec<String> = adapted.system().quasi_velocities().iter().map(Expr::to_string).collect();
+    assert_eq!(names, ["x'", "φ'", "blade"], "cos φ > sin φ: the blade determines ẏ best");
+    // In x' and φ' the motion is that of the two equations of the sleigh with v = x'/cos φ.
+    let equations = adapted.constrained().unwrap();
+    let [v, w] = graph.symbols(["x'", "φ'"]);
+    let [m, j, a] = graph.symbols(["m", "J", "a"]);
+    let rates = equations.equations().accelerations();
+    let speed = v / phi.cos();
+    let along = a * w.square() - speed * w * phi.sin() / phi.cos();
+    assert!((rates[0] - along * phi.cos()).is_zero(), "{}", rates[0]);
+    assert!((rates[1] + m * a * speed * w / (j + m * a.square())).is_zero(), "{}", rates[1]);
+}
+
+fn sort<'g>(system: &System<'g>, constraints: &[Constraint<'g>], at: &[(Expr<'g>, f64)]) -> Sorted<'g> {
+    Sorted::new(system, constraints, at).unwrap()
+}
+
+#[test]
+fn constraints_are_sorted_by_frobenius_test() {
+    let graph = Graph::new();
+    let [x, y, z, vx, vy, vz] = graph.symbols(["x", "y", "z", "x'", "y'", "z'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z", "u"])
+        .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+        .build()
+        .unwrap();
+    let at = state(&graph, &system);
+    let sphere = Constraint::new("sphere", x.square() + y.square() + z.square() - 1.0);
+    let disguised = Constraint::new("disguised", y * vx - x * vy + 2.0 * (x.square() + y.square()));
+    let knife = Constraint::new("knife", vz - y * vx);
+
+    let sorted = sort(&system, &[sphere.clone(), disguised.clone()], &at);
+    assert_eq!(sorted.kinds(), [Kind::Position, Kind::Integrable], "φ̇ = 2 in disguise");
+    assert!(sorted.is_holonomic());
+    let sorted = sort(&system, std::slice::from_ref(&knife), &at);
+    assert!(matches!(*sorted.kinds(), [Kind::Nonholonomic { residual }] if residual > 0.5));
+    // The two planes y = const and the knife: on them the knife is integrable.
+    let sorted = sort(&system, &[Constraint::new("plane", vy * x.exp()), knife.clone()], &at);
+    assert_eq!(sorted.kinds(), [Kind::Integrable, Kind::Integrable]);
+
+    let twice = Constraint::new("twice", 2.0 * x * vx + 2.0 * y * vy + 2.0 * z * vz);
+    let sorted = sort(&system, &[knife.clone(), sphere.clone(), twice], &at);
+    let follows = Redundant { constraint: "twice".to_owned(), follows_from: vec!["sphere".to_owned()] };
+    assert_eq!(sorted.redundant(), [follows]);
+    assert_eq!(sorted.kinds().len(), 2);
+
+    let other = Constraint::new("other", 2.0 * vz - 2.0 * y * vx - 1.0);
+    let error = Sorted::new(&system, &[sphere, knife, other], &at).unwrap_err();
+    assert_eq!(error.to_string(), "the constraint `other` contradicts `knife`");
+    let impossible = Constraint::new("impossible", graph.symbol("t").sin());
+    let error = Sorted::new(&system, &[impossible], &at).unwrap_err();
+    assert_eq!(error.to_string(), "the constraint `impossible` contradicts itself: no velocity satisfies it");
+    assert_eq!(sort(&system, &[Constraint::new("empty", vx - vx)], &at).redundant().len(), 1);
+}
