@@ -50,6 +50,28 @@ impl<'g> StructureCoefficients<'g> {
         }
     }
 
+    /// The coefficients c_rs^m with r, s, m ≤ `operators`, as many as there are at most.
+    #[must_use]
+    pub fn restricted(&self, operators: usize) -> StructureCoefficients<'g> {
+        let operators = operators.min(self.operators);
+        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
+            Ok((1..=operators).map(|m| self.get(r, s, m)).collect())
+        };
+        match StructureCoefficients::from_pairs(operators, pair) {
+            Ok(structure) => structure,
+            Err(never) => match never {},
+        }
+    }
+
+    /// The Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js, which is c_rs^m. Authors differ in its sign
+    /// and in the order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is this one.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn boltzmann_hamel(&self, r: usize, s: usize, m: usize) -> Expr<'g> {
+        self.get(r, s, m)
+    }
+
     /// The coefficients passed through `f`.
     #[must_use]
     pub fn map(&self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {

@@ -1,6 +1,6 @@
 //! Constraints solved for velocities: redundant coordinates.
 
-use pc_algebra::{Frame, Matrix, Neighbourhood, inverse};
+use pc_algebra::{Frame, Matrix, Neighbourhood, StructureCoefficients, inverse};
 use pc_expr::Expr;
 
 use crate::compiled::fault::Fault;
@@ -41,61 +41,97 @@ impl<'g> Multipliers<'g> {
     /// ```
     pub fn in_independent_velocities(&self, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, MechError> {
         let system = self.equations().system();
-        let (graph, eta) = (system.graph(), system.quasi_velocities());
         let mut near = Neighbourhood { centre: at.to_vec() };
         near.centre.extend(system.parameters().iter().copied());
-        let dependent = self.dependent_at(at)?;
-        let independent: Vec<usize> = (0..eta.len()).filter(|s| !dependent.contains(s)).collect();
+        let solved = self.solved_for(&self.dependent_at(at)?)?;
+        let structure = self.allowed(&solved)?.structure_coefficients(&near)?;
+        self.eliminated(&solved, structure)
+    }
 
-        let c = self.coefficients();
-        let m = dependent.len();
-        let square = Matrix::from_fn(m, m, |a, d| c[(a, dependent[d])]);
+    /// η_D = −C_D⁻¹ (C_I η_I + c_0): the quasi-velocities of the indices `dependent`, each with its expression in the
+    /// others.
+    ///
+    /// # Errors
+    /// [`MechError::DependentConstraint`] if det C_D = 0 everywhere.
+    pub fn solved_for(&self, dependent: &[usize]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, MechError> {
+        let system = self.equations().system();
+        let (graph, eta, c) = (system.graph(), system.quasi_velocities(), self.coefficients());
+        let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])]);
         let name = || self.constraints().last().map_or_else(String::new, |c| c.name().to_owned());
         let inverse =
             inverse(graph, &square).ok_or_else(|| MechError::DependentConstraint { constraint: name() })?;
         let zeros: Vec<_> = dependent.iter().map(|&d| (eta[d], Expr::ZERO)).collect();
         let without = graph.substitute(self.velocities(), &zeros);
-        let solved: Vec<(Expr<'g>, Expr<'g>)> = (0..m)
-            .map(|d| (eta[dependent[d]], -graph.dot(inverse.row(d).iter().copied(), without.iter().copied())))
-            .collect();
+        let solution = |d: usize| -graph.dot(inverse.row(d).iter().copied(), without.iter().copied());
+        Ok(dependent.iter().enumerate().map(|(d, &s)| (eta[s], solution(d))).collect())
+    }
 
-        let free: Vec<Expr<'g>> = independent.iter().map(|&s| eta[s]).collect();
-        let velocities = graph.substitute(&system.frame().velocities(eta), &solved);
-        let (time, x) = (system.frame().time(), system.frame().coordinates());
-        let frame = Frame::from_velocities(graph, time, x.to_vec(), &free, &velocities)?;
-        let structure = frame.structure_coefficients(&near)?;
+    /// The quasi-velocities that are not solved for.
+    fn free(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+        let eta = self.equations().system().quasi_velocities().iter().copied();
+        eta.filter(|eta| solved.iter().all(|(known, _)| known != eta)).collect()
+    }
 
-        let rates: Vec<_> = x
-            .iter()
-            .copied()
-            .zip(velocities)
-            .chain(free.iter().map(|&eta| (eta, graph.symbol(&format!("{eta}'")))))
-            .chain([(time, Expr::ONE)])
-            .collect();
+    /// The frame of the velocities that the constraints allow.
+    fn allowed(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Result<Frame<'g>, MechError> {
+        let system = self.equations().system();
+        let velocities = system.frame().velocities(system.quasi_velocities());
+        let velocities = system.graph().substitute(&velocities, solved);
+        let (time, x) = (system.frame().time(), system.frame().coordinates().to_vec());
+        Ok(Frame::from_velocities(system.graph(), time, x, &self.free(solved), &velocities)?)
+    }
+
+    /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) put in, and these structure
+    /// coefficients.
+    ///
+    /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` is that of the
+    /// velocities they allow. If they are not, the terms of the momenta that were put in are missing, as in (32), and are
+    /// to be [added](System::with_added_forces) to the forces.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`] if the number of structure coefficients does not fit.
+    pub fn eliminated(
+        &self,
+        solved: &[(Expr<'g>, Expr<'g>)],
+        structure: StructureCoefficients<'g>,
+    ) -> Result<System<'g>, MechError> {
+        let system = self.equations().system();
+        let (graph, free, frame) = (system.graph(), self.free(solved), self.allowed(solved)?);
+        if structure.operators() != free.len() {
+            let (what, found) =
+                ("the list of operators of the structure coefficients", structure.operators());
+            return Err(MechError::Shape { what, found, expected: free.len() });
+        }
+        let x = frame.coordinates().iter().copied().zip(frame.velocities(&free));
+        let rates = free.iter().map(|&eta| (eta, graph.symbol(&format!("{eta}'"))));
+        let along: Vec<_> = x.chain(rates).chain([(frame.time(), Expr::ONE)]).collect();
         let values: Vec<Expr<'g>> = solved.iter().map(|&(_, value)| value).collect();
-        let accelerations = graph.directional(&values, &rates);
-        let mut known = solved.clone();
-        known.extend(
-            solved.iter().zip(accelerations).map(|((eta, _), rate)| (graph.symbol(&format!("{eta}'")), rate)),
-        );
+        let accelerations = graph.directional(&values, &along);
+        let primed = solved.iter().map(|(eta, _)| graph.symbol(&format!("{eta}'")));
+        let known: Vec<_> = solved.iter().copied().chain(primed.zip(accelerations)).collect();
         let put = |list: &[Expr<'g>]| graph.substitute(list, &known);
         let named = |list: &[(String, Expr<'g>)]| {
             list.iter().map(|(name, value)| (name.clone(), put(&[*value])[0])).collect()
         };
+
+        // Q'_s = Q_s + Q_D ∂η_D/∂η_s
         let forces = put(system.forces());
-        let dependence: Vec<Vec<Expr<'g>>> =
-            values.iter().map(|&value| graph.gradient(value, &free)).collect();
-        let carried =
-            |s: usize| graph.dot(dependent.iter().map(|&d| forces[d]), dependence.iter().map(|row| row[s]));
+        let force = |eta: &Expr<'g>| {
+            let place = system.quasi_velocities().iter().position(|known| known == eta);
+            place.map_or(Expr::ZERO, |s| forces[s])
+        };
+        let carried: Vec<Vec<Expr<'g>>> = values.iter().map(|&value| graph.gradient(value, &free)).collect();
+        let pushed = solved.iter().map(|(eta, _)| force(eta));
+        let push = |s: usize| graph.dot(pushed.clone(), carried.iter().map(|row| row[s]));
         Ok(System {
-            structure,
-            frame,
+            forces: free.iter().enumerate().map(|(s, eta)| force(eta) + push(s)).collect(),
             parameters: system.parameters().to_vec(),
             lagrangian: put(&[system.lagrangian()])[0],
-            forces: independent.iter().enumerate().map(|(s, &old)| forces[old] + carried(s)).collect(),
             integrals: named(system.integrals()),
             outputs: named(system.outputs()),
             quasi_velocities: free,
+            structure,
+            frame,
         })
     }
 

@@ -40,6 +40,7 @@ mod multipliers;
 mod numeric;
 mod poincare;
 mod reduction;
+mod restriction;
 mod stability;
 mod system;
 mod velocities;

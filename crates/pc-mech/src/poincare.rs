@@ -94,29 +94,6 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The system with the first `free` quasi-velocities, the others zero. Its structure coefficients stay those of
-    /// the whole frame, and nothing may be derived from its Lagrangian but the energy.
-    fn restricted(&self, free: usize) -> System<'g> {
-        let graph = self.graph();
-        let dropped = &self.quasi_velocities[free..];
-        let rates = self.accelerations();
-        let zeros: Vec<_> =
-            dropped.iter().chain(&rates[free..]).map(|&symbol| (symbol, Expr::ZERO)).collect();
-        let put = |x: Expr<'g>| graph.substitute(&[x], &zeros)[0];
-        let named =
-            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
-        System {
-            frame: self.frame.restricted(free),
-            structure: self.structure.clone(),
-            quasi_velocities: self.quasi_velocities[..free].to_vec(),
-            parameters: self.parameters.clone(),
-            lagrangian: put(self.lagrangian),
-            forces: self.forces[..free].iter().map(|&q| put(q)).collect(),
-            integrals: named(&self.integrals),
-            outputs: named(&self.outputs),
-        }
-    }
-
     pub(crate) fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
         let size = mass.rows();
         let graph = self.graph();

@@ -131,6 +131,21 @@ impl<'g> System<'g> {
         }
     }
 
+    /// The same system with more generalised forces, one a quasi-velocity.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`] if there are more or fewer.
+    pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
+        let expected = self.forces.len();
+        if more.len() != expected {
+            return Err(MechError::Shape { what: "the list of forces", found: more.len(), expected });
+        }
+        Ok(System {
+            forces: self.forces.iter().zip(more).map(|(&q, &more)| q + more).collect(),
+            ..self.clone()
+        })
+    }
+
     /// The momenta ∂L/∂η_s.
     pub fn momenta(&self) -> Vec<Expr<'g>> {
         self.graph().gradient(self.lagrangian, &self.quasi_velocities)

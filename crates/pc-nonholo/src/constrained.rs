@@ -41,6 +41,15 @@ impl<'g> Constrained<'g> {
         &self.equations
     }
 
+    /// The system of the free quasi-velocities with the constraints put into L and the terms that this loses among its
+    /// forces: its equations are (32), and in momenta (34).
+    ///
+    /// # Errors
+    /// [`NonholoError::Mech`] if the parts do not fit together, which they do.
+    pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
+        Ok(self.system.constrained(self.equations.right_hand_side().len())?)
+    }
+
     /// The reactions λ_α conjugate to the vanishing η_α, in the order of the system: the residuals
     ///
     ///   λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α

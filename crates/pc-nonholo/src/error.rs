@@ -17,6 +17,9 @@ pub enum NonholoError {
         /// The quasi-velocity.
         name: String,
     },
+    /// Voronets' equations asked for in quasi-velocities.
+    #[error("Voronets' equations are those of a system in the velocities of its coordinates")]
+    NotInVelocities,
     /// A constraint that no velocity satisfies together with others.
     #[error("the constraint `{constraint}` contradicts {}", quoted(others))]
     Contradictory {

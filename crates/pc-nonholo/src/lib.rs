@@ -34,8 +34,10 @@ mod adapted;
 mod constrained;
 mod error;
 mod sorted;
+mod voronets;
 
 pub use adapted::Adapted;
 pub use constrained::Constrained;
 pub use error::NonholoError;
 pub use sorted::{Kind, Redundant, Sorted};
+pub use voronets::Voronets;
