@@ -128,11 +128,55 @@ pub fn relativistic_particle(light: f64, attraction: f64, y: &[f64], dy: &mut [f
     dy[3] = -force * along * across * inverse_gamma / light_squared - along * across / radius;
 }
 
+/// A rigid body with a spring from the space origin to one of its points.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyOnSpring {
+    /// Mass m.
+    pub mass: f64,
+    /// Principal moments of inertia I at the mass centre.
+    pub inertia: [f64; 3],
+    /// The point a at which the spring is fixed, from the mass centre on the principal axes.
+    pub point: [f64; 3],
+    /// Stiffness κ.
+    pub stiffness: f64,
+}
+
+impl BodyOnSpring {
+    /// y = (r, q, ω, v), ω and v on the principal axes, q of unit length and scalar first: ṙ = R v, q̇ as in
+    /// [`HeavyTop::in_quaternion`], I ω̇ = Iω × ω + a × RᵀF, v̇ = v × ω + RᵀF/m with F = −κ (r + R a)
+    /// [Newton and Euler].
+    pub fn on_se3(&self, y: &[f64], dy: &mut [f64]) {
+        let (place, scalar, part) = (vector(y), y[3], vector(&y[4..]));
+        let (omega, v) = (vector(&y[7..]), vector(&y[10..]));
+        // x + 2 p × (p × x ± q_0 x): the rotation of x, with minus the inverse one
+        let turned = |x: Vector, sign: f64| -> Vector {
+            let once = cross(part, x);
+            let twice = cross(part, std::array::from_fn(|i| once[i] + sign * scalar * x[i]));
+            std::array::from_fn(|i| x[i] + 2.0 * twice[i])
+        };
+        let arm = turned(self.point, 1.0);
+        let force = std::array::from_fn(|i| -self.stiffness * (place[i] + arm[i]));
+        let pull = turned(force, -1.0);
+        let momentum: Vector = std::array::from_fn(|i| self.inertia[i] * omega[i]);
+        let (gyroscopic, torque, drag) = (cross(momentum, omega), cross(self.point, pull), cross(v, omega));
+        dy[..3].copy_from_slice(&turned(v, 1.0));
+        dy[3] = -(part[0] * omega[0] + part[1] * omega[1] + part[2] * omega[2]) / 2.0;
+        let across = cross(part, omega);
+        for i in 0..3 {
+            dy[4 + i] = (scalar * omega[i] + across[i]) / 2.0;
+            dy[7 + i] = (gyroscopic[i] + torque[i]) / self.inertia[i];
+            dy[10 + i] = drag[i] + pull[i] / self.mass;
+        }
+    }
+}
+
 const LAGRANGE: HeavyTop = HeavyTop { inertia: [1.0, 1.0, 0.5], centre: [0.0, 0.0, 1.0], weight: 1.0 };
 const KOVALEVSKAYA: HeavyTop = HeavyTop { inertia: [2.0, 2.0, 1.0], centre: [1.0, 0.0, 0.0], weight: 1.0 };
 const GORYACHEV_CHAPLYGIN: HeavyTop =
     HeavyTop { inertia: [4.0, 4.0, 1.0], centre: [1.0, 0.0, 0.0], weight: 1.0 };
 const TRIAXIAL: HeavyTop = HeavyTop { inertia: [2.0, 3.0, 4.0], centre: [0.1, 0.2, 0.3], weight: 10.0 };
+const ON_SPRING: BodyOnSpring =
+    BodyOnSpring { mass: 2.0, inertia: [1.0, 2.0, 3.0], point: [0.5, 0.0, 0.25], stiffness: 5.0 };
 
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
@@ -148,6 +192,7 @@ pub const MODELS: &[&str] = &[
     "heavy-top-lagrange",
     "heavy-top-quaternion",
     "relativistic-particle",
+    "rigid-body-spring",
 ];
 
 /// The classical equations of a built-in model with its parameters, or `None` for a name not in [`MODELS`].
@@ -167,6 +212,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "heavy-top-lagrange" => |_, y, dy| LAGRANGE.in_poisson_variables(y, dy),
         "heavy-top-quaternion" => |_, y, dy| TRIAXIAL.in_quaternion(y, dy),
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
+        "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
         _ => return None,
     })
 }
@@ -211,7 +257,7 @@ impl SplitMix64 {
 ///
 /// Kept away from the poles of Euler's angles (θ between 0.4 and 2.6), from the centre of polar coordinates
 /// (ρ between 0.5 and 2) and from the velocity of light (speed at most 0.9 c). Vertical and quaternion are not
-/// normalised: the equations hold off the unit sphere too.
+/// normalised, but for the quaternion of a body that moves: the equations of the tops hold off the unit sphere too.
 pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
     Some(match model {
         "charged-particle" | "charged-particle-induction" => {
@@ -235,6 +281,12 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             let (radius, angle) = (rng.uniform(0.5, 2.0), rng.normal());
             let (speed, direction) = (rng.uniform(0.0, 1.8), rng.uniform(0.0, std::f64::consts::TAU));
             (0.0, vec![radius, angle, speed * direction.cos(), speed * direction.sin()])
+        }
+        "rigid-body-spring" => {
+            let mut y = rng.normals(13);
+            let length = y[3..7].iter().map(|q| q * q).sum::<f64>().sqrt();
+            y[3..7].iter_mut().for_each(|q| *q /= length);
+            (0.0, y)
         }
         _ => return None,
     })

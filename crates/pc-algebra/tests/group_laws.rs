@@ -4,10 +4,10 @@
 
 use nalgebra::{DMatrix, DVector};
 use pc_algebra::{
-    DirectProduct, EulerAngles, HeisenbergGroup, LieAlgebra, LieGroup, Neighbourhood, PlaneMotions,
+    DirectProduct, EulerAngles, HeisenbergGroup, LieAlgebra, LieGroup, Matrix, Neighbourhood, PlaneMotions,
     PlaneRotations, RigidMotions, RotationMatrices, Side, UnitQuaternions,
 };
-use pc_expr::Graph;
+use pc_expr::{Expr, Graph};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 
@@ -241,4 +241,39 @@ fn heisenberg() {
 fn direct_products() {
     laws(&DirectProduct::new(UnitQuaternions, PlaneRotations));
     laws(&DirectProduct::new(PlaneMotions, DirectProduct::new(HeisenbergGroup::new(1), RotationMatrices)));
+}
+
+/// The matrices in expressions are those by which the adjoint representation turns vectors, and Ṙ = R ω̂ along the
+/// body frame.
+#[test]
+fn rotation_matrices_turn_as_the_adjoint_representation() {
+    let graph = Graph::new();
+    let symbols = graph.symbols(["a", "b", "c", "d", "e", "f", "g", "h", "i"]);
+    let check = |group: &dyn LieGroup, matrix: Matrix<Expr<'_>>| {
+        let x = &symbols[..group.coordinates().len()];
+        let vector = prop::collection::vec(-REACH..REACH, 3);
+        let at = |entries: &[Expr<'_>], element: &[f64]| {
+            let values: Vec<_> = x.iter().copied().zip(element.iter().copied()).collect();
+            DMatrix::from_row_slice(3, 3, &graph.evaluate(entries, &values).unwrap())
+        };
+        let outcome = TestRunner::new(config()).run(&(vector.clone(), vector), |(v, omega)| {
+            let element = group.exp(&v);
+            close(&at(matrix.entries(), &element), &group.adjoint(&element), ROUNDING, "R");
+            let b = group.operators(Side::Left, x);
+            let rates = x.iter().enumerate().map(|(i, &x)| {
+                (x, graph.dot(b.row(i).iter().copied(), omega.iter().map(|&omega| omega.into())))
+            });
+            let moved = graph.directional(matrix.entries(), &rates.collect::<Vec<_>>());
+            let turning = group.adjoint(&element) * group.ad(&omega);
+            close(&at(&moved, &element), &turning, 1e-10, "Ṙ"); // Euler's frames magnify near their poles
+            Ok(())
+        });
+        outcome.unwrap();
+    };
+    for axes in EulerAngles::SEQUENCES {
+        let angles = EulerAngles::about(axes).unwrap();
+        check(&angles, angles.rotation_matrix(&symbols));
+    }
+    check(&UnitQuaternions, UnitQuaternions.rotation_matrix(&symbols));
+    check(&RotationMatrices, RotationMatrices.rotation_matrix(&symbols));
 }

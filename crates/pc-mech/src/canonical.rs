@@ -142,7 +142,7 @@ impl<'g> Canonical<'g> {
             time: system.frame.time(),
             state: x.iter().chain(&self.momenta).copied().collect(),
             coordinates: x.len(),
-            parameters: system.parameters.clone(),
+            parameters: system.run_time_inputs(),
             unknowns: eta.clone(),
             names: eta.iter().map(Expr::to_string).collect(),
             multipliers: 0,

@@ -3,7 +3,7 @@
 use pc_algebra::{AlgebraError, Frame, FrameChange, Matrix, StructureCoefficients};
 use pc_expr::Expr;
 
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 use crate::system::System;
 
 impl<'g> System<'g> {
@@ -42,11 +42,8 @@ impl<'g> System<'g> {
         let graph = self.graph();
         let symbols: Vec<Expr<'g>> = names.into_iter().map(|name| graph.symbol(name.as_ref())).collect();
         let (what, expected) = ("the list of new quasi-velocities", self.quasi_velocities.len());
-        for found in [symbols.len(), definitions.len()] {
-            if found != expected {
-                return Err(MechError::Shape { what, found, expected });
-            }
-        }
+        shape(what, symbols.len(), expected)?;
+        shape(what, definitions.len(), expected)?;
         let change = self.change(definitions)?;
         let structure = change.structure_coefficients(&self.structure)?;
         self.changed(symbols, &change, change.frame().clone(), structure)
@@ -99,6 +96,7 @@ impl<'g> System<'g> {
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
             parameters: self.parameters.clone(),
+            external: self.external.clone(),
             quasi_velocities: symbols,
             structure,
             frame,

@@ -168,9 +168,9 @@ impl<'g> Equations<'g> {
             state,
             coordinates: system.frame.coordinates().len(),
             parameters: system
-                .parameters
-                .iter()
-                .map(|(symbol, value)| (symbol.to_string(), *value))
+                .run_time_inputs()
+                .into_iter()
+                .map(|(symbol, value)| (symbol.to_string(), value))
                 .collect(),
             integrals: of(&system.integrals),
             outputs: of(&system.outputs),

@@ -138,6 +138,62 @@ pub enum MechError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
+    /// Gyroscopic forces whose matrix is not antisymmetric.
+    #[error(
+        "gyroscopic forces have an antisymmetric matrix; its entries for `{}` and `{}` do not add up to zero",
+        pair[0], pair[1]
+    )]
+    NotSkew {
+        /// The quasi-velocities of the entries.
+        pair: [String; 2],
+    },
+    /// A part of a body that depends on velocities.
+    #[error("{what} of a body depends on time and coordinates only; here it depends on `{velocity}`")]
+    BodyOfVelocities {
+        /// The part.
+        what: &'static str,
+        /// A velocity or quasi-velocity in it.
+        velocity: String,
+    },
+    /// An angular velocity that is not affine in the quasi-velocities.
+    #[error("an angular velocity is affine in the quasi-velocities; its component `{component}` is not")]
+    AngularVelocityNotAffine {
+        /// Text of the component.
+        component: String,
+    },
+    /// A force on something that is not a quasi-velocity.
+    #[error("`{name}` is not a quasi-velocity; these are {}", known.join(", "))]
+    NotAQuasiVelocity {
+        /// The name.
+        name: String,
+        /// The quasi-velocities there are.
+        known: Vec<String>,
+    },
+    /// An external force for a system that has declared none.
+    #[error("no quasi-velocity of the system was declared to have an external force")]
+    NoExternalForce,
+    /// An external force that is not a number.
+    #[error("the external force on `{quasi_velocity}` is {value} at t = {t}{}", listed(state))]
+    ExternalForceNotFinite {
+        /// The quasi-velocity it acts on.
+        quasi_velocity: String,
+        /// The force, or its derivative.
+        value: f64,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// An external force that could not be computed.
+    #[error("the external force on {} failed at t = {t}: {cause}", quoted(quasi_velocities))]
+    ExternalForceFailed {
+        /// The quasi-velocities it acts on.
+        quasi_velocities: Vec<String>,
+        /// Time.
+        t: f64,
+        /// What it said.
+        cause: String,
+    },
     /// A name that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {
@@ -231,13 +287,18 @@ impl From<Failure> for MechError {
 
 fn undetermined(names: &[String]) -> String {
     match names {
-        [name] => format!("`{name}` is"),
+        [_] => format!("{} is", quoted(names)),
         _ => format!("{} are", quoted(names)),
     }
 }
 
 fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// An error unless `found` is `expected`.
+pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), MechError> {
+    if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }) }
 }
 
 fn listed(values: &[(String, f64)]) -> String {

@@ -5,7 +5,7 @@ use pc_expr::Expr;
 
 use crate::compiled::fault::Fault;
 use crate::compiled::saddle::Saddle;
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 use crate::multipliers::Multipliers;
 use crate::system::System;
 
@@ -97,11 +97,7 @@ impl<'g> Multipliers<'g> {
     ) -> Result<System<'g>, MechError> {
         let system = self.equations().system();
         let (graph, free, frame) = (system.graph(), self.free(solved), self.allowed(solved)?);
-        if structure.operators() != free.len() {
-            let (what, found) =
-                ("the list of operators of the structure coefficients", structure.operators());
-            return Err(MechError::Shape { what, found, expected: free.len() });
-        }
+        shape("the list of operators of the structure coefficients", structure.operators(), free.len())?;
         let x = frame.coordinates().iter().copied().zip(frame.velocities(&free));
         let rates = free.iter().map(|&eta| (eta, graph.symbol(&format!("{eta}'"))));
         let along: Vec<_> = x.chain(rates).chain([(frame.time(), Expr::ONE)]).collect();
@@ -126,6 +122,7 @@ impl<'g> Multipliers<'g> {
         Ok(System {
             forces: free.iter().enumerate().map(|(s, eta)| force(eta) + push(s)).collect(),
             parameters: system.parameters().to_vec(),
+            external: system.external_forces().to_vec(),
             lagrangian: put(&[system.lagrangian()])[0],
             integrals: named(system.integrals()),
             outputs: named(system.outputs()),

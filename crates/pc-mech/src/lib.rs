@@ -25,12 +25,16 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 
+mod bodies;
 mod book;
+mod builder;
 mod canonical;
 mod change;
 mod compiled;
 mod emit;
 mod error;
+mod external;
+mod forces;
 mod hamilton_jacobi;
 mod independent;
 mod integrals;
@@ -45,11 +49,15 @@ mod stability;
 mod system;
 mod velocities;
 
+pub use bodies::particle::Particle;
+pub use bodies::rigid_body::{Inertia, RigidBody};
+pub use builder::SystemBuilder;
 pub use canonical::Canonical;
 pub use compiled::motion::Motion;
 pub use compiled::options::CompileOptions;
 pub use emit::{EmitOptions, EmittedFile};
 pub use error::MechError;
+pub use external::{ExternalForce, ForcedMotion};
 pub use hamilton_jacobi::CompleteIntegral;
 pub use integrals::ansatz::Ansatz;
 pub use integrals::bracket::PoissonBracket;
@@ -57,14 +65,18 @@ pub use integrals::conserved::{Conservation, Rates};
 pub use integrals::cyclic::CyclicDisplacement;
 pub use legendre::LegendreTransform;
 pub use multipliers::{Constraint, Multipliers};
-pub use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
+pub use pc_algebra::{
+    AlgebraError, EulerAngles, Frame, LieAlgebra, LieGroup, Matrix, Neighbourhood, RotationMatrices,
+    StructureCoefficients, UnitQuaternions,
+};
 pub use pc_expr::{
-    Backend, Colouring, Expr, ExprError, Folding, Graph, Language, Number, Pattern, Style, VectorField,
+    Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,
+    VectorField,
 };
 pub use poincare::Equations;
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady::{SteadyMotion, SteadyOptions};
 pub use stability::variation::Variation;
-pub use system::{System, SystemBuilder};
+pub use system::System;
 pub use velocities::VelocityTransform;

@@ -68,6 +68,7 @@ impl<'g> System<'g> {
             structure,
             quasi_velocities: self.quasi_velocities.clone(),
             parameters: self.parameters.clone(),
+            external: self.external.clone(),
             lagrangian,
             forces,
             integrals: known(&self.integrals),

@@ -1,9 +1,10 @@
 //! A mechanical system: frame, Lagrangian, forces, and what is watched of its motion.
 
-use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
+use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::error::MechError;
+use crate::builder::SystemBuilder;
+use crate::error::{MechError, shape};
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///
@@ -16,6 +17,7 @@ pub struct System<'g> {
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
     pub(crate) lagrangian: Expr<'g>,
     pub(crate) forces: Vec<Expr<'g>>,
+    pub(crate) external: Vec<(String, Expr<'g>)>,
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
 }
@@ -61,6 +63,12 @@ impl<'g> System<'g> {
         &self.forces
     }
 
+    /// The symbols in Q that stand for [external forces](SystemBuilder::external_force), each with the name of the
+    /// quasi-velocity on which it acts.
+    pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
+        &self.external
+    }
+
     /// The functions of (t, x, η) that a motion should keep constant, with their names.
     pub fn integrals(&self) -> &[(String, Expr<'g>)] {
         &self.integrals
@@ -74,6 +82,13 @@ impl<'g> System<'g> {
     /// The symbols of η̇: integrals and outputs may contain them.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
         self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
+    }
+
+    /// The run-time inputs of what is compiled: the parameters, then the external forces, which are zero until they
+    /// are set.
+    pub(crate) fn run_time_inputs(&self) -> Vec<(Expr<'g>, f64)> {
+        let external = self.external.iter().map(|&(_, symbol)| (symbol, 0.0));
+        self.parameters.iter().copied().chain(external).collect()
     }
 
     /// Quasi-velocities, then parameters: equations are collected by powers of these, in this order.
@@ -126,6 +141,7 @@ impl<'g> System<'g> {
             parameters: Vec::new(),
             lagrangian: bind(self.lagrangian),
             forces: self.forces.iter().map(|&x| bind(x)).collect(),
+            external: self.external.clone(),
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
         }
@@ -136,10 +152,7 @@ impl<'g> System<'g> {
     /// # Errors
     /// [`MechError::Shape`] if there are more or fewer.
     pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
-        let expected = self.forces.len();
-        if more.len() != expected {
-            return Err(MechError::Shape { what: "the list of forces", found: more.len(), expected });
-        }
+        shape("the list of forces", more.len(), self.forces.len())?;
         Ok(System {
             forces: self.forces.iter().zip(more).map(|(&q, &more)| q + more).collect(),
             ..self.clone()
@@ -154,218 +167,5 @@ impl<'g> System<'g> {
     /// The energy η_s ∂L/∂η_s − L.
     pub fn energy(&self) -> Expr<'g> {
         self.graph().dot(self.momenta(), self.quasi_velocities.iter().copied()) - self.lagrangian
-    }
-}
-
-/// How a system is described; every closure receives (t, x, η).
-///
-/// Coordinates and quasi-velocities are named before the closures that use them.
-#[derive(Clone, Debug)]
-pub struct SystemBuilder<'g> {
-    graph: &'g Graph,
-    time: Expr<'g>,
-    coordinates: Vec<Expr<'g>>,
-    quasi_velocities: Option<Vec<Expr<'g>>>,
-    kinematics: Kinematics<'g>,
-    structure: Option<StructureCoefficients<'g>>,
-    near: Neighbourhood<'g>,
-    parameters: Vec<(Expr<'g>, f64)>,
-    lagrangian: Option<Expr<'g>>,
-    forces: Option<Vec<Expr<'g>>>,
-    integrals: Vec<(String, Expr<'g>)>,
-    outputs: Vec<(String, Expr<'g>)>,
-}
-
-#[derive(Clone, Debug)]
-enum Kinematics<'g> {
-    /// η = ẋ
-    Coordinate,
-    /// ẋ, affine in η (3)
-    Velocities(Vec<Expr<'g>>),
-    /// A frame made elsewhere.
-    Frame(Frame<'g>),
-}
-
-impl<'g> SystemBuilder<'g> {
-    fn new(graph: &'g Graph) -> SystemBuilder<'g> {
-        SystemBuilder {
-            graph,
-            time: graph.symbol("t"),
-            coordinates: Vec::new(),
-            quasi_velocities: None,
-            kinematics: Kinematics::Coordinate,
-            structure: None,
-            near: Neighbourhood::default(),
-            parameters: Vec::new(),
-            lagrangian: None,
-            forces: None,
-            integrals: Vec::new(),
-            outputs: Vec::new(),
-        }
-    }
-
-    /// Declares a symbol to be a parameter, with its value: a run-time input of everything compiled.
-    #[must_use]
-    pub fn parameter(mut self, symbol: Expr<'g>, value: f64) -> Self {
-        self.parameters.push((symbol, value));
-        self
-    }
-
-    /// Names the coordinates x_1..x_n; none for equations on an algebra alone.
-    #[must_use]
-    pub fn coordinates<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.coordinates = names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect();
-        self
-    }
-
-    /// Names the quasi-velocities η_1..η_k; without it they are the velocities, `x'` for the coordinate `x`.
-    #[must_use]
-    pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.quasi_velocities =
-            Some(names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect());
-        self
-    }
-
-    /// Gives the velocities ẋ_1..ẋ_n, affine in η (3); without it ẋ = η.
-    #[must_use]
-    pub fn kinematics<I: IntoIterator<Item = Expr<'g>>>(
-        mut self,
-        velocities: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
-    ) -> Self {
-        let velocities = velocities(self.time, &self.coordinates, &self.eta()).into_iter().collect();
-        self.kinematics = Kinematics::Velocities(velocities);
-        self
-    }
-
-    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph.
-    #[must_use]
-    pub fn frame(mut self, frame: Frame<'g>) -> Self {
-        self.kinematics = Kinematics::Frame(frame);
-        self
-    }
-
-    /// Gives the brackets [X_r, X_s] = c_rs^m X_m of a stationary frame: needed where b does not determine them
-    /// (rank b < k, or no coordinates), checked against the frame everywhere else.
-    #[must_use]
-    pub fn algebra(self, algebra: &LieAlgebra) -> Self {
-        self.structure(algebra.structure_coefficients())
-    }
-
-    /// Gives all structure coefficients, c_0s^m included.
-    #[must_use]
-    pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
-        self.structure = Some(structure);
-        self
-    }
-
-    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an
-    /// identity can only be tried numerically.
-    #[must_use]
-    pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
-        self.near.centre.extend(values);
-        self
-    }
-
-    /// Gives L(t, x, η) = T + U, with U minus the potential energy.
-    #[must_use]
-    pub fn lagrangian(mut self, l: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
-        self.lagrangian = Some(l(self.time, &self.coordinates, &self.eta()));
-        self
-    }
-
-    /// Gives the generalised forces Q_1..Q_k (8): the power of the forces is Q_s η_s.
-    #[must_use]
-    pub fn forces<I: IntoIterator<Item = Expr<'g>>>(
-        mut self,
-        q: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
-    ) -> Self {
-        self.forces = Some(q(self.time, &self.coordinates, &self.eta()).into_iter().collect());
-        self
-    }
-
-    /// Adds a function of (t, x, η) that the motion should keep constant: its drift is worth knowing.
-    #[must_use]
-    pub fn integral(
-        mut self,
-        name: impl Into<String>,
-        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
-    ) -> Self {
-        let value = f(self.time, &self.coordinates, &self.eta());
-        self.integrals.push((name.into(), value));
-        self
-    }
-
-    /// Adds a function of (t, x, η) to be computed along the motion.
-    #[must_use]
-    pub fn output(
-        mut self,
-        name: impl Into<String>,
-        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
-    ) -> Self {
-        let value = f(self.time, &self.coordinates, &self.eta());
-        self.outputs.push((name.into(), value));
-        self
-    }
-
-    fn eta(&self) -> Vec<Expr<'g>> {
-        self.quasi_velocities
-            .clone()
-            .unwrap_or_else(|| self.coordinates.iter().map(|x| self.graph.symbol(&format!("{x}'"))).collect())
-    }
-
-    /// The system, its frame closed and its structure coefficients known.
-    ///
-    /// # Errors
-    /// Any [`MechError`]; of the frame above all [`AlgebraError`].
-    pub fn build(self) -> Result<System<'g>, MechError> {
-        let eta = self.eta();
-        let k = eta.len();
-        let frame = match self.kinematics {
-            Kinematics::Coordinate if self.coordinates.is_empty() => {
-                let b = Matrix::from_fn(0, k, |_, _| Expr::ZERO); // equations on an algebra alone
-                Frame::new(self.graph, self.time, Vec::new(), b, Vec::new())?
-            }
-            Kinematics::Coordinate => Frame::coordinate(self.graph, self.time, self.coordinates),
-            Kinematics::Velocities(velocities) => {
-                Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
-            }
-            Kinematics::Frame(frame) => frame,
-        };
-        if frame.operators() != k {
-            return Err(MechError::Shape {
-                what: "the list of quasi-velocities",
-                found: k,
-                expected: frame.operators(),
-            });
-        }
-        let mut near = self.near;
-        near.centre.extend(self.parameters.iter().copied());
-        let structure = match self.structure {
-            None if frame.coordinates().is_empty() && k > 0 => return Err(AlgebraError::AlgebraNeeded.into()),
-            None => frame.structure_coefficients(&near)?,
-            Some(given) => {
-                frame.check(&given, &near)?;
-                given
-            }
-        };
-        let lagrangian = self.lagrangian.ok_or(MechError::NoLagrangian)?;
-        let forces = self.forces.unwrap_or_else(|| vec![Expr::ZERO; k]);
-        if forces.len() != k {
-            return Err(MechError::Shape { what: "the list of forces", found: forces.len(), expected: k });
-        }
-        self.graph.check(&[lagrangian])?;
-        self.graph.check(&forces)?;
-        self.graph.check(frame.b().entries())?;
-        self.graph.check(frame.b0())?;
-        Ok(System {
-            frame,
-            structure,
-            quasi_velocities: eta,
-            parameters: self.parameters,
-            lagrangian,
-            forces,
-            integrals: self.integrals,
-            outputs: self.outputs,
-        })
     }
 }

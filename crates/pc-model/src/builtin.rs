@@ -33,6 +33,7 @@ pub const BUILTIN: &[Builtin] = models![
     "damped-oscillator",
     "damped-oscillator-scaled-frame",
     "relativistic-particle",
+    "rigid-body-spring",
 ];
 
 impl Builtin {

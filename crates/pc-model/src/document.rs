@@ -224,7 +224,7 @@ pub struct Body {
     pub place: Place,
     /// Its mass.
     pub mass: Expression,
-    /// Position of the centre of mass.
+    /// Position of the mass centre, or of a point of the body that is at rest.
     pub position: [Expression; 3],
     /// Inertia about `position`; given only with an orientation.
     pub inertia: Option<Inertia>,

@@ -1,5 +1,7 @@
 //! A document as a mechanical system.
 
+mod bodies;
+
 use pc_expr::Graph;
 use pc_mech::{
     AlgebraError, Canonical, CompileOptions, Equations, Expr, Frame, LieAlgebra, MechError, Motion, Number,
@@ -9,6 +11,7 @@ use pc_mech::{
 use crate::document::{AlgebraDefinition, Bracket, Document, Method, NamedExpression};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
+use crate::model::bodies::Body;
 use crate::scope::{Scope, Stage, entry};
 use crate::source::Place;
 
@@ -136,15 +139,15 @@ impl Model {
     }
 
     fn energy_place(&self) -> Place {
-        self.document.lagrangian.as_ref().map_or_else(|| self.document.end(), |l| l.place.clone())
+        let document = &self.document;
+        let energy = document.lagrangian.as_ref().map(|l| &l.place);
+        let place = energy.or_else(|| document.bodies.first().map(|body| &body.place));
+        place.cloned().unwrap_or_else(|| document.end())
     }
 
     fn refuse_unsupported(&self) -> Result<(), ModelError> {
         let document = &self.document;
         let refuse = |place: &Place, what| Err(self.error(place, ErrorKind::Unsupported { what }));
-        if let Some(body) = document.bodies.first() {
-            return refuse(&body.place, "[bodies] are");
-        }
         if let Some(constraint) = document.constraints.first() {
             return refuse(&constraint.name.place, "[constraints] are");
         }
@@ -239,7 +242,9 @@ impl<'g> Assembler<'g, '_> {
             .filter(|(symbol, value)| symbol != value)
             .collect();
         let lagrangian = self.lagrangian(&x_dot)?;
-        let forces = self.forces(&frame, &eta, &x_dot)?;
+        let bodies = self.bodies(&eta, &x_dot)?;
+        let dissipation = self.dissipation(&x_dot)?;
+        let (forces, on_coordinates) = self.forces(&x_dot)?;
         let integrals = self.observed(&document.integrals, &x_dot)?;
         let outputs = self.observed(&document.outputs, &x_dot)?;
 
@@ -254,7 +259,15 @@ impl<'g> Assembler<'g, '_> {
             .quasi_velocities(eta.iter().map(Expr::to_string))
             .near(values)
             .lagrangian(|_, _, _| lagrangian)
-            .forces(|_, _, _| forces);
+            .dissipation(|_, _, _| dissipation)
+            .forces(|_, _, _| forces)
+            .force_on_coordinates(|_, _, _| on_coordinates);
+        for body in bodies {
+            builder = match body {
+                Body::Particle(particle) => builder.particle(|_, _, _| particle),
+                Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
+            };
+        }
         for (symbol, value) in parameters {
             builder = builder.parameter(symbol, value);
         }
@@ -414,10 +427,9 @@ impl<'g> Assembler<'g, '_> {
         })
     }
 
+    /// T − V of `[lagrangian]`, the whole energy but for that of the bodies.
     fn lagrangian(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
-        let Some(energy) = &self.model.document.lagrangian else {
-            return Err(self.model.error(&self.model.document.end(), ErrorKind::NoLagrangian));
-        };
+        let Some(energy) = &self.model.document.lagrangian else { return Ok(Expr::ZERO) };
         let mut lagrangian = Expr::ZERO;
         for (expression, sign) in [(&energy.kinetic, 1), (&energy.potential, -1), (&energy.lagrangian, 1)] {
             if let Some(expression) = expression {
@@ -425,6 +437,14 @@ impl<'g> Assembler<'g, '_> {
             }
         }
         Ok(lagrangian)
+    }
+
+    fn dissipation(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
+        let energy = self.model.document.lagrangian.as_ref();
+        match energy.and_then(|energy| energy.dissipation.as_ref()) {
+            Some(dissipation) => self.dynamic(dissipation, x_dot),
+            None => Ok(Expr::ZERO),
+        }
     }
 
     /// An expression of the dynamics with ẋ = b η + b_0 put in.
@@ -437,16 +457,17 @@ impl<'g> Assembler<'g, '_> {
         Ok(self.graph.substitute(&[value], x_dot)[0])
     }
 
-    /// Q_s: forces on quasi-velocities, generalised forces F_i on coordinates as b_is F_i, and −∂R/∂η_s.
+    /// The entries of `[forces]`: Q_s on quasi-velocities, and F_i on coordinates.
     fn forces(
         &mut self,
-        frame: &Frame<'g>,
-        eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Vec<Expr<'g>>, ModelError> {
+    ) -> Result<(Vec<Expr<'g>>, Vec<Expr<'g>>), ModelError> {
         let document = &self.model.document;
-        let mut on_coordinates = vec![Expr::ZERO; frame.coordinates().len()];
-        let mut forces = vec![Expr::ZERO; eta.len()];
+        let mut on_coordinates = vec![Expr::ZERO; document.coordinates.len()];
+        let mut forces = match self.is_lagrangian_form() {
+            true => on_coordinates.clone(),
+            false => vec![Expr::ZERO; document.quasi_velocities.len()],
+        };
         for force in &document.forces {
             let name = &force.name;
             let on_eta = document.quasi_velocities.iter().position(|q| q.name.text == name.text);
@@ -465,16 +486,7 @@ impl<'g> Assembler<'g, '_> {
                 }
             }
         }
-        for (force, mapped) in forces.iter_mut().zip(frame.contract(&on_coordinates)) {
-            *force += mapped;
-        }
-        if let Some(dissipation) = document.lagrangian.as_ref().and_then(|l| l.dissipation.as_ref()) {
-            let dissipation = self.dynamic(dissipation, x_dot)?;
-            for (force, slope) in forces.iter_mut().zip(self.graph.gradient(dissipation, eta)) {
-                *force -= slope;
-            }
-        }
-        Ok(forces)
+        Ok((forces, on_coordinates))
     }
 
     fn observed(

@@ -17,6 +17,8 @@ pub(crate) enum Stage {
     Definition,
     /// Kinematics: coordinates, t, and quasi-velocities.
     Kinematics,
+    /// Mass, inertia, place and attitude of a body: coordinates and t.
+    Position,
     /// The energy or a force: everything but accelerations.
     Dynamics,
     /// Integrals and outputs: everything.
@@ -29,6 +31,7 @@ impl Stage {
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
+            Stage::Position => "the mass, inertia, position or rotation of a body",
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Observation => "an integral or output",
         }
@@ -39,6 +42,7 @@ impl Stage {
             Stage::Start => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
+            Stage::Position => "parameters, coordinates and t",
             Stage::Dynamics | Stage::Observation => "declared names",
         }
     }
@@ -209,7 +213,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
         match stage {
             Stage::Start if name == "t" || is_coordinate || is_quasi_velocity => refuse(self),
-            Stage::Definition if is_quasi_velocity => refuse(self),
+            Stage::Definition | Stage::Position if is_quasi_velocity => refuse(self),
             _ if name == "t" => Ok(self.time),
             _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
             _ => {
@@ -261,10 +265,8 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         match stage {
-            Stage::Start | Stage::Kinematics => Err(self.error(expression, span, |text| Fault::NotHere {
-                name: text,
-                place: stage.place(),
-                allowed: stage.allowed(),
+            Stage::Start | Stage::Kinematics | Stage::Position => Err(self.error(expression, span, |text| {
+                Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() }
             })),
             _ => Ok(self.velocity(name)),
         }
@@ -279,7 +281,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
-            Stage::Start | Stage::Kinematics => true,
+            Stage::Start | Stage::Kinematics | Stage::Position => true,
             Stage::Definition | Stage::Dynamics | Stage::Observation => false,
         };
         if refused {

@@ -47,6 +47,18 @@ impl EulerAngles {
         if axes[0] == axes[1] || axes[1] == axes[2] { Err(refusal()) } else { Ok(EulerAngles { axes }) }
     }
 
+    /// The matrix R_i(α) R_j(β) R_k(γ) from body axes to axes in space, 3 × 3, of the angles `x`.
+    ///
+    /// # Panics
+    /// If there are fewer than three.
+    pub fn rotation_matrix<'g>(&self, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
+        let [first, second, third] = [0, 1, 2].map(|i| turn(self.axes[i], x[i]));
+        let product = |a: &Matrix<Expr<'g>>, b: &Matrix<Expr<'g>>| {
+            Matrix::from_fn(3, 3, |i, j| (0..3).map(|l| a[(i, l)] * b[(l, j)]).sum())
+        };
+        product(&product(&first, &second), &third)
+    }
+
     /// Whether the first and the last axis are the same.
     fn is_proper(&self) -> bool {
         self.axes[0] == self.axes[2]
@@ -113,6 +125,18 @@ fn angle(s: f64, c: f64) -> f64 {
 
 fn about_axis(axis: usize, angle: f64) -> Matrix3<f64> {
     matrix_exp(&(Vector3::ith(axis, 1.0) * angle))
+}
+
+/// The matrix of the rotation by `angle` about `axis`.
+fn turn<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
+    let next = (axis + 1) % 3;
+    Matrix::from_fn(3, 3, |i, j| match (i == axis, j == axis) {
+        (true, true) => Expr::ONE,
+        (false, false) if i == j => angle.cos(),
+        (false, false) if i == next => -angle.sin(),
+        (false, false) => angle.sin(),
+        _ => Expr::ZERO,
+    })
 }
 
 impl LieGroup for EulerAngles {

@@ -18,6 +18,16 @@ use crate::matrix::Matrix;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RotationMatrices;
 
+impl RotationMatrices {
+    /// The matrix R from body axes to axes in space, 3 × 3, of its entries `x`, row after row.
+    ///
+    /// # Panics
+    /// If there are fewer than nine.
+    pub fn rotation_matrix<'g>(&self, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
+        Matrix::from_fn(3, 3, |i, j| x[3 * i + j])
+    }
+}
+
 fn matrix(g: &[f64]) -> Matrix3<f64> {
     Matrix3::from_row_slice(&g[..9])
 }

@@ -5,7 +5,7 @@ use pc_expr::Expr;
 
 use crate::error::AlgebraError;
 use crate::group::rotation::{
-    components, dynamic, hat, matrix_of, quaternion, quaternion_exp, quaternion_log, vector,
+    components, dynamic, hat, matrix_of, quaternion, quaternion_exp, quaternion_log, rotation_of, vector,
 };
 use crate::group::{LieGroup, Side, exponential, finite, largest_difference};
 use crate::lie_algebra::LieAlgebra;
@@ -20,6 +20,26 @@ use crate::matrix::Matrix;
 /// is constant along their motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitQuaternions;
+
+impl UnitQuaternions {
+    /// The matrix of x ↦ q x q* from body axes to axes in space, 3 × 3: |q|² times a rotation matrix.
+    ///
+    /// # Panics
+    /// If `q` has fewer than four entries.
+    ///
+    /// ```
+    /// # use pc_algebra::UnitQuaternions;
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let q = graph.symbols(["q0", "q1", "q2", "q3"]);
+    /// let r = UnitQuaternions.rotation_matrix(&q);
+    /// assert_eq!(r[(2, 0)], 2.0 * (q[1] * q[3] - q[0] * q[2]));
+    /// ```
+    pub fn rotation_matrix<'g>(&self, q: &[Expr<'g>]) -> Matrix<Expr<'g>> {
+        let rows = rotation_of(q);
+        Matrix::from_fn(3, 3, |i, j| rows[i][j])
+    }
+}
 
 impl LieGroup for UnitQuaternions {
     fn algebra(&self) -> LieAlgebra {

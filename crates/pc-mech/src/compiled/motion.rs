@@ -75,7 +75,7 @@ impl<'g> Equations<'g> {
             time: system.frame.time(),
             state: x.iter().chain(&system.quasi_velocities).copied().collect(),
             coordinates: x.len(),
-            parameters: system.parameters.clone(),
+            parameters: system.run_time_inputs(),
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             mass: self.mass.clone(),

@@ -1,0 +1,189 @@
+//! Rigid bodies.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::bodies::particle::Particle;
+use crate::bodies::{Moving, Share};
+use crate::error::{MechError, shape};
+
+/// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
+///
+/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω. That is right if r is the **mass centre** and I is taken about it, and
+/// also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is taken about that
+/// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is
+/// not written here: give the mass centre.
+///
+/// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
+/// follows from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
+///
+/// A force F at r, along the axes of r, and a torque N, along the axes of ω, give
+/// Q_s = F · X_s r + N · ∂ω/∂η_s (8).
+///
+/// ```
+/// use pc_mech::{EulerAngles, Graph, LieGroup, RigidBody, System};
+///
+/// // Euler's angles and the angular velocity in body axes: ω = η.
+/// let graph = Graph::new();
+/// let [a, b, c, w1, w2, w3] = graph.symbols(["A", "B", "C", "ω1", "ω2", "ω3"]);
+/// let angles = EulerAngles::about("zxz")?;
+/// let x = graph.symbols(["ψ", "θ", "φ"]);
+/// let top = System::builder(&graph)
+///     .coordinates(["ψ", "θ", "φ"])
+///     .quasi_velocities(["ω1", "ω2", "ω3"])
+///     .frame(angles.left_frame(&graph, graph.symbol("t"), x.to_vec())?)
+///     .rigid_body(|_, x, _| RigidBody::rotating(1, [0, 0, 0], [a, b, c], angles.rotation_matrix(x)))
+///     .build()?;
+/// let expected = (a * w1.square() + b * w2.square() + c * w3.square()) / 2.0;
+/// assert_eq!(top.lagrangian(), expected);
+/// # Ok::<(), pc_mech::MechError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RigidBody<'g> {
+    centre: Particle<'g>,
+    inertia: Inertia<'g>,
+    orientation: Orientation<'g>,
+    torque: Option<[Expr<'g>; 3]>,
+}
+
+/// A symmetric inertia matrix.
+///
+/// Made of three principal moments `[Ixx, Iyy, Izz]`, or of six entries `[Ixx, Iyy, Izz, Ixy, Iyz, Ixz]`. The latter
+/// are entries of the matrix: Ixy = −∫ xy dm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia<'g>([Expr<'g>; 6]);
+
+impl<'g, E: Into<Expr<'g>>> From<[E; 3]> for Inertia<'g> {
+    fn from(principal: [E; 3]) -> Inertia<'g> {
+        let [x, y, z] = principal.map(Into::into);
+        Inertia([x, y, z, Expr::ZERO, Expr::ZERO, Expr::ZERO])
+    }
+}
+
+impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
+    fn from(entries: [E; 6]) -> Inertia<'g> {
+        Inertia(entries.map(Into::into))
+    }
+}
+
+impl<'g> Inertia<'g> {
+    /// ω·Iω
+    fn twice_the_energy(&self, omega: &[Expr<'g>]) -> Expr<'g> {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        let [x, y, z] = [omega[0], omega[1], omega[2]];
+        let mixed = xy * x * y + yz * y * z + xz * x * z;
+        xx * x.square() + yy * y.square() + zz * z.square() + 2.0 * mixed
+    }
+}
+
+#[derive(Clone, Debug)]
+enum Orientation<'g> {
+    /// R, from body axes to axes in space, 3 × 3.
+    Rotation(Matrix<Expr<'g>>),
+    /// ω in terms of (t, x, η) or ẋ.
+    AngularVelocity([Expr<'g>; 3]),
+}
+
+impl<'g> RigidBody<'g> {
+    /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
+    ///
+    /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: taken is the
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, on which a factor has no influence. Of the matrices of
+    /// groups, those of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such
+    /// multiples everywhere. Nine entries R_ij that are coordinates are so on SO(3) only, and give a long energy:
+    /// there ω is better [given](RigidBody::turning) by the quasi-velocities.
+    pub fn rotating(
+        mass: impl Into<Expr<'g>>,
+        position: impl IntoIterator<Item = impl Into<Expr<'g>>>,
+        inertia: impl Into<Inertia<'g>>,
+        rotation: Matrix<Expr<'g>>,
+    ) -> RigidBody<'g> {
+        RigidBody {
+            centre: Particle::new(mass, position),
+            inertia: inertia.into(),
+            orientation: Orientation::Rotation(rotation),
+            torque: None,
+        }
+    }
+
+    /// A body with the angular velocity ω, affine in η or in the velocities ẋ, which are the symbols `x'`.
+    pub fn turning(
+        mass: impl Into<Expr<'g>>,
+        position: impl IntoIterator<Item = impl Into<Expr<'g>>>,
+        inertia: impl Into<Inertia<'g>>,
+        angular_velocity: [impl Into<Expr<'g>>; 3],
+    ) -> RigidBody<'g> {
+        RigidBody {
+            centre: Particle::new(mass, position),
+            inertia: inertia.into(),
+            orientation: Orientation::AngularVelocity(angular_velocity.map(Into::into)),
+            torque: None,
+        }
+    }
+
+    /// The same body with the force F at its position, as long as this.
+    #[must_use]
+    pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> RigidBody<'g> {
+        RigidBody { centre: self.centre.force(force), ..self }
+    }
+
+    /// The same body with the torque N about its position, along the axes of ω.
+    #[must_use]
+    pub fn torque(self, torque: [impl Into<Expr<'g>>; 3]) -> RigidBody<'g> {
+        RigidBody { torque: Some(torque.map(Into::into)), ..self }
+    }
+
+    pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
+        moving.check_at_rest("the inertia", &self.inertia.0)?;
+        let Share { kinetic, mut forces } = self.centre.share(moving)?;
+        let turning = match &self.orientation {
+            Orientation::Rotation(rotation) => angular_velocities(rotation, moving)?,
+            Orientation::AngularVelocity(omega) => affine_parts(omega, moving)?,
+        };
+        let rotational = self.inertia.twice_the_energy(&moving.combine(&turning)) / 2.0;
+        if let Some(torque) = &self.torque {
+            let torque = moving.in_quasi_velocities(torque);
+            for (force, turn) in forces.iter_mut().zip(moving.work(&torque, &turning)) {
+                *force += turn;
+            }
+        }
+        Ok(Share { kinetic: kinetic + rotational, forces })
+    }
+}
+
+/// ω_0..ω_k with ω = ω_0 + η_s ω_s, from the antisymmetric parts of Rᵀ X_s R.
+fn angular_velocities<'g>(
+    rotation: &Matrix<Expr<'g>>,
+    moving: &Moving<'_, 'g>,
+) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
+    shape("the list of rows of the rotation of a body", rotation.rows(), 3)?;
+    shape("the list of columns of the rotation of a body", rotation.columns(), 3)?;
+    let graph = moving.frame.graph();
+    let entries = rotation.entries().iter().copied();
+    let size = graph.dot(entries.clone(), entries) / 3.0;
+    let rates = moving.operators("the rotation", rotation.entries())?;
+    let component = |rate: &[Expr<'g>], i: usize, j: usize| {
+        graph.dot(rotation.column(i), (0..3).map(|row| rate[3 * row + j]))
+    };
+    let angular = |rate: Vec<Expr<'g>>| {
+        let about = |i: usize, j: usize| (component(&rate, i, j) - component(&rate, j, i)) / (2.0 * size);
+        vec![about(2, 1), about(0, 2), about(1, 0)]
+    };
+    Ok(rates.into_iter().map(angular).collect())
+}
+
+/// ω_0..ω_k with ω = ω_0 + η_s ω_s.
+fn affine_parts<'g>(omega: &[Expr<'g>; 3], moving: &Moving<'_, 'g>) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
+    let (graph, eta) = (moving.frame.graph(), moving.eta);
+    let in_eta = moving.in_quasi_velocities(omega);
+    let slopes: Vec<Vec<Expr<'g>>> = in_eta.iter().map(|&component| graph.gradient(component, eta)).collect();
+    for (component, slopes) in in_eta.iter().zip(&slopes) {
+        if slopes.iter().any(|slope| eta.iter().any(|&eta| slope.depends_on(eta))) {
+            return Err(MechError::AngularVelocityNotAffine { component: component.to_string() });
+        }
+    }
+    let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+    let mut parts = vec![graph.substitute(&in_eta, &at_rest)];
+    parts.extend((0..eta.len()).map(|s| slopes.iter().map(|slopes| slopes[s]).collect()));
+    Ok(parts)
+}

@@ -1,0 +1,355 @@
+//! How a mechanical system is described.
+
+use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
+use pc_expr::{Expr, Graph};
+
+use crate::bodies::particle::Particle;
+use crate::bodies::rigid_body::RigidBody;
+use crate::bodies::{Body, Moving};
+use crate::error::{MechError, shape};
+use crate::external;
+use crate::forces::Force;
+use crate::system::System;
+
+/// How a system is described; every closure receives (t, x, η).
+///
+/// Coordinates and quasi-velocities are named before the closures that use them; apart from that the order is free.
+/// L is the sum of all that is given of it, by [`lagrangian`](SystemBuilder::lagrangian),
+/// [`kinetic`](SystemBuilder::kinetic), [`potential`](SystemBuilder::potential),
+/// [`lagrangian_in_velocities`](SystemBuilder::lagrangian_in_velocities) and the bodies, and so is Q.
+#[derive(Clone, Debug)]
+pub struct SystemBuilder<'g> {
+    graph: &'g Graph,
+    time: Expr<'g>,
+    coordinates: Vec<Expr<'g>>,
+    quasi_velocities: Option<Vec<Expr<'g>>>,
+    kinematics: Kinematics<'g>,
+    structure: Option<StructureCoefficients<'g>>,
+    near: Neighbourhood<'g>,
+    parameters: Vec<(Expr<'g>, f64)>,
+    /// Terms of L(t, x, η).
+    lagrangian: Vec<Expr<'g>>,
+    /// Terms of L(t, x, ẋ), with the symbols x'.
+    in_velocities: Vec<Expr<'g>>,
+    bodies: Vec<Body<'g>>,
+    forces: Vec<Force<'g>>,
+    /// Names of quasi-velocities.
+    external: Vec<String>,
+    integrals: Vec<(String, Expr<'g>)>,
+    outputs: Vec<(String, Expr<'g>)>,
+}
+
+#[derive(Clone, Debug)]
+enum Kinematics<'g> {
+    /// η = ẋ
+    Coordinate,
+    /// ẋ, affine in η (3)
+    Velocities(Vec<Expr<'g>>),
+    /// A frame made elsewhere.
+    Frame(Frame<'g>),
+}
+
+impl<'g> SystemBuilder<'g> {
+    pub(crate) fn new(graph: &'g Graph) -> SystemBuilder<'g> {
+        SystemBuilder {
+            graph,
+            time: graph.symbol("t"),
+            coordinates: Vec::new(),
+            quasi_velocities: None,
+            kinematics: Kinematics::Coordinate,
+            structure: None,
+            near: Neighbourhood::default(),
+            parameters: Vec::new(),
+            lagrangian: Vec::new(),
+            in_velocities: Vec::new(),
+            bodies: Vec::new(),
+            forces: Vec::new(),
+            external: Vec::new(),
+            integrals: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+
+    /// Declares a symbol to be a parameter, with its value: a run-time input of everything compiled.
+    #[must_use]
+    pub fn parameter(mut self, symbol: Expr<'g>, value: f64) -> Self {
+        self.parameters.push((symbol, value));
+        self
+    }
+
+    /// Names the coordinates x_1..x_n; none for equations on an algebra alone.
+    #[must_use]
+    pub fn coordinates<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.coordinates = names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect();
+        self
+    }
+
+    /// Names the quasi-velocities η_1..η_k; without it they are the velocities, `x'` for the coordinate `x`.
+    #[must_use]
+    pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
+        self.quasi_velocities =
+            Some(names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect());
+        self
+    }
+
+    /// Gives the velocities ẋ_1..ẋ_n, affine in η (3); without it ẋ = η.
+    #[must_use]
+    pub fn kinematics<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        velocities: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
+    ) -> Self {
+        let velocities = velocities(self.time, &self.coordinates, &self.eta()).into_iter().collect();
+        self.kinematics = Kinematics::Velocities(velocities);
+        self
+    }
+
+    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph.
+    #[must_use]
+    pub fn frame(mut self, frame: Frame<'g>) -> Self {
+        self.kinematics = Kinematics::Frame(frame);
+        self
+    }
+
+    /// Gives the brackets [X_r, X_s] = c_rs^m X_m of a stationary frame: needed where b does not determine them
+    /// (rank b < k, or no coordinates), checked against the frame everywhere else.
+    #[must_use]
+    pub fn algebra(self, algebra: &LieAlgebra) -> Self {
+        self.structure(algebra.structure_coefficients())
+    }
+
+    /// Gives all structure coefficients, c_0s^m included.
+    #[must_use]
+    pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
+        self.structure = Some(structure);
+        self
+    }
+
+    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an
+    /// identity can only be tried numerically.
+    #[must_use]
+    pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
+        self.near.centre.extend(values);
+        self
+    }
+
+    /// Adds to L(t, x, η) = T + U, with U minus the potential energy.
+    #[must_use]
+    pub fn lagrangian(mut self, l: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
+        self.lagrangian.push(l(self.time, &self.coordinates, &self.eta()));
+        self
+    }
+
+    /// Adds to the kinetic energy T(t, x, η).
+    #[must_use]
+    pub fn kinetic(self, t: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
+        self.lagrangian(t)
+    }
+
+    /// Adds to the potential energy −U, which L has with the opposite sign.
+    #[must_use]
+    pub fn potential(self, v: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
+        self.lagrangian(|t, x, eta| -v(t, x, eta))
+    }
+
+    /// Adds to the Lagrangian in velocities L(t, x, ẋ): the closure receives the velocities in place of η, for which
+    /// ẋ = b η + b_0 (3) is put in. The coordinates may be redundant.
+    ///
+    /// ```
+    /// # use pc_mech::{Graph, System};
+    /// let graph = Graph::new();
+    /// let [x, y, w] = graph.symbols(["x", "y", "ω"]);
+    /// let circle = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .quasi_velocities(["ω"])
+    ///     .lagrangian_in_velocities(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+    ///     .kinematics(|_, x, eta| [-x[1] * eta[0], x[0] * eta[0]])
+    ///     .build()?;
+    /// assert_eq!(circle.lagrangian(), (x.square() + y.square()) * w.square() / 2.0);
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    #[must_use]
+    pub fn lagrangian_in_velocities(
+        mut self,
+        l: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        self.in_velocities.push(l(self.time, &self.coordinates, &self.velocity_symbols()));
+        self
+    }
+
+    /// Adds a mass point: its kinetic energy, and the force on it.
+    #[must_use]
+    pub fn particle(
+        mut self,
+        particle: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Particle<'g>,
+    ) -> Self {
+        self.bodies.push(Body::Particle(particle(self.time, &self.coordinates, &self.eta())));
+        self
+    }
+
+    /// Adds a rigid body: its kinetic energy, and the force and torque on it.
+    #[must_use]
+    pub fn rigid_body(
+        mut self,
+        body: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> RigidBody<'g>,
+    ) -> Self {
+        let body = body(self.time, &self.coordinates, &self.eta());
+        self.bodies.push(Body::Rigid(Box::new(body)));
+        self
+    }
+
+    /// Adds generalised forces Q_1..Q_k (8): their power is Q_s η_s.
+    #[must_use]
+    pub fn forces<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        q: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
+    ) -> Self {
+        let forces = q(self.time, &self.coordinates, &self.eta()).into_iter().collect();
+        self.forces.push(Force::OnQuasiVelocities(forces));
+        self
+    }
+
+    /// Adds forces F_1..F_n on the coordinates, with the power F_i ẋ_i: Q_s = b_is F_i.
+    #[must_use]
+    pub fn force_on_coordinates<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> I,
+    ) -> Self {
+        let forces = f(self.time, &self.coordinates, &self.eta()).into_iter().collect();
+        self.forces.push(Force::OnCoordinates(forces));
+        self
+    }
+
+    /// Adds the forces of a dissipation function R(t, x, η) (Rayleigh): Q_s = −∂R/∂η_s. Their power is −2R where R is
+    /// quadratic in η.
+    #[must_use]
+    pub fn dissipation(mut self, r: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
+        self.forces.push(Force::Dissipation(r(self.time, &self.coordinates, &self.eta())));
+        self
+    }
+
+    /// Adds gyroscopic forces Q_s = Γ_sr η_r with Γ antisymmetric, k × k; they do no work.
+    #[must_use]
+    pub fn gyroscopic(
+        mut self,
+        gamma: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Matrix<Expr<'g>>,
+    ) -> Self {
+        self.forces.push(Force::Gyroscopic(gamma(self.time, &self.coordinates, &self.eta())));
+        self
+    }
+
+    /// Declares that forces computed outside, such as those of a controller, act on quasi-velocities, given by their
+    /// names: Q_s has a further term, a symbol, whose value an [`ExternalForce`](crate::ExternalForce) gives in the
+    /// order of declaration when the equations are [compiled with it](crate::Equations::compile_forced).
+    #[must_use]
+    pub fn external_force<S: Into<String>>(mut self, quasi_velocities: impl IntoIterator<Item = S>) -> Self {
+        for name in quasi_velocities.into_iter().map(Into::into) {
+            if !self.external.contains(&name) {
+                self.external.push(name);
+            }
+        }
+        self
+    }
+
+    /// Adds a function of (t, x, η) that the motion should keep constant: its drift is worth knowing.
+    #[must_use]
+    pub fn integral(
+        mut self,
+        name: impl Into<String>,
+        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        let value = f(self.time, &self.coordinates, &self.eta());
+        self.integrals.push((name.into(), value));
+        self
+    }
+
+    /// Adds a function of (t, x, η) to be computed along the motion.
+    #[must_use]
+    pub fn output(
+        mut self,
+        name: impl Into<String>,
+        f: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        let value = f(self.time, &self.coordinates, &self.eta());
+        self.outputs.push((name.into(), value));
+        self
+    }
+
+    fn eta(&self) -> Vec<Expr<'g>> {
+        self.quasi_velocities.clone().unwrap_or_else(|| self.velocity_symbols())
+    }
+
+    /// x_1'..x_n'
+    fn velocity_symbols(&self) -> Vec<Expr<'g>> {
+        self.coordinates.iter().map(|x| self.graph.symbol(&format!("{x}'"))).collect()
+    }
+
+    /// The system, its frame closed and its structure coefficients known.
+    ///
+    /// # Errors
+    /// Any [`MechError`]; of the frame above all [`AlgebraError`].
+    pub fn build(self) -> Result<System<'g>, MechError> {
+        let (eta, velocities) = (self.eta(), self.velocity_symbols());
+        let k = eta.len();
+        let frame = match self.kinematics {
+            Kinematics::Coordinate if self.coordinates.is_empty() => {
+                let b = Matrix::from_fn(0, k, |_, _| Expr::ZERO); // equations on an algebra alone
+                Frame::new(self.graph, self.time, Vec::new(), b, Vec::new())?
+            }
+            Kinematics::Coordinate => Frame::coordinate(self.graph, self.time, self.coordinates),
+            Kinematics::Velocities(velocities) => {
+                Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
+            }
+            Kinematics::Frame(frame) => frame,
+        };
+        shape("the list of quasi-velocities", k, frame.operators())?;
+        let mut near = self.near;
+        near.centre.extend(self.parameters.iter().copied());
+        let structure = match self.structure {
+            None if frame.coordinates().is_empty() && k > 0 => return Err(AlgebraError::AlgebraNeeded.into()),
+            None => frame.structure_coefficients(&near)?,
+            Some(given) => {
+                frame.check(&given, &near)?;
+                given
+            }
+        };
+        let moving = Moving::new(&frame, &eta);
+        let mut terms = self.lagrangian;
+        let velocities: Vec<_> = velocities.into_iter().zip(frame.velocities(&eta)).collect();
+        terms.extend(self.graph.substitute(&self.in_velocities, &velocities));
+        let mut parts = vec![vec![Expr::ZERO; k]];
+        for body in &self.bodies {
+            let share = body.share(&moving)?;
+            terms.push(share.kinetic);
+            parts.push(share.forces);
+        }
+        if terms.is_empty() {
+            return Err(MechError::NoLagrangian);
+        }
+        for force in &self.forces {
+            parts.push(force.components(&frame, &eta)?);
+        }
+        let external = external::symbols(&self.external, &frame, &eta, &self.parameters)?;
+        for (name, symbol) in &external {
+            parts.push(
+                eta.iter().map(|eta| if eta.to_string() == *name { *symbol } else { Expr::ZERO }).collect(),
+            );
+        }
+        let lagrangian = self.graph.sum(terms);
+        let forces: Vec<Expr<'g>> = (0..k).map(|s| self.graph.sum(parts.iter().map(|q| q[s]))).collect();
+        self.graph.check(&[lagrangian])?;
+        self.graph.check(&forces)?;
+        self.graph.check(frame.b().entries())?;
+        self.graph.check(frame.b0())?;
+        Ok(System {
+            frame,
+            structure,
+            quasi_velocities: eta,
+            parameters: self.parameters,
+            lagrangian,
+            forces,
+            external,
+            integrals: self.integrals,
+            outputs: self.outputs,
+        })
+    }
+}

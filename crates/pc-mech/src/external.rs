@@ -1,0 +1,342 @@
+//! Forces that are computed outside: opaque functions of time and state.
+
+use pc_algebra::Frame;
+use pc_expr::{Expr, Failure, VectorField};
+
+use crate::canonical::Canonical;
+use crate::compiled::motion::Motion;
+use crate::compiled::options::CompileOptions;
+use crate::error::MechError;
+use crate::multipliers::Multipliers;
+use crate::poincare::Equations;
+
+/// Forces on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
+///
+/// Implemented by closures `FnMut(t, y, q)` that write all q; one that may fail, or that knows its derivatives,
+/// implements it by hand. The state y is that of the motion: (x, η), or coordinates and momenta of the
+/// [canonical](Canonical) equations.
+pub trait ExternalForce {
+    /// Writes the forces at (t, y) to `q`, one for each quasi-velocity declared, in the order of declaration.
+    ///
+    /// # Errors
+    /// [`Failure`], recoverable if an integrator should try a smaller step.
+    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure>;
+
+    /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`, every entry.
+    ///
+    /// Unless implemented, these are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone, with
+    /// h_j = √ε max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
+    ///
+    /// # Errors
+    /// As [`force`](ExternalForce::force).
+    fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
+        let forces = dq.len().checked_div(y.len()).unwrap_or(0).max(1);
+        let (mut here, mut moved) = (vec![f64::NAN; forces], y.to_vec());
+        self.force(t, y, &mut here)?;
+        for (j, column) in dq.chunks_exact_mut(forces).enumerate() {
+            moved[j] = y[j] + f64::EPSILON.sqrt() * y[j].abs().max(1.0);
+            let step = moved[j] - y[j];
+            column.fill(f64::NAN);
+            self.force(t, &moved, column)?;
+            moved[j] = y[j];
+            column.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - here) / step);
+        }
+        Ok(())
+    }
+}
+
+impl<F: FnMut(f64, &[f64], &mut [f64])> ExternalForce for F {
+    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
+        self(t, y, q);
+        Ok(())
+    }
+}
+
+/// The symbols of external forces on the quasi-velocities called `names`: `Q_` before the name.
+///
+/// # Errors
+/// [`MechError::NotAQuasiVelocity`].
+pub(crate) fn symbols<'g>(
+    names: &[String],
+    frame: &Frame<'g>,
+    eta: &[Expr<'g>],
+    parameters: &[(Expr<'g>, f64)],
+) -> Result<Vec<(String, Expr<'g>)>, MechError> {
+    let known: Vec<String> = eta.iter().map(Expr::to_string).collect();
+    let declared = frame.coordinates().iter().chain(eta).chain(parameters.iter().map(|(symbol, _)| symbol));
+    let taken: Vec<String> = declared.map(Expr::to_string).collect();
+    let symbol = |name: &String| {
+        if !known.contains(name) {
+            return Err(MechError::NotAQuasiVelocity { name: name.clone(), known: known.clone() });
+        }
+        let mut free = format!("Q_{name}");
+        while taken.contains(&free) {
+            free.insert_str(0, "Q_");
+        }
+        Ok((name.clone(), frame.graph().symbol(&free)))
+    };
+    names.iter().map(symbol).collect()
+}
+
+/// A [`Motion`] under external forces: ẏ = f(t, y, q(t, y)).
+///
+/// The forces are run-time inputs of the motion, like parameters, and follow these. So the Jacobian is
+/// ∂f/∂y + ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). It is full: its
+/// zero pattern is not known.
+///
+/// ```
+/// use pc_mech::{Graph, System, VectorField};
+///
+/// let graph = Graph::new();
+/// let pendulum = System::builder(&graph)
+///     .coordinates(["φ"])
+///     .lagrangian(|_, x, v| v[0].square() / 2.0 + x[0].cos())
+///     .external_force(["φ'"])
+///     .build()?;
+/// let controller = |_: f64, y: &[f64], q: &mut [f64]| q[0] = 2.0 * y[0].sin() - y[1];
+/// let mut motion = pendulum.poincare()?.compile_forced(controller)?;
+/// let mut rate = [0.0; 2];
+/// motion.rhs(0.0, &[0.5, 0.1], &mut rate)?;
+/// assert_eq!(rate, [0.1, 0.5f64.sin() - 0.1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ForcedMotion<F> {
+    motion: Motion,
+    force: F,
+    /// The quasi-velocities on which the forces act.
+    names: Vec<String>,
+    /// Number of parameters, which the forces follow.
+    parameters: usize,
+    /// q
+    values: Vec<f64>,
+    /// ∂q/∂y
+    slopes: Vec<f64>,
+    /// ∂f/∂(p, q)
+    columns: Vec<f64>,
+}
+
+impl Equations<'_> {
+    /// Compiles the equations, their Jacobian and the observables, with `force` for the external forces.
+    ///
+    /// # Errors
+    /// As [`compile`](Equations::compile), and [`MechError::NoExternalForce`] if none was declared.
+    pub fn compile_forced<F: ExternalForce>(&self, force: F) -> Result<ForcedMotion<F>, MechError> {
+        self.compile_forced_for(CompileOptions::default(), force)
+    }
+
+    /// Compiles as [`compile_forced`](Equations::compile_forced) does, with other derivatives or for another kernel.
+    ///
+    /// # Errors
+    /// As [`compile_forced`](Equations::compile_forced).
+    pub fn compile_forced_for<F: ExternalForce>(
+        &self,
+        options: impl Into<CompileOptions>,
+        force: F,
+    ) -> Result<ForcedMotion<F>, MechError> {
+        ForcedMotion::new(self.compile_for(derived(options.into()))?, self.system.external_forces(), force)
+    }
+}
+
+impl Canonical<'_> {
+    /// Compiles the equations as [`compile_for`](Canonical::compile_for) does, with `force` for the external forces;
+    /// it receives the state (x, y).
+    ///
+    /// # Errors
+    /// As [`Equations::compile_forced`].
+    pub fn compile_forced_for<F: ExternalForce>(
+        &self,
+        options: impl Into<CompileOptions>,
+        force: F,
+    ) -> Result<ForcedMotion<F>, MechError> {
+        ForcedMotion::new(self.compile_for(derived(options.into()))?, self.system().external_forces(), force)
+    }
+}
+
+impl Multipliers<'_> {
+    /// Compiles the equations as [`compile_for`](Multipliers::compile_for) does, with `force` for the external forces.
+    ///
+    /// # Errors
+    /// As [`Equations::compile_forced`].
+    pub fn compile_forced_for<F: ExternalForce>(
+        &self,
+        options: impl Into<CompileOptions>,
+        force: F,
+    ) -> Result<ForcedMotion<F>, MechError> {
+        let external = self.equations().system().external_forces();
+        ForcedMotion::new(self.compile_for(derived(options.into()))?, external, force)
+    }
+}
+
+/// The options with ∂f/∂q where a Jacobian needs it.
+fn derived(options: CompileOptions) -> CompileOptions {
+    options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
+}
+
+impl<F: ExternalForce> ForcedMotion<F> {
+    fn new(motion: Motion, external: &[(String, Expr<'_>)], force: F) -> Result<ForcedMotion<F>, MechError> {
+        if external.is_empty() {
+            return Err(MechError::NoExternalForce);
+        }
+        let (dim, inputs, forces) = (motion.dim(), motion.parameters_len(), external.len());
+        Ok(ForcedMotion {
+            force,
+            names: external.iter().map(|(name, _)| name.clone()).collect(),
+            parameters: inputs - forces,
+            values: vec![0.0; forces],
+            slopes: vec![0.0; forces * dim],
+            columns: vec![0.0; inputs * dim],
+            motion,
+        })
+    }
+
+    /// The motion as a function of the forces, which follow its parameters.
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// The external force.
+    pub fn force(&self) -> &F {
+        &self.force
+    }
+
+    /// The external force, to be changed.
+    pub fn force_mut(&mut self) -> &mut F {
+        &mut self.force
+    }
+
+    /// The values of the parameters, in the order of declaration.
+    pub fn parameters(&self) -> &[f64] {
+        &self.motion.parameters()[..self.parameters]
+    }
+
+    /// The values of the parameters, to be changed.
+    pub fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.motion.parameters_mut()[..self.parameters]
+    }
+
+    /// The observables at (t, y), as [`Motion::observe`] gives them; those that contain a force that cannot be
+    /// computed are not finite.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state.
+    pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        if self.apply(t, y).is_err() {
+            self.motion.parameters_mut()[self.parameters..].fill(f64::NAN);
+        }
+        self.motion.observe(t, y)
+    }
+
+    /// Computes the forces and gives them to the motion.
+    fn apply(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.values.fill(f64::NAN);
+        let outcome = self.force.force(t, y, &mut self.values);
+        outcome.map_err(|failure| self.failed(&failure, t))?;
+        self.check_finite(&self.values, t, y)?;
+        self.motion.parameters_mut()[self.parameters..].copy_from_slice(&self.values);
+        Ok(())
+    }
+
+    /// Computes ∂q/∂y and ∂f/∂(p, q).
+    fn differentiate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.slopes.fill(f64::NAN);
+        let outcome = self.force.jacobian(t, y, &mut self.slopes);
+        outcome.map_err(|failure| self.failed(&failure, t))?;
+        self.check_finite(&self.slopes, t, y)?;
+        self.motion.parameter_jacobian(t, y, &mut self.columns)
+    }
+
+    /// ∂f/∂q, column after column.
+    fn by_forces(&self) -> impl Iterator<Item = &[f64]> {
+        self.columns.chunks_exact(self.motion.dim()).skip(self.parameters)
+    }
+
+    /// `values` are forces, or derivatives of all of them in turn.
+    fn check_finite(&self, values: &[f64], t: f64, y: &[f64]) -> Result<(), Failure> {
+        let Some(i) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        Err(Failure::recoverable(MechError::ExternalForceNotFinite {
+            quasi_velocity: self.names[i % self.names.len()].clone(),
+            value: values[i],
+            t,
+            state: self.motion.names().iter().cloned().zip(y.iter().copied()).collect(),
+        }))
+    }
+
+    #[cold]
+    fn failed(&self, failure: &Failure, t: f64) -> Failure {
+        let quasi_velocities = self.names.clone();
+        let error = MechError::ExternalForceFailed { quasi_velocities, t, cause: failure.to_string() };
+        if failure.is_recoverable() { Failure::recoverable(error) } else { Failure::fatal(error) }
+    }
+}
+
+impl<F: ExternalForce> VectorField for ForcedMotion<F> {
+    fn dim(&self) -> usize {
+        self.motion.dim()
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.apply(t, y)?;
+        self.motion.rhs(t, y, ydot)
+    }
+
+    fn has_jacobian(&self) -> bool {
+        self.motion.has_jacobian()
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.apply(t, y)?;
+        self.motion.jacobian(t, y, jacobian)?;
+        self.differentiate(t, y)?;
+        let slopes = self.slopes.chunks_exact(self.names.len());
+        for (column, slopes) in jacobian.chunks_exact_mut(y.len()).zip(slopes) {
+            for (by_force, slope) in self.by_forces().zip(slopes) {
+                column.iter_mut().zip(by_force).for_each(|(entry, by_force)| *entry += by_force * slope);
+            }
+        }
+        Ok(())
+    }
+
+    fn has_jvp(&self) -> bool {
+        self.motion.has_jvp()
+    }
+
+    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        self.apply(t, y)?;
+        self.motion.jvp(t, y, v, product)?;
+        self.differentiate(t, y)?;
+        for (i, by_force) in self.by_forces().enumerate() {
+            let slopes = self.slopes.iter().skip(i).step_by(self.names.len());
+            let change: f64 = slopes.zip(v).map(|(slope, v)| slope * v).sum();
+            product.iter_mut().zip(by_force).for_each(|(entry, by_force)| *entry += by_force * change);
+        }
+        Ok(())
+    }
+
+    fn parameters_len(&self) -> usize {
+        self.parameters
+    }
+
+    fn has_parameter_jacobian(&self) -> bool {
+        self.motion.has_parameter_jacobian()
+    }
+
+    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.apply(t, y)?;
+        self.motion.parameter_jacobian(t, y, &mut self.columns)?;
+        jacobian.copy_from_slice(&self.columns[..jacobian.len()]);
+        Ok(())
+    }
+
+    fn has_projection(&self) -> bool {
+        self.motion.has_projection()
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.motion.project(t, y)
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        self.motion.component_name(i)
+    }
+}

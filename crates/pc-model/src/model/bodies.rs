@@ -1,0 +1,108 @@
+//! The bodies of a model: their expressions, resolved and checked where they stand.
+
+use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
+
+use super::Assembler;
+use crate::document::{self, Expression, Orientation};
+use crate::error::ModelError;
+use crate::fault::Fault;
+use crate::scope::Stage;
+
+/// A body as the mechanics knows it.
+pub(super) enum Body<'g> {
+    /// One without orientation.
+    Particle(Particle<'g>),
+    /// One that turns.
+    Rigid(Box<RigidBody<'g>>),
+}
+
+impl<'g> Assembler<'g, '_> {
+    /// The entries of `[bodies]`; `x_dot` are the symbols x' with b η + b_0.
+    pub(super) fn bodies(
+        &mut self,
+        eta: &[Expr<'g>],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Vec<Body<'g>>, ModelError> {
+        self.model.document.bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
+    }
+
+    fn body(
+        &mut self,
+        body: &document::Body,
+        eta: &[Expr<'g>],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Body<'g>, ModelError> {
+        let mass = self.scope.resolve(&body.mass, Stage::Position)?;
+        let position = self.resolved(&body.position)?;
+        let force = body.force.as_ref().map(|force| self.all_dynamic(force, x_dot)).transpose()?;
+        let Some(orientation) = &body.orientation else {
+            let particle = Particle::new(mass, position);
+            return Ok(Body::Particle(match force {
+                Some(force) => particle.force(force),
+                None => particle,
+            }));
+        };
+        let inertia: Inertia<'g> = match &body.inertia {
+            None => [Expr::ZERO; 3].into(),
+            Some(document::Inertia::Principal(moments)) => self.resolved(moments)?.into(),
+            Some(document::Inertia::Full(entries)) => self.resolved(entries)?.into(),
+        };
+        let mut rigid = match orientation {
+            Orientation::Rotation(entries) => {
+                let entries = self.resolved(entries)?;
+                let rotation = Matrix::from_fn(3, 3, |i, j| entries[3 * i + j]);
+                RigidBody::rotating(mass, position, inertia, rotation)
+            }
+            Orientation::AngularVelocity(components) => {
+                let omega = self.angular_velocity(components, eta, x_dot)?;
+                RigidBody::turning(mass, position, inertia, omega)
+            }
+        };
+        if let Some(force) = force {
+            rigid = rigid.force(force);
+        }
+        if let Some(torque) = &body.torque {
+            rigid = rigid.torque(self.all_dynamic(torque, x_dot)?);
+        }
+        Ok(Body::Rigid(Box::new(rigid)))
+    }
+
+    /// Functions of time and place.
+    fn resolved<const N: usize>(&mut self, list: &[Expression; N]) -> Result<[Expr<'g>; N], ModelError> {
+        let mut values = [Expr::ZERO; N];
+        for (value, expression) in values.iter_mut().zip(list) {
+            *value = self.scope.resolve(expression, Stage::Position)?;
+        }
+        Ok(values)
+    }
+
+    /// Functions of the motion, with ẋ = b η + b_0 put in.
+    fn all_dynamic<const N: usize>(
+        &mut self,
+        list: &[Expression; N],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<[Expr<'g>; N], ModelError> {
+        let mut values = [Expr::ZERO; N];
+        for (value, expression) in values.iter_mut().zip(list) {
+            *value = self.dynamic(expression, x_dot)?;
+        }
+        Ok(values)
+    }
+
+    fn angular_velocity(
+        &mut self,
+        components: &[Expression; 3],
+        eta: &[Expr<'g>],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<[Expr<'g>; 3], ModelError> {
+        let omega = self.all_dynamic(components, x_dot)?;
+        for (component, value) in components.iter().zip(omega) {
+            let slopes = self.graph.gradient(value, eta);
+            if slopes.iter().any(|slope| eta.iter().any(|&eta| slope.depends_on(eta))) {
+                let fault = |text| Fault::NotAffine { text, variables: "velocities" };
+                return Err(self.scope.error(component, component.ast.span, fault));
+            }
+        }
+        Ok(omega)
+    }
+}

@@ -1,0 +1,211 @@
+//! `[bodies.NAME]`: what they add to the energy and the forces, and every refusal in full.
+
+use pc_mech::{Expr, Graph, System};
+use pc_model::{Category, Document, Model, ModelError, Source};
+
+fn model(text: &str) -> Model {
+    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn system<'g>(graph: &'g Graph, text: &str) -> System<'g> {
+    model(text).assemble(graph).unwrap_or_else(|error| panic!("{error}")).system
+}
+
+fn refused(text: &str) -> ModelError {
+    match model(text).assemble(&Graph::new()) {
+        Ok(_) => panic!("accepted: {text}"),
+        Err(error) => error,
+    }
+}
+
+const PENDULUM: &str = r#"
+[parameters]
+m = 2.0
+M = 1.0
+l = 0.5
+g = 9.8
+k = 0.1
+
+[coordinates]
+s = 0.0
+"φ" = 1.0
+
+[definitions]
+depth = "l*cos(φ)"
+
+[bodies.cart]
+mass = "M"
+position = ["s", 0, 0]
+
+[bodies."the bob"]
+mass = "m"
+position = ["s + l*sin(φ)", 0, "-depth"]
+force = ["-k*s'", 0, "-m*g"]
+"#;
+
+/// No `[lagrangian]` is needed; the drag is −k ṡ along the first axis.
+#[test]
+fn particles_give_the_energy_and_the_forces() {
+    let graph = Graph::new();
+    let pendulum = system(&graph, PENDULUM);
+    let [m, cart, l, g, k] = graph.symbols(["m", "M", "l", "g", "k"]);
+    let [phi, s_rate, phi_rate] = graph.symbols(["φ", "s'", "φ'"]);
+    let expected = (m + cart) * s_rate.square() / 2.0
+        + m * l * phi.cos() * s_rate * phi_rate
+        + m * l.square() * phi_rate.square() / 2.0;
+    assert_eq!(pendulum.lagrangian(), expected);
+    let weight = -m * g * l * phi.sin() - k * s_rate * l * phi.cos();
+    assert_eq!(pendulum.forces(), [-k * s_rate, weight]);
+
+    // With a Lagrangian beside them, and the dissipation function of another drag.
+    let text = format!(
+        "{PENDULUM}\n[lagrangian]\nkinetic = \"s'^2\"\npotential = \"k*s^2\"\ndissipation = \"k*φ'^2/2\"\n\n[forces]\ns = 3\n"
+    );
+    let more = system(&graph, &text);
+    let s = graph.symbol("s");
+    assert_eq!(more.lagrangian(), expected + s_rate.square() - k * s.square());
+    assert_eq!(more.forces(), [3.0 - k * s_rate, weight - k * phi_rate]);
+}
+
+const ON_A_TURNTABLE: &str = r#"
+[parameters]
+J = 2.0
+N = 3.0
+"Ω" = 0.5
+
+[coordinates]
+"φ" = 0.0
+
+[quasi_velocities]
+w = { is = "2*φ'", start = 1.0 }
+"#;
+
+/// ω from the rotation and from φ' = w/2, with inertia in three and in six entries.
+#[test]
+fn a_body_turns_by_its_rotation_or_its_angular_velocity() {
+    let graph = Graph::new();
+    let [j, omega, w, torque] = graph.symbols(["J", "Ω", "w", "N"]);
+    for body in [
+        r#"inertia = ["J", 7, "J"]
+rotation = ["cos(φ + Ω*t)", "-sin(φ + Ω*t)", 0, "sin(φ + Ω*t)", "cos(φ + Ω*t)", 0, 0, 0, 1]"#,
+        r#"inertia = [1, 2, "J", 0.1, 0.2, 0.3]
+angular_velocity = [0, 0, "φ' + Ω"]"#,
+        r#"inertia = ["J", "J", "J"]
+angular_velocity = ["w/2 + Ω", 0, 0]"#,
+    ] {
+        let torque_axis = if body.contains("[\"w/2") { "[\"N\", 0, 0]" } else { "[0, 0, \"N\"]" };
+        let text = format!(
+            "{ON_A_TURNTABLE}\n[bodies.disk]\nmass = 1\nposition = [0, 0, 0]\n{body}\ntorque = {torque_axis}\n"
+        );
+        let disk = system(&graph, &text);
+        assert_eq!(disk.lagrangian(), j * (w / 2.0 + omega).square() / 2.0, "{body}");
+        assert_eq!(disk.forces(), [torque / 2.0], "{body}");
+    }
+    // All six entries: ½ ω·Iω with the mixed ones twice.
+    let text = format!(
+        "{ON_A_TURNTABLE}\n[bodies.disk]\nmass = 1\nposition = [0, 0, 0]\ninertia = [1, 2, 3, 0.5, 0.25, 0.125]\n\
+         angular_velocity = [\"w\", \"2*w\", \"4*w\"]\n"
+    );
+    let expected = (1.0 + 8.0 + 48.0 + 2.0 * (0.5 * 2.0 + 0.25 * 8.0 + 0.125 * 4.0)) / 2.0;
+    assert_eq!(system(&graph, &text).lagrangian(), Expr::from(expected) * w.square());
+}
+
+const BODY: &str = r#"[parameters]
+m = 1.0
+[coordinates]
+x = 1.0
+[quasi_velocities]
+w = { is = "2*x'", start = 1.0 }
+[definitions]
+v = "x'"
+"#;
+
+/// The message on a body with these lines, without the line and the carets that it shows.
+fn refused_body(lines: &str) -> String {
+    let mut text = format!("{BODY}[bodies.b]\n{lines}\n");
+    if !lines.contains("mass") {
+        text.push_str("mass = \"m\"\n");
+    }
+    if !lines.contains("position") {
+        text.push_str("position = [\"x\", 0, 0]\n");
+    }
+    let error = refused(&text);
+    assert_eq!(error.category(), Category::Text);
+    let message = error.to_string();
+    let lines: Vec<&str> = message.lines().collect();
+    format!("{}\n{}", lines[0], lines[lines.len() - 1])
+}
+
+#[test]
+fn expressions_of_bodies_are_refused_where_they_stand() {
+    let at_rest = "in the mass, inertia, position or rotation of a body\n  help: use parameters, coordinates and t only";
+    assert_eq!(
+        refused_body("position = [\"x\", \"w*t\", 0]"),
+        format!("m.toml:10:19: [bodies.b] position: `w` cannot be used {at_rest}")
+    );
+    assert_eq!(
+        refused_body("position = [0, 0, \"1 + x'\"]"),
+        format!("m.toml:10:24: [bodies.b] position: `x'` cannot be used {at_rest}")
+    );
+    assert_eq!(
+        refused_body("mass = \"m + d(x)\""),
+        format!("m.toml:10:13: [bodies.b] mass: `d(x)` cannot be used {at_rest}")
+    );
+    assert_eq!(
+        refused_body("position = [\"v\", 0, 0]"),
+        format!("m.toml:8:6: [definitions] v: `x'` cannot be used {at_rest}")
+    );
+    let turning = "angular_velocity = [0, 0, \"w\"]";
+    assert_eq!(
+        refused_body(&format!("inertia = [1, \"w\", 1]\n{turning}")),
+        format!("m.toml:10:16: [bodies.b] inertia: `w` cannot be used {at_rest}")
+    );
+    assert_eq!(
+        refused_body("rotation = [1, 0, 0, 0, 1, 0, 0, 0, \"w\"]"),
+        format!("m.toml:10:38: [bodies.b] rotation: `w` cannot be used {at_rest}")
+    );
+    assert_eq!(
+        refused_body("angular_velocity = [0, \"1 + x'^2\", \"w\"]"),
+        "m.toml:10:25: [bodies.b] angular_velocity: `1 + x'^2` is not affine in the velocities\n  \
+         help: write a sum of terms linear in the velocities"
+    );
+    assert_eq!(
+        refused_body("force = [0, \"d(w)\", 0]"),
+        "m.toml:10:14: [bodies.b] force: `d()` of velocities gives accelerations, which cannot be used in the \
+         Lagrangian or a force\n  help: accelerations can be used in [integrals] and [outputs]"
+    );
+    assert_eq!(
+        refused_body(&format!("{turning}\ntorque = [\"1/(m - m)\", 0, 0]")),
+        "m.toml:11:12: [bodies.b] torque: `1/(m - m)` divides by zero\n  \
+         help: the divisor is zero whatever the motion"
+    );
+    assert_eq!(
+        refused_body("force = [0, 0, \"-m*G\"]"),
+        "m.toml:10:20: [bodies.b] force: the name `G` is not declared\n  \
+         help: declare it, for example in [parameters]"
+    );
+}
+
+/// What only the start and the derivation show is put to the body too.
+#[test]
+fn bodies_are_blamed_for_singular_energies() {
+    let root = refused(&format!("{BODY}[bodies.b]\nmass = \"m\"\nposition = [\"sqrt(x - 2)\", 0, 0]\n"));
+    assert_eq!(root.category(), Category::Inconsistent);
+    assert_eq!(
+        root.to_string(),
+        "m.toml:11:14: [bodies.b] position: `sqrt(x - 2)` is NaN at the start (x = 1, w = 1)\n    \
+         position = [\"sqrt(x - 2)\", 0, 0]\n                 ^^^^^^^^^^^\n  \
+         help: start where the coordinates and functions are regular"
+    );
+
+    let model = model(&format!("{BODY}[bodies.b]\nmass = \"m\"\nposition = [1, 2, 3]\n"));
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let error = model.derivation_error(assembly.system.poincare().unwrap_err());
+    assert_eq!(
+        error.to_string(),
+        "m.toml:9:1: [bodies.b]: the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 0 of 1, so \
+         w' is not determined\n    [bodies.b]\n    ^^^^^^^^^^\n  \
+         help: every quasi-velocity needs kinetic energy of its own"
+    );
+}
