@@ -135,6 +135,56 @@ pub fn relativistic_fall(light: f64, force: f64, t: f64) -> f64 {
     light * light / force * ((force * t / light).hypot(1.0) - 1.0)
 }
 
+/// State (X, Y, η) of the bead on the turning wire, Ω = 1, g = 3, from r = 1, ṙ = −½: r = cosh t − 2 sinh t + (3/2) sin t,
+/// X + iY = r e^(it), η = (1 + t/2) ṙ.
+pub fn turning_wire(t: f64) -> [f64; 3] {
+    let (sin, cos) = t.sin_cos();
+    let distance = t.cosh() - 2.0 * t.sinh() + 1.5 * sin;
+    let speed = t.sinh() - 2.0 * t.cosh() + 1.5 * cos;
+    [distance * cos, distance * sin, (1.0 + t / 2.0) * speed]
+}
+
+/// State (X, Y, η_1, η_2) of the oscillator on the turning table, Ω = 0.7, from (1, 0; 0, 1.5).
+///
+/// Ẍ = 2ΩẎ − pX and Ÿ = −2ΩẊ − qY, p = 1 − Ω², q = 4 − Ω², have solutions X = a cos λt,
+/// Y = a (p − λ²)/(2Ωλ) sin λt, where (p − λ²)(q − λ²) = 4Ω²λ²: two such, with X = 1 and Ẏ = 1.5 − Ω at the start.
+pub fn rotating_oscillator(t: f64) -> [f64; 4] {
+    let omega: f64 = 0.7;
+    let (p, q) = (1.0 - omega * omega, 4.0 - omega * omega);
+    let middle = (p + q) / 2.0 + 2.0 * omega * omega;
+    let root = (middle * middle - p * q).sqrt();
+    let squares = [middle - root, middle + root];
+    // Σ a = 1 and Σ a (p − λ²) = 2Ω (1.5 − Ω)
+    let first = (2.0 * omega * (1.5 - omega) - p + squares[1]) / (squares[1] - squares[0]);
+    let mut state = [0.0; 4]; // X, Y, Ẋ, Ẏ
+    for (square, a) in squares.into_iter().zip([first, 1.0 - first]) {
+        let rate = square.sqrt();
+        let ((sin, cos), ratio) = ((rate * t).sin_cos(), (p - square) / (2.0 * omega * rate));
+        state[0] += a * cos;
+        state[1] += a * ratio * sin;
+        state[2] -= a * rate * sin;
+        state[3] += a * ratio * rate * cos;
+    }
+    let [x, y, x_rate, y_rate] = state;
+    [x, y, x_rate - omega * y, y_rate + omega * x]
+}
+
+/// Height z(t) of the spherical pendulum of length one, g = 10, from (0.6, 0, −0.8) with the velocity (0, 1.5, 0).
+///
+/// ż² = 2 (E − gz)(1 − z²) − ℓ², a cubic with roots z_1 < z_2 < z_3, z_2 the height of the start, and
+/// z = z_1 + (z_2 − z_1) sn²(√(g (z_3 − z_1)/2) t + K), m = (z_2 − z_1)/(z_3 − z_1) [Whittaker 1937, ch. IV].
+pub fn spherical_pendulum_height(t: f64) -> f64 {
+    let (g, start, momentum): (f64, f64, f64) = (10.0, -0.8, 0.9);
+    let energy = 1.5 * 1.5 / 2.0 + g * start;
+    // the other two roots: z² + (z_2 − E/g) z − (2E − ℓ²)/(2g z_2) = 0
+    let middle = (energy / g - start) / 2.0;
+    let half_gap = (middle * middle + (2.0 * energy - momentum * momentum) / (2.0 * g * start)).sqrt();
+    let (low, high) = (middle - half_gap, middle + half_gap);
+    let m = (start - low) / (high - low);
+    let (sn, _, _) = jacobi((g * (high - low) / 2.0).sqrt() * t + quarter_period(m), m);
+    low + (start - low) * sn * sn
+}
+
 /// f′(t) by a central difference of order 8 with the step 1/100: error below 1e-11 for the functions of this module.
 pub fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
     const STEP: f64 = 1e-2;
@@ -186,6 +236,10 @@ mod tests {
         let state = relativistic_state(0.0);
         assert!((0..4).all(|i| (state[i] - [1.0, 0.0, 0.0, 1.1][i]).abs() < 1e-15));
         assert_eq!(relativistic_fall(2.0, 3.0, 0.0), 0.0);
+        assert_eq!(turning_wire(0.0), [1.0, 0.0, -0.5]);
+        let state = rotating_oscillator(0.0);
+        assert!((0..4).all(|i| (state[i] - [1.0, 0.0, 0.0, 1.5][i]).abs() < 1e-14), "{state:?}");
+        assert!((spherical_pendulum_height(0.0) + 0.8).abs() < 1e-15);
     }
 
     /// The nutation never rises above the start, and returns to it at the end of each period.

@@ -532,6 +532,14 @@ pub const MALFORMED: &[Malformed] = &[
         cure: Some(("\"sqrt(x^2 - 4)\"", "\"sqrt(4 - x^2)\"")),
     },
     Malformed {
+        file: "rotated-point.toml",
+        fault: "a point moved by rotations, of which those about its own direction do nothing",
+        exit_code: 4,
+        mentions: &["rank 2 of 3, so ω3' is not determined"],
+        line: None,
+        cure: Some(("(x'^2 + y'^2 + z'^2)/2", "(x'^2 + y'^2 + z'^2 + ω1^2 + ω2^2 + ω3^2)/2")),
+    },
+    Malformed {
         file: "self-definition.toml",
         fault: "a definition that needs itself",
         exit_code: 3,

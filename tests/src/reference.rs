@@ -2,6 +2,9 @@
 //!
 //! Each comes from an extrapolated integration of the classical equations in arithmetic of 34 digits, rounded once.
 
+#[cfg(test)]
+mod tests;
+
 /// The state in which a built-in model must arrive.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
@@ -58,6 +61,45 @@ pub const REFERENCES: &[Reference] = &[
         state: &[0.08997074669880486],
         conserved: &["oscillation"],
     },
+    // start: θ = (0.5, −0.4), θ̇ = (0.3, −0.2)
+    Reference {
+        model: "double-pendulum-cartesian",
+        t_end: 2.0,
+        columns: &["x1", "y1", "x2", "y2", "u1", "u2"],
+        start: &[
+            0.479425538604203,
+            -0.8775825618903727,
+            0.1678908647572826,
+            -1.614431357092681,
+            0.2632747685671118,
+            0.1159050095266502,
+        ],
+        state: &[
+            0.1075973531859469,
+            -0.994194553187342,
+            -0.003406053713783327,
+            -1.786456027485224,
+            2.882067093982383,
+            0.04105203743530662,
+        ],
+        conserved: &["energy", "length1", "length2"],
+    },
+    // start: θ = (2, 1)
+    Reference {
+        model: "double-pendulum-links",
+        t_end: 3.0,
+        columns: &["x1", "y1", "x2", "y2", "η1", "η2"],
+        start: &[0.9092974268256817, 0.4161468365471424, 1.582474214671999, -0.01609500814736939, 0.0, 0.0],
+        state: &[
+            0.9481097084126219,
+            -0.3179433610153435,
+            1.390369965759976,
+            0.3486943702683365,
+            0.1756020728610197,
+            -0.01873474030024682,
+        ],
+        conserved: &["energy", "length1", "length2"],
+    },
     Reference {
         model: "euler-top",
         t_end: 20.0,
@@ -65,6 +107,43 @@ pub const REFERENCES: &[Reference] = &[
         start: &[1.0, 0.0, 1.0],
         state: &[0.7098439425137012, -0.7043589832440595, 0.9135787546280825],
         conserved: &["energy", "momentum"],
+    },
+    // start: q = (cos 0.2, sin 0.2, 0, 0)
+    Reference {
+        model: "gravity-gradient",
+        t_end: 10.0,
+        columns: &["r1", "r2", "r3", "q0", "q1", "q2", "q3", "ω1", "ω2", "ω3", "v1", "v2", "v3"],
+        start: &[
+            2.0,
+            0.0,
+            0.0,
+            0.9800665778412416,
+            0.1986693307950612,
+            0.0,
+            0.0,
+            0.1,
+            0.2,
+            0.5,
+            0.0,
+            0.7,
+            0.1,
+        ],
+        state: &[
+            -1.325223767753807,
+            -1.303197523548769,
+            -0.6781980184176072,
+            -0.2508569267526708,
+            -0.1308798150072052,
+            -0.3190162341793118,
+            0.9045274559978461,
+            -0.08909041166943461,
+            0.1797670001978017,
+            0.3853143024910123,
+            -0.1637143917533228,
+            0.7074315822700047,
+            0.08091470186555868,
+        ],
+        conserved: &["energy", "norm", "moment1", "moment2", "moment3"],
     },
     Reference {
         model: "heavy-top-euler",
@@ -80,6 +159,21 @@ pub const REFERENCES: &[Reference] = &[
             2.077619872425167,
         ],
         conserved: &["energy", "area"],
+    },
+    Reference {
+        model: "heavy-top-euler-symmetric",
+        t_end: 10.0,
+        columns: &["ψ", "θ", "φ", "ω1", "ω2", "ω3"],
+        start: &[0.0, 0.5, 0.0, 0.0, 0.0, 4.0],
+        state: &[
+            5.929704959330287,
+            0.5000636528876877,
+            36.26689066825436,
+            -0.00120510958470464,
+            -0.007719126018286066,
+            4.0,
+        ],
+        conserved: &["energy", "area", "spin"],
     },
     Reference {
         model: "heavy-top-goryachev-chaplygin",
@@ -152,6 +246,67 @@ pub const REFERENCES: &[Reference] = &[
         conserved: &["energy", "norm", "area"],
     },
     Reference {
+        model: "pendulum-chain",
+        t_end: 2.0,
+        columns: &["θ1", "θ2", "θ3", "θ4", "θ1'", "θ2'", "θ3'", "θ4'"],
+        start: &[0.5, 0.6, 0.7, 0.8, 0.0, 0.0, 0.0, 0.0],
+        state: &[
+            -0.4475202242698896,
+            -0.5630651741839218,
+            -0.6721297247237881,
+            -0.7491466666332754,
+            0.3083085822102085,
+            0.5135834755977721,
+            0.4758239354145585,
+            0.1617467982161209,
+        ],
+        conserved: &["energy"],
+    },
+    // the motion of pendulum-chain, x_i = Σ sin θ_j and y_i = −Σ cos θ_j, j ≤ i
+    Reference {
+        model: "pendulum-chain-cartesian",
+        t_end: 2.0,
+        columns: &["x1", "y1", "x2", "y2", "x3", "y3", "x4", "y4", "η1", "η2", "η3", "η4"],
+        start: &[
+            0.479425538604203,
+            -0.8775825618903727,
+            1.044068011999238,
+            -1.702918176800051,
+            1.688285699236929,
+            -2.467760364084539,
+            2.405641790136452,
+            -3.164467073431705,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ],
+        state: &[
+            -0.4327312921656186,
+            -0.9015229496694324,
+            -0.9665119751904356,
+            -1.747145904909863,
+            -1.589165877034884,
+            -2.529643264980736,
+            -2.27018001443102,
+            -3.261913532482153,
+            0.3083085822102085,
+            0.5135834755977721,
+            0.4758239354145585,
+            0.1617467982161209,
+        ],
+        conserved: &["energy", "length1", "length2", "length3", "length4"],
+    },
+    // the closed form: 4 (√10 − 1)/3 and 6/√10
+    Reference {
+        model: "relativistic-constant-force",
+        t_end: 2.0,
+        columns: &["x", "x'"],
+        start: &[0.0, 0.0],
+        state: &[2.883036880224506, 1.897366596101028],
+        conserved: &["energy", "impulse", "hyperbola"],
+    },
+    Reference {
         model: "relativistic-particle",
         t_end: 12.0,
         columns: POLAR_COLUMNS,
@@ -181,114 +336,83 @@ pub const REFERENCES: &[Reference] = &[
         ],
         conserved: &["energy", "norm", "Hx", "Hy", "Hz"],
     },
+    Reference {
+        model: "rotating-oscillator",
+        t_end: 8.0,
+        columns: &["X", "Y", "η1", "η2"],
+        start: &[1.0, 0.0, 0.0, 1.5],
+        state: &[-0.4202456629931698, -0.2319376450203162, 0.884420493138732, 0.2972106554852497],
+        conserved: &["jacobi"],
+    },
+    Reference {
+        model: "spherical-pendulum-cartesian",
+        t_end: 3.0,
+        columns: &["x", "y", "z", "u", "v"],
+        start: &[0.6, 0.0, -0.8, 0.0, 1.5],
+        state: &[
+            -0.3772148967129942,
+            -0.4542546847935442,
+            -0.8070697634287403,
+            1.038123256567866,
+            -1.135765451057696,
+        ],
+        conserved: &["energy", "length", "area"],
+    },
+    Reference {
+        model: "spherical-pendulum-meridian",
+        t_end: 3.0,
+        columns: &["x", "y", "z", "η1", "η2"],
+        start: &[0.6, 0.0, -0.8, 1.0, 1.5],
+        state: &[
+            -0.4271817087427997,
+            -0.5141819126376677,
+            -0.7437289482276804,
+            0.5585339047000348,
+            1.34633533781675,
+        ],
+        conserved: &["energy", "length", "area"],
+    },
+    Reference {
+        model: "toda-chain",
+        t_end: 6.0,
+        columns: &["q1", "q2", "q3", "q4", "q5", "q6", "η1", "η2", "η3", "η4", "η5", "η6"],
+        start: &[0.0, 0.5, 1.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.5, 0.0, -1.0, 0.5],
+        state: &[
+            -3.568923427304672,
+            -0.9568613071715469,
+            1.193916106272389,
+            3.828674566760227,
+            6.323452524375003,
+            8.6797415370686,
+            -1.162259008472736,
+            0.02286842264023977,
+            1.033074634740307,
+            1.224023532292371,
+            -0.063080784345197,
+            0.6810043704872663,
+        ],
+        conserved: &["energy", "trace1", "trace2", "trace3", "trace4", "trace5", "trace6"],
+    },
+    // start: θ = ½
+    Reference {
+        model: "turning-hoop",
+        t_end: 5.0,
+        columns: &["X", "Y", "Z", "η"],
+        start: &[0.479425538604203, 0.0, -0.8775825618903727, 0.2],
+        state: &[-0.4293729059559143, 0.3675403740271767, -0.8249563510216384, -1.772882204740696],
+        conserved: &["energy", "radius", "across", "jacobi"],
+    },
+    Reference {
+        model: "turning-wire",
+        t_end: 2.5,
+        columns: &["X", "Y", "η"],
+        start: &[1.0, 0.0, -0.5],
+        state: &[4.062127614161406, -3.034499902007452, -16.68620227861797],
+        conserved: &["across", "hyperbola"],
+    },
 ];
 
 /// The reference of a built-in model, or `None` where there is none.
 pub fn reference(model: &str) -> Option<&'static Reference> {
     REFERENCES.iter().find(|reference| reference.model == model)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::classical::{Rhs, classical};
-    use crate::closed_form;
-
-    /// Integrates ẏ = f(t, y) from 0 to `t_end` by `steps` steps of the midpoint rule, each extrapolated to the
-    /// order 2·`COLUMNS` [Gragg 1965; Bulirsch and Stoer 1966].
-    fn extrapolated_midpoint(f: Rhs, start: &[f64], t_end: f64, steps: usize) -> Vec<f64> {
-        const COLUMNS: usize = 8;
-        let (dim, step) = (start.len(), t_end / steps as f64);
-        let (mut y, mut slope, mut slope_at_start) = (start.to_vec(), vec![0.0; dim], vec![0.0; dim]);
-        for number in 0..steps {
-            let t = step * number as f64;
-            f(t, &y, &mut slope_at_start);
-            let mut table: Vec<Vec<f64>> = Vec::new(); // the row of the last refinement, order rising
-            for j in 1..=COLUMNS {
-                let substeps = 2 * j;
-                let h = step / substeps as f64;
-                let mut before = y.clone();
-                let mut now: Vec<f64> = (0..dim).map(|i| y[i] + h * slope_at_start[i]).collect();
-                for m in 1..substeps {
-                    f(t + h * m as f64, &now, &mut slope);
-                    let next = (0..dim).map(|i| before[i] + 2.0 * h * slope[i]).collect();
-                    before = std::mem::replace(&mut now, next);
-                }
-                f(t + step, &now, &mut slope);
-                let mut row = vec![(0..dim).map(|i| (before[i] + now[i] + h * slope[i]) / 2.0).collect()];
-                for m in 1..j {
-                    let ratio = (j as f64 / (j - m) as f64).powi(2);
-                    let (coarse, fine): (&Vec<f64>, &Vec<f64>) = (&table[m - 1], &row[m - 1]);
-                    row.push((0..dim).map(|i| fine[i] + (fine[i] - coarse[i]) / (ratio - 1.0)).collect());
-                }
-                table = row;
-            }
-            y = table.pop().expect("at least one column");
-        }
-        y
-    }
-
-    fn distance(a: &[f64], b: &[f64]) -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-    }
-
-    /// Rounding: a few thousand steps of 1e-16 relative each, magnified by the divergence of nearby motions.
-    const TOLERANCE: f64 = 1e-11;
-
-    #[test]
-    fn classical_equations_lead_to_the_reference_states() {
-        for reference in REFERENCES {
-            let f = classical(reference.model).expect(reference.model);
-            let steps = (16.0 * reference.t_end) as usize;
-            let end = extrapolated_midpoint(f, reference.start, reference.t_end, steps);
-            let error = distance(&end, reference.state);
-            assert!(error < TOLERANCE, "{}: {error:e}", reference.model);
-        }
-    }
-
-    #[test]
-    fn columns_start_and_state_belong_together() {
-        for reference in REFERENCES {
-            assert_eq!(reference.columns.len(), reference.start.len(), "{}", reference.model);
-            let coordinates_only = reference.model == "damped-oscillator-scaled-frame";
-            let length = if coordinates_only { 1 } else { reference.columns.len() };
-            assert_eq!(reference.state.len(), length, "{}", reference.model);
-        }
-        assert!(REFERENCES.is_sorted_by(|a, b| a.model < b.model));
-    }
-
-    /// The attitude of the quaternion is that of Euler's angles, at the start and at the end.
-    #[test]
-    fn euler_angles_and_quaternion_tell_one_motion() {
-        let vertical_of_angles = |x: &[f64]| [x[1].sin() * x[2].sin(), x[1].sin() * x[2].cos(), x[1].cos()];
-        let vertical_of_quaternion = |q: &[f64]| {
-            let [q0, q1, q2, q3] = [q[0], q[1], q[2], q[3]];
-            [2.0 * (q1 * q3 - q0 * q2), 2.0 * (q2 * q3 + q0 * q1), q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3]
-        };
-        let angles = reference("heavy-top-euler").expect("listed");
-        let quaternion = reference("heavy-top-quaternion").expect("listed");
-        for (x, q) in [(angles.start, quaternion.start), (angles.state, quaternion.state)] {
-            assert!(distance(&vertical_of_angles(x), &vertical_of_quaternion(q)) < 2e-15);
-            assert_eq!(x[3..], q[4..]);
-        }
-    }
-
-    #[test]
-    fn reference_states_lie_on_the_closed_forms() {
-        let state = |model| reference(model).expect("listed").state;
-        assert!(distance(state("euler-top"), &closed_form::euler_top(20.0)) < 1e-14);
-        assert!(distance(state("charged-particle"), &closed_form::charged_particle(2.0, 5.0)) < 1e-14);
-        assert!(distance(state("damped-oscillator"), &closed_form::damped_oscillator(6.0)) < 1e-14);
-        let [radius, angle, ..] = *state("relativistic-particle") else { unreachable!("four columns") };
-        assert!((1.0 / radius - closed_form::relativistic_orbit(angle)).abs() < 1e-14);
-    }
-
-    #[test]
-    fn symmetric_top_in_euler_angles_nutates_as_the_closed_form() {
-        let f = classical("heavy-top-euler-symmetric").expect("listed");
-        for t_end in [1.0, 4.0, 10.0] {
-            let end = extrapolated_midpoint(f, &[0.0, 0.5, 0.0, 0.0, 0.0, 4.0], t_end, 160);
-            assert!((end[1] - closed_form::symmetric_top_nutation(t_end)).abs() < TOLERANCE, "t = {t_end}");
-        }
-    }
 }

@@ -150,7 +150,7 @@ fn subjects() -> Vec<Subject> {
         let assembly =
             Model::new(builtin.document().unwrap()).assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
         // No faster than light.
-        let fastest = if builtin.name == "relativistic-particle" { 0.0 } else { 3.0 };
+        let fastest = if builtin.name.starts_with("relativistic") { 0.0 } else { 3.0 };
         let draw = |random: &mut SplitMix64| sample(builtin.name, random).unwrap();
         subjects.push(Subject::new(builtin.name, &assembly.system.poincare().unwrap(), draw, fastest));
     }

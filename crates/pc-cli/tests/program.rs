@@ -252,6 +252,20 @@ fn a_wrong_model_is_exit_3_and_an_inconsistent_one_4() {
     assert_eq!(code(&output), 4, "{}", stderr(&output));
 }
 
+/// The frame has rank 2 and determined brackets all the same; what fails is the energy, and it is not divided by.
+#[test]
+fn a_degenerate_lagrangian_is_refused() {
+    let models = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/malformed");
+    let expected = "pc: rotated-point.toml:18:1: [lagrangian]: the Lagrangian is degenerate: its Hessian in the \
+                    quasi-velocities has rank 2 of 3, so ω3' is not determined\n    [lagrangian]\n    \
+                    ^^^^^^^^^^^^\n  help: every quasi-velocity needs kinetic energy of its own\n";
+    for command in ["check", "derive", "run"] {
+        let output = pc().current_dir(models).args([command, "rotated-point.toml"]).output().expect("pc");
+        assert_eq!((code(&output), stderr(&output).as_str()), (4, expected), "{command}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
 #[test]
 fn what_was_reached_is_written_before_a_failure() {
     for (model, at_least, mention) in [(CENTRE, 10, "r = "), (WALL, 10, "x = ")] {

@@ -267,3 +267,99 @@ fn parameters_may_stay_symbols() {
     assert!(rates.integrals_among(&[w1.square(), w2.square(), w3.square()]).is_empty());
     assert_eq!(rates.with_parameters_bound().integrals(&rates.ansatz(2, 0)).len(), 2);
 }
+
+/// A free rigid body in a quaternion, scalar first: q̇ = ½ Ξ(q) ω, L = ½ ω·Iω with any inertia matrix I.
+fn free_body(graph: &Graph) -> System<'_> {
+    let inertia = inertia();
+    System::builder(graph)
+        .coordinates(["q0", "q1", "q2", "q3"])
+        .quasi_velocities(["ω1", "ω2", "ω3"])
+        .kinematics(|_, q, w| {
+            [
+                -(q[1] * w[0] + q[2] * w[1] + q[3] * w[2]) / 2.0,
+                (q[0] * w[0] - q[3] * w[1] + q[2] * w[2]) / 2.0,
+                (q[3] * w[0] + q[0] * w[1] - q[1] * w[2]) / 2.0,
+                (-q[2] * w[0] + q[1] * w[1] + q[0] * w[2]) / 2.0,
+            ]
+        })
+        .lagrangian(|_, _, w| {
+            (0..3).map(|i| graph.dot(inertia[i], w.iter().copied()) * w[i]).sum::<Expr<'_>>() / 2.0
+        })
+        .build()
+        .unwrap()
+}
+
+/// Neither diagonal nor on principal axes.
+fn inertia<'g>() -> [[Expr<'g>; 3]; 3] {
+    [[2.0, 0.0, 0.5], [0.0, 3.0, -0.8], [0.5, -0.8, 4.0]].map(|row| row.map(Expr::from))
+}
+
+/// Of the integrals linear in ω with coefficients quadratic in q: the angular momentum in space, R(q) I ω, where R is
+/// |q|² times a rotation, and |q|², which moves with none.
+#[test]
+fn a_free_body_keeps_its_angular_momentum_in_space() {
+    let graph = Graph::new();
+    let body = free_body(&graph);
+    let [q0, q1, q2, q3, w1, w2, w3] = graph.symbols(["q0", "q1", "q2", "q3", "ω1", "ω2", "ω3"]);
+    let (q, w) = ([q0, q1, q2, q3], [w1, w2, w3]);
+    let quadratic: Vec<Expr<'_>> = (0..4).flat_map(|i| (i..4).map(move |j| q[i] * q[j])).collect();
+    assert_eq!(quadratic.len(), 10);
+    let rotation = [
+        [q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3, 2.0 * (q1 * q2 - q0 * q3), 2.0 * (q1 * q3 + q0 * q2)],
+        [2.0 * (q1 * q2 + q0 * q3), q0 * q0 - q1 * q1 + q2 * q2 - q3 * q3, 2.0 * (q2 * q3 - q0 * q1)],
+        [2.0 * (q1 * q3 - q0 * q2), 2.0 * (q2 * q3 + q0 * q1), q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3],
+    ];
+    let spin = inertia().map(|row| graph.dot(row, w));
+    let moment = rotation.map(|row| graph.dot(row, spin));
+    let norm: Expr<'_> = q.map(Expr::square).into_iter().sum();
+
+    // 30 products q_i q_j ω_s: of the 30-dimensional space three dimensions are integrals, no more.
+    let rates = body.poincare().unwrap().rates();
+    let products: Vec<Expr<'_>> = w.iter().flat_map(|&w| quadratic.iter().map(move |&f| f * w)).collect();
+    let linear = rates.integrals_among(&products);
+    assert_eq!(linear.len(), 3, "{linear:?}");
+    all_conserved(&rates, &linear);
+    // The moments are combinations of what was found with numbers as coefficients: they add nothing to the span.
+    let columns: Vec<_> = linear.iter().chain(&moment).map(|&f| vec![f]).collect();
+    assert_eq!(graph.linear_relations(&columns[3..]).len(), 0);
+    assert_eq!(graph.linear_relations(&columns).len(), 3);
+
+    // With the ten functions alone, |q|² is the fourth, and the ansatz returns these four.
+    let found = rates.integrals(&Ansatz { degree: 1, functions: quadratic, known: Vec::new() });
+    assert_eq!(found.len(), 4, "{found:?}");
+    all_conserved(&rates, &found);
+    assert!(found.contains(&norm));
+    assert!(moment.iter().all(|&component| is_function_of(&graph, component, &found)));
+}
+
+/// A charge in the uniform field B, in polar coordinates with η = (ρ̇, ρφ̇): p_φ = ρη_2 + ½Bρ², also where B depends
+/// on time and its rate pushes the charge.
+#[test]
+fn a_charge_in_a_field_keeps_its_canonical_momentum() {
+    let graph = Graph::new();
+    let [t, rho, along, across] = graph.symbols(["t", "ρ", "η1", "η2"]);
+    for field in [Expr::from(2.0), 1.0 + t.sin() / 2.0] {
+        let charge = System::builder(&graph)
+            .coordinates(["ρ", "φ"])
+            .quasi_velocities(["η1", "η2"])
+            .kinematics(|_, x, eta| [eta[0], eta[1] / x[0]])
+            .lagrangian(|_, x, eta| (eta[0].square() + eta[1].square()) / 2.0 + field * x[0] * eta[1] / 2.0)
+            .build()
+            .unwrap();
+        let momentum = rho * across + field * rho.square() / 2.0;
+        let steady = !field.depends_on(t);
+        let rates = charge.poincare().unwrap().rates();
+        let functions = [Expr::ONE, rho, rho.square(), field, field * rho, field * rho.square()];
+        let functions: Vec<Expr<'_>> = functions[..if steady { 3 } else { 6 }].to_vec();
+        let linear = rates.integrals(&Ansatz { degree: 1, functions: functions.clone(), known: Vec::new() });
+        assert_eq!(linear.len(), 1, "{linear:?}");
+        all_conserved(&rates, &linear);
+        let proportional = graph.linear_relations(&[vec![linear[0]], vec![momentum]]);
+        assert_eq!(proportional.len(), 1, "{}", linear[0]);
+        // The speed is kept where no field is induced.
+        let found = rates.integrals(&Ansatz { degree: 2, functions, known: linear.clone() });
+        let speed = along.square() + across.square();
+        assert_eq!(found.len(), usize::from(steady), "{found:?}");
+        assert!(!steady || is_function_of(&graph, speed, &[linear[0], found[0]]));
+    }
+}

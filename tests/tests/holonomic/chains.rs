@@ -1,11 +1,12 @@
 //! Families of any length: the pendulum of N links and the Toda chain.
 
-use pc_mech::{Expr, Graph, System};
+use pc_mech::{Expr, Graph, SteadyOptions, System};
 
 use super::definition::assert_definition;
 use super::harness::{STATES, compiled, distance, integrate, normals, rates};
-use super::judge::{assert_equations, assert_motion};
-use pc_tests::classical::SplitMix64;
+use super::judge::assert_builtin;
+use pc_tests::classical::{SplitMix64, pendulum_chain};
+use pc_tests::reference::reference;
 
 fn names(letter: &str, count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("{letter}{i}")).collect()
@@ -69,62 +70,43 @@ fn place(angles: &[f64]) -> Vec<f64> {
     particles.collect()
 }
 
-/// Σ_j (N+1−max(i,j)) (cos(θ_i − θ_j) θ̈_j + sin(θ_i − θ_j) θ̇_j²) = −(N+1−i) g sin θ_i
-fn pendulum_rates(y: &[f64]) -> Vec<f64> {
-    let links = y.len() / 2;
-    let (q, rate) = y.split_at(links);
-    let hanging = |i: usize| (links - i) as f64;
-    let matrix =
-        (0..links).map(|i| (0..links).map(|j| hanging(i.max(j)) * (q[i] - q[j]).cos()).collect()).collect();
-    let force = (0..links).map(|i| {
-        let centrifugal = (0..links).map(|j| hanging(i.max(j)) * (q[i] - q[j]).sin() * rate[j] * rate[j]);
-        -10.0 * hanging(i) * q[i].sin() - centrifugal.sum::<f64>()
-    });
-    let accelerations = eliminate(matrix, force.collect());
-    rate.iter().copied().chain(accelerations).collect()
-}
-
-/// Gauss's elimination; the matrix is positive definite.
-fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
-    let size = right.len();
-    for column in 0..size {
-        for row in column + 1..size {
-            let factor = matrix[row][column] / matrix[column][column];
-            for j in column..size {
-                matrix[row][j] -= factor * matrix[column][j];
-            }
-            right[row] -= factor * right[column];
-        }
-    }
-    for row in (0..size).rev() {
-        let known: f64 = (row + 1..size).map(|j| matrix[row][j] * right[j]).sum();
-        right[row] = (right[row] - known) / matrix[row][row];
-    }
-    right
-}
-
 #[test]
 fn a_pendulum_of_four_links() {
     let graph = Graph::new();
     let mut motion = compiled(&pendulum_in_angles(&graph, 4));
-    assert_equations(
-        "pendulum",
-        &mut motion,
-        |_, y| pendulum_rates(y),
-        |random| (0.0, normals::<8>(random).to_vec()),
-    );
-    let start = [0.5, 0.6, 0.7, 0.8, 0.0, 0.0, 0.0, 0.0];
-    let end = [
-        -0.4475202242698896,
-        -0.5630651741839218,
-        -0.6721297247237881,
-        -0.7491466666332754,
-        0.3083085822102085,
-        0.5135834755977721,
-        0.4758239354145585,
-        0.1617467982161209,
-    ];
-    assert_motion("pendulum", &mut motion, &start, (2.0, &end), &["energy"]);
+    assert_builtin("pendulum-chain", &mut motion, &["energy"]);
+}
+
+/// L_N(x) = Σ_k binomial(N, k) (−x)^k/k!
+fn laguerre(degree: usize, x: f64) -> f64 {
+    let (mut sum, mut term) = (1.0, 1.0);
+    for k in 1..=degree {
+        term *= -x * (degree + 1 - k) as f64 / (k * k) as f64;
+        sum += term;
+    }
+    sum
+}
+
+/// Small swings of N links have the frequencies √(g x/l) with the zeros x of L_N [D. Bernoulli 1738].
+#[test]
+fn small_swings_of_a_chain_have_laguerres_frequencies() {
+    for links in [1, 2, 4, 6] {
+        let graph = Graph::new();
+        let mut motion = compiled(&pendulum_in_angles(&graph, links));
+        let rest = motion.steady_motion(0.0, &vec![0.0; 2 * links], &SteadyOptions::default()).unwrap();
+        let mut squares: Vec<f64> = Vec::new();
+        for eigenvalue in rest.spectrum.eigenvalues().iter().filter(|eigenvalue| eigenvalue.imaginary > 0.0) {
+            assert!(eigenvalue.real.abs() < 1e-12, "{eigenvalue:?}");
+            squares.push(eigenvalue.imaginary * eigenvalue.imaginary / 10.0);
+        }
+        assert_eq!(squares.len(), links);
+        squares.sort_by(f64::total_cmp);
+        for (i, x) in squares.iter().enumerate() {
+            // Each is a zero to some roundings: L_N changes its sign within them.
+            let around = [x * (1.0 - 1e-12), x * (1.0 + 1e-12)].map(|x| laguerre(links, x));
+            assert!(around[0] * around[1] < 0.0, "zero {i} of L_{links}: {x}, {around:?}");
+        }
+    }
 }
 
 /// The same accelerations at random states, and the same motion, as in the angles.
@@ -140,7 +122,9 @@ fn a_pendulum_of_three_links_in_redundant_coordinates() {
         let expected = &rates(&mut angles, 0.0, &y)[3..];
         let found = &rates(&mut plane, 0.0, &in_the_plane(&y))[6..];
         assert!(distance(found, expected) < 1e-12, "{y:?}: {found:?}, not {expected:?}");
-        assert!(distance(expected, &pendulum_rates(&y)[3..]) < 1e-12, "{y:?}");
+        let mut classical = [0.0; 6];
+        pendulum_chain(&y, &mut classical);
+        assert!(distance(expected, &classical[3..]) < 1e-12, "{y:?}");
     }
     let (start, times) = ([0.5, 0.6, 0.7, 0.0, 0.1, -0.2], [0.5, 1.0, 1.5, 2.0]);
     let expected = integrate(&mut angles, &start, &times);
@@ -207,38 +191,21 @@ fn an_open_toda_chain() {
     assert_eq!(system.structure().nonzero().count(), 0);
     let mut motion = compiled(&system);
 
-    let classical = |_: f64, y: &[f64]| {
-        let (q, eta) = y.split_at(BODIES);
-        let mut pull = vec![0.0];
-        pull.extend(q.windows(2).map(|pair| (pair[0] - pair[1]).exp()));
-        pull.push(0.0);
-        let acceleration: Vec<f64> = pull.windows(2).map(|pair| pair[0] - pair[1]).collect();
-        let mut rates = sums(eta);
-        rates.push(acceleration[0]);
-        rates.extend(acceleration.windows(2).map(|pair| pair[1] - pair[0]));
-        rates
-    };
-    assert_equations("chain", &mut motion, classical, |random| (0.0, normals::<12>(random).to_vec()));
-
-    let start = [0.0, 0.5, 1.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.5, 0.0, -1.0, 0.5];
-    let end = [
-        -3.568923427304672,
-        -0.9568613071715469,
-        1.193916106272389,
-        3.828674566760227,
-        6.323452524375003,
-        8.6797415370686,
-        -1.162259008472736,
-        0.02286842264023977,
-        1.033074634740307,
-        1.224023532292371,
-        -0.063080784345197,
-        0.6810043704872663,
-    ];
     let traces = traces();
     let mut conserved: Vec<&str> = traces.iter().map(String::as_str).collect();
     conserved.push("energy");
-    assert_motion("chain", &mut motion, &start, (6.0, &end), &conserved);
+    assert_builtin("toda-chain", &mut motion, &conserved);
+
+    // At t = 80 the forces are below e^(−30): the velocities are the eigenvalues of −2Λ, in rising order.
+    let start = reference("toda-chain").unwrap().start;
+    let end = integrate(&mut motion, start, &[80.0]).remove(0);
+    let velocity = sums(&end[BODIES..]);
+    assert!(velocity.is_sorted(), "{velocity:?}");
+    let initial = motion.observe(0.0, start);
+    for (i, power) in (1..=BODIES as i32).enumerate() {
+        let found: f64 = velocity.iter().map(|v| (-v / 2.0).powi(power)).sum();
+        assert!((found - initial[i]).abs() < 1e-8, "trace {power}: {found}, not {}", initial[i]);
+    }
 }
 
 #[test]

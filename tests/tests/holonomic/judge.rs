@@ -1,7 +1,8 @@
 //! The judgement of one system: equations against classical ones, the end of a motion, the drift of its integrals.
 
 use pc_mech::Motion;
-use pc_tests::classical::SplitMix64;
+use pc_tests::classical::{SplitMix64, classical, sample};
+use pc_tests::reference::reference;
 
 use super::harness::{STATES, distance, integrate, rates};
 
@@ -28,6 +29,18 @@ pub(super) fn assert_equations(
             "{name} at t = {t}, {y:?}: {derived:?}, not {expected:?}, a relative error of {error:e}"
         );
     }
+}
+
+/// The motion is that of a built-in model: classical equations, end state, and observables named in `conserved`.
+pub(super) fn assert_builtin(name: &str, motion: &mut Motion, conserved: &[&str]) {
+    let (classical, reference) = (classical(name).expect(name), reference(name).expect(name));
+    let rates = |t: f64, y: &[f64]| {
+        let mut rates = vec![f64::NAN; y.len()];
+        classical(t, y, &mut rates);
+        rates
+    };
+    assert_equations(name, motion, rates, |random| sample(name, random).expect(name));
+    assert_motion(name, motion, reference.start, (reference.t_end, reference.state), conserved);
 }
 
 /// The motion from `start` arrives at `end`, and the observables named in `conserved` keep their values on the way.

@@ -1,11 +1,11 @@
 //! Time-dependent frames with a drift: a wire that turns, a hoop that turns, a chart that turns.
 
 use pc_mech::{Expr, Graph};
-use pc_tests::classical::SplitMix64;
+use pc_tests::closed_form::{rotating_oscillator, turning_wire};
 
 use super::definition::assert_definition;
-use super::harness::{Description, distance, integrate, normals};
-use super::judge::{assert_equations, assert_motion};
+use super::harness::{Description, distance, integrate};
+use super::judge::assert_builtin;
 use super::shared::TURNING_CHART;
 
 /// A bead on a straight wire through the origin, which turns in a vertical plane with Ω = 1; g = 3. In the redundant
@@ -53,29 +53,11 @@ fn a_bead_on_a_turning_wire() {
     assert_eq!(system.structure().nonzero().collect::<Vec<_>>(), [(0, 1, 1, -1.0 / (2.0 + t))]);
 
     let mut motion = system.poincare().unwrap().compile().unwrap();
-    let classical = |t: f64, y: &[f64]| {
-        let (sin, cos) = t.sin_cos();
-        let (distance, stretch) = (y[0] * cos + y[1] * sin, 1.0 + t / 2.0);
-        let speed = y[2] / stretch;
-        // η = F ṙ, so η̇ = F r̈ + Ḟ ṙ
-        vec![cos * speed - y[1], sin * speed + y[0], stretch * (distance - 3.0 * sin) + 0.5 * speed]
-    };
-    let sample = |random: &mut SplitMix64| {
-        let t = random.uniform(0.0, 3.0);
-        let [r, eta] = normals(random);
-        (t, vec![r * t.cos(), r * t.sin(), eta])
-    };
-    assert_equations("wire", &mut motion, classical, sample);
-
-    let start = [1.0, 0.0, -0.5];
-    let end = [4.062127614161406, -3.034499902007452, -16.68620227861797];
-    assert_motion("wire", &mut motion, &start, (2.5, &end), &["across"]);
+    assert_builtin("turning-wire", &mut motion, &["across"]);
 
     let times = [0.5, 1.0, 1.5, 2.0, 2.5];
-    for (t, y) in times.iter().zip(integrate(&mut motion, &start, &times)) {
-        let r = t.cosh() - 2.0 * t.sinh() + 1.5 * t.sin();
-        let speed = t.sinh() - 2.0 * t.cosh() + 1.5 * t.cos();
-        let expected = [r * t.cos(), r * t.sin(), (1.0 + t / 2.0) * speed];
+    for (t, y) in times.iter().zip(integrate(&mut motion, &[1.0, 0.0, -0.5], &times)) {
+        let expected = turning_wire(*t);
         assert!(distance(&y, &expected) < 1e-9, "t = {t}: {y:?}, not {expected:?}");
     }
 }
@@ -97,31 +79,7 @@ fn a_bead_on_a_turning_hoop() {
     assert_eq!(system.structure().nonzero().collect::<Vec<_>>(), [(0, 1, 1, Expr::ratio(-1, 5))]);
 
     let mut motion = system.poincare().unwrap().compile().unwrap();
-    // On a hoop of any radius R: R²θ̈ = ρ (−Ω²Z − g), with R sin θ = ρ and R cos θ = −Z.
-    let classical = |t: f64, y: &[f64]| {
-        let (sin, cos) = (3.0 * t).sin_cos();
-        let (rho, growth) = (y[0] * cos + y[1] * sin, (t / 5.0).exp());
-        let rate = y[3] / growth;
-        let acceleration = rho * (-9.0 * y[2] - 4.0) / (rho * rho + y[2] * y[2]);
-        vec![
-            -y[2] * cos * rate - 3.0 * y[1],
-            -y[2] * sin * rate + 3.0 * y[0],
-            rho * rate,
-            growth * (acceleration + rate / 5.0),
-        ]
-    };
-    let sample = |random: &mut SplitMix64| {
-        let (t, radius, angle) =
-            (random.uniform(0.0, 3.0), random.uniform(0.5, 2.0), random.uniform(-3.0, 3.0));
-        let rho = radius * angle.sin();
-        let place = [rho * (3.0 * t).cos(), rho * (3.0 * t).sin(), -radius * angle.cos()];
-        (t, vec![place[0], place[1], place[2], random.normal()])
-    };
-    assert_equations("hoop", &mut motion, classical, sample);
-
-    let start = [0.5f64.sin(), 0.0, -0.5f64.cos(), 0.2];
-    let end = [-0.4293729059559143, 0.3675403740271767, -0.8249563510216384, -1.772882204740696];
-    assert_motion("hoop", &mut motion, &start, (5.0, &end), &["radius", "across", "jacobi"]);
+    assert_builtin("turning-hoop", &mut motion, &["energy", "radius", "across", "jacobi"]);
 }
 
 /// The smallest system that knows the sign of c_0s: without it there are no gyroscopic terms.
@@ -144,14 +102,12 @@ fn an_oscillator_in_a_turning_chart() {
     assert_eq!(equations.right_hand_side(), [0.7 * v - x, -0.7 * u - 4.0 * y]);
 
     let mut motion = equations.compile().unwrap();
-    let classical = |_: f64, y: &[f64]| {
-        vec![y[2] + 0.7 * y[1], y[3] - 0.7 * y[0], 0.7 * y[3] - y[0], -0.7 * y[2] - 4.0 * y[1]]
-    };
-    assert_equations("chart", &mut motion, classical, |random| (0.0, normals::<4>(random).to_vec()));
-
-    let start = [1.0, 0.0, 0.0, 1.5];
-    let end = [-0.4202456629931698, -0.2319376450203162, 0.884420493138732, 0.2972106552854497];
-    assert_motion("chart", &mut motion, &start, (8.0, &end), &["jacobi"]);
+    assert_builtin("rotating-oscillator", &mut motion, &["jacobi"]);
+    let times = [1.0, 3.0, 8.0];
+    for (t, y) in times.iter().zip(integrate(&mut motion, &[1.0, 0.0, 0.0, 1.5], &times)) {
+        let expected = rotating_oscillator(*t);
+        assert!(distance(&y, &expected) < 1e-9, "t = {t}: {y:?}, not {expected:?}");
+    }
 }
 
 #[test]
