@@ -160,6 +160,7 @@ fn lagranges_equations_reach_the_references() {
             "gravity-gradient",
             "heavy-top-quaternion",
             "pendulum-chain-cartesian",
+            "rigid-body-spring",
             "spherical-pendulum-cartesian",
             "spherical-pendulum-meridian",
             "turning-hoop",
