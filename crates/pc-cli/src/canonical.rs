@@ -5,34 +5,42 @@ use serde_json::{Value, json};
 
 use crate::derive::{Operations, aligned, brackets, description, kinematics, sections, strings};
 
-/// The equations as a book prints them: kinematics, brackets, momenta, Hamiltonian, ẏ = …, operations.
+/// The equations as a book prints them: kinematics, brackets, momenta, Hamiltonian, ẏ = …, operations. Where they are
+/// not closed, the momenta are equations for η.
 pub fn text(equations: &Canonical<'_>, operations: &Operations) -> String {
     let system = equations.system();
     let lines = |pairs: &[(String, String)]| aligned(pairs.iter().map(|(left, right)| (left, right)));
+    let cost = if equations.is_closed() {
+        "Operations of one right-hand side"
+    } else {
+        "Operations of one right-hand side, quasi-velocities known"
+    };
     sections(&[
         ("Kinematics", kinematics(system, equations.velocities())),
         ("Brackets", brackets(system)),
         ("Momenta", lines(&momenta(equations, Style::Book))),
         ("Hamiltonian", vec![equations.hamiltonian().display(Style::Book)]),
         ("Equations", lines(&equations.balance(Style::Book))),
-        ("Operations of one right-hand side", operations.lines()),
+        (cost, operations.lines()),
     ])
 }
 
 /// y_s = ∂L/∂η_s, the two sides of each.
 pub fn momenta(equations: &Canonical<'_>, style: Style) -> Vec<(String, String)> {
-    let values = equations.momenta_of_velocities();
-    let pairs = equations.momenta().iter().zip(&values);
+    let pairs = equations.momenta().iter().zip(equations.momenta_of_velocities());
     pairs.map(|(y, value)| (y.display(style), value.display(style))).collect()
 }
 
-/// The equations for programs.
+/// The equations for programs. Where they are not `closed`, there are no `quasi_velocities_of_momenta`, and the
+/// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
 pub fn object(title: &str, equations: &Canonical<'_>, operations: &Operations) -> Value {
     let mut object = description(title, equations.system());
+    let solved = equations.is_closed().then(|| strings(equations.quasi_velocities()));
     for (key, value) in [
         ("momenta", json!(strings(equations.momenta()))),
-        ("momenta_of_velocities", json!(strings(&equations.momenta_of_velocities()))),
-        ("quasi_velocities_of_momenta", json!(strings(equations.quasi_velocities()))),
+        ("closed", json!(equations.is_closed())),
+        ("momenta_of_velocities", json!(strings(equations.momenta_of_velocities()))),
+        ("quasi_velocities_of_momenta", json!(solved)),
         ("hamiltonian", json!(equations.hamiltonian().to_string())),
         ("velocities", json!(strings(equations.velocities()))),
         ("equations", json!(strings(equations.right_hand_side()))),

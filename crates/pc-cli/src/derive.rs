@@ -74,13 +74,15 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// Those of the canonical equations.
+    /// Those of the canonical equations; where they are not closed, the quasi-velocities being known.
     ///
     /// # Errors
     /// As [`of`](Operations::of).
     pub fn of_canonical(equations: &Canonical<'_>) -> Result<Operations, ExprError> {
         let rates = [equations.velocities(), equations.right_hand_side()].concat();
-        Operations::counted(equations.system(), equations.momenta(), &rates)
+        let system = equations.system();
+        let implicit = if equations.is_closed() { &[] } else { system.quasi_velocities() };
+        Operations::counted(system, &[equations.momenta(), implicit].concat(), &rates)
     }
 
     /// Those of `rates`, functions of time, coordinates, `moving` and parameters.

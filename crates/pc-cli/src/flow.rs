@@ -43,9 +43,11 @@ impl Flow {
             }),
             RunForm::Canonical => {
                 let refused = |error| model.derivation_error(error);
-                let canonical = system.canonical().map_err(refused)?;
+                let eta = &start[system.frame().coordinates().len()..];
+                let canonical =
+                    system.canonical().and_then(|canonical| canonical.with_guess(eta)).map_err(refused)?;
                 let mut transform = canonical.legendre_transform().map_err(refused)?;
-                let start = transform.to_momenta(t, start);
+                let start = transform.to_momenta(t, start).map_err(refused)?;
                 Ok(Flow {
                     motion: model.compile_canonical(&canonical, t, &start)?,
                     start,
@@ -56,12 +58,16 @@ impl Flow {
         }
     }
 
-    /// Coordinates and quasi-velocities of a state, then the observables.
+    /// Coordinates and quasi-velocities of a state, then the observables. Where momenta have no quasi-velocities,
+    /// these are no numbers, as the observables are none.
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut row = match &mut self.transform {
-            Some(transform) => transform.to_quasi_velocities(t, state),
-            None => state.to_vec(),
-        };
+        let mut row = state.to_vec();
+        if let Some(transform) = &mut self.transform {
+            match transform.to_quasi_velocities(t, state) {
+                Ok(state) => row = state,
+                Err(_) => row[self.motion.coordinates()..].fill(f64::NAN),
+            }
+        }
         row.extend(self.motion.observe(t, state));
         row
     }

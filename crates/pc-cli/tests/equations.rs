@@ -121,8 +121,33 @@ fn canonical_equations_in_print() {
     assert!(page.contains(r"\dot{p}_{\omega_{1}} &= "), "{page}");
     let object = json(&["derive", "heavy-top-euler", "--form", "canonical"]);
     assert_eq!(object["momenta"], serde_json::json!(["p_ω1", "p_ω2", "p_ω3"]));
+    assert_eq!(object["closed"], true);
     assert_eq!(object["quasi_velocities_of_momenta"][2], "p_ω3/I3");
     assert_eq!(object["operations"]["free"]["sin"], 2);
+}
+
+#[test]
+fn canonical_equations_that_are_not_closed_in_print() {
+    let text = pc(&["derive", "relativistic-particle", "--form", "canonical"]);
+    for line in [
+        "Momenta\n  p_η1 = η1/sqrt(1 - (η1² + η2²)/c²)\n",
+        "Hamiltonian\n  c² sqrt(1 - (η1² + η2²)/c²) - κ/ρ + η1 p_η1 + η2 p_η2\n",
+        "p_η1' = p_η2 η2/ρ - κ/ρ²",
+        "p_η2' = -p_η2 η1/ρ",
+        "Operations of one right-hand side, quasi-velocities known",
+    ] {
+        assert!(text.contains(line), "{line} not in {text}");
+    }
+    let page = pc(&["derive", "relativistic-particle", "--form", "canonical", "--format", "latex"]);
+    for line in [r"% Momenta", r"p_{\eta_{1}} &= \frac{", r"\dot{p}_{\eta_{2}} &= "] {
+        assert!(page.contains(line), "{line} not in {page}");
+    }
+    let object = json(&["derive", "relativistic-particle", "--form", "canonical"]);
+    assert_eq!(object["closed"], false);
+    assert_eq!(object["quasi_velocities_of_momenta"], Value::Null);
+    assert_eq!(object["momenta_of_velocities"][0], "η1/sqrt(1 - (η1^2 + η2^2)/c^2)");
+    assert_eq!(object["velocities"], serde_json::json!(["η1", "η2/ρ"]));
+    assert_eq!(object["operations"]["free"]["sqrt"], Value::Null);
 }
 
 #[test]

@@ -3,23 +3,24 @@
 use pc_expr::{Expr, Style};
 
 use crate::book::expanded;
-use crate::compiled::first_order::FirstOrder;
+use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::ldl::Factors;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
 use crate::error::MechError;
-use crate::legendre::Legendre;
+use crate::legendre::{Inverse, Legendre};
+use crate::stability::steady::check_length;
 use crate::system::System;
 
 /// The canonical equations in coordinates and momenta y_s = ∂L/∂η_s, with H(t, x, y) = y_s η_s − L:
 ///
 ///   ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s   (10),   ẋ_i = b_i0 + b_is ∂H/∂y_s   (11).
 ///
-/// With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in quasi-coordinates (19).
+/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in quasi-coordinates (19).
 #[derive(Clone, Debug)]
 pub struct Canonical<'g> {
     system: System<'g>,
-    legendre: Legendre<'g>,
+    pub(crate) legendre: Legendre<'g>,
     momenta: Vec<Expr<'g>>,
     quasi_velocities: Vec<Expr<'g>>,
     hamiltonian: Expr<'g>,
@@ -34,24 +35,53 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().map(|eta| self.unused(name(eta), "p_")).collect()
     }
 
-    /// The canonical equations (10), (11).
+    /// The canonical equations (10), (11): [closed](Canonical::is_closed) in (t, x, y) where L is quadratic in the
+    /// quasi-velocities, else in (t, x, y, η).
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`] if ∂L/∂η cannot be solved for η in closed form,
-    /// [`MechError::DegenerateLagrangian`] if it cannot at all.
+    /// [`MechError::DegenerateLagrangian`] if y = ∂L/∂η does not determine η.
+    ///
+    /// ```
+    /// use pc_mech::{Graph, System, VectorField};
+    ///
+    /// // A relativistic particle, c = 1: y = η/√(1 − η²).
+    /// let graph = Graph::new();
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x"])
+    ///     .lagrangian(|_, x, v| -(1.0 - v[0].square()).sqrt() + x[0])
+    ///     .build()?;
+    /// let canonical = particle.canonical()?;
+    /// assert!(!canonical.is_closed());
+    /// let mut motion = canonical.compile_for(pc_mech::Backend::Fastest)?;
+    /// let mut rates = [0.0; 2];
+    /// motion.rhs(0.0, &[0.0, 0.75], &mut rates)?;
+    /// assert!((rates[0] - 0.6).abs() < 1e-15 && rates[1] == 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn canonical(&self) -> Result<Canonical<'g>, MechError> {
         let graph = self.graph();
         let legendre = Legendre::of(self)?;
         let momenta = self.momentum_symbols();
-        let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
-        let order: Vec<Expr<'g>> = momenta.iter().copied().chain(parameters).collect();
+        let order: Vec<Expr<'g>> = momenta.iter().copied().chain(self.collecting_order()).collect();
 
-        let impulse = legendre.impulse(&momenta);
-        let eta = graph.shorten(&Factors::of(graph, &legendre.mass).solve(graph, &impulse), &order);
-        let kinetic = graph.dot(impulse.iter().copied(), eta.iter().copied()) / 2.0;
-        let hamiltonian = graph.shorten(&[kinetic - legendre.lagrangian_at_rest], &order)[0];
+        // X_s H at fixed y is −X_s L at fixed η.
+        let (eta, hamiltonian, differentiated) = match &legendre.inverse {
+            Inverse::Closed { momenta_at_rest, lagrangian_at_rest } => {
+                let impulse = impulse(&momenta, momenta_at_rest);
+                let eta = graph.shorten(&Factors::of(graph, &legendre.mass).solve(graph, &impulse), &order);
+                let kinetic = graph.dot(impulse.iter().copied(), eta.iter().copied()) / 2.0;
+                let hamiltonian = graph.shorten(&[kinetic - *lagrangian_at_rest], &order)[0];
+                (eta, hamiltonian, hamiltonian)
+            }
+            Inverse::Implicit { .. } => {
+                let eta = self.quasi_velocities.clone();
+                let power = graph.dot(momenta.iter().copied(), eta.iter().copied());
+                let hamiltonian = graph.shorten(&[power - self.lagrangian], &order)[0];
+                (eta, hamiltonian, -self.lagrangian)
+            }
+        };
 
-        let slope = self.frame.contract(&graph.gradient(hamiltonian, self.frame.coordinates()));
+        let slope = self.frame.contract(&graph.gradient(differentiated, self.frame.coordinates()));
         let gyroscopic = self.structure.gyroscopic(graph, &eta, &momenta);
         let values: Vec<_> = self.quasi_velocities.iter().copied().zip(eta.iter().copied()).collect();
         let forces = graph.substitute(&self.forces, &values);
@@ -70,10 +100,50 @@ impl<'g> System<'g> {
     }
 }
 
+/// M η = y − p_0
+fn impulse<'g>(momenta: &[Expr<'g>], at_rest: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    momenta.iter().zip(at_rest).map(|(&y, &p)| y - p).collect()
+}
+
 impl<'g> Canonical<'g> {
     /// The system they were derived from.
     pub fn system(&self) -> &System<'g> {
         &self.system
+    }
+
+    /// Whether y = ∂L/∂η is solved for η in an expression, as it is where L is quadratic in η.
+    ///
+    /// Otherwise the expressions of these equations contain the symbols η beside (t, x, y), and stand for what they
+    /// are where y = ∂L/∂η; [compiled](Canonical::compile_for), they solve that by Newton's method.
+    pub fn is_closed(&self) -> bool {
+        matches!(self.legendre.inverse, Inverse::Closed { .. })
+    }
+
+    /// # Errors
+    /// [`MechError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
+    pub(crate) fn check_closed(&self) -> Result<(), MechError> {
+        match &self.legendre.inverse {
+            Inverse::Closed { .. } => Ok(()),
+            Inverse::Implicit { quasi_velocity, .. } => {
+                Err(MechError::NotQuadratic { quasi_velocity: quasi_velocity.to_string() })
+            }
+        }
+    }
+
+    /// The same equations with the η, k of them, from which Newton's method looks for the solution of y = ∂L/∂η.
+    /// Without it, and in closed equations, which need none, that is η = 0.
+    ///
+    /// It should be in the domain of L, not near its boundary, with M = ∂²L/∂η∂η regular. Where L is not convex in η,
+    /// several η may have the same momenta, and the guess decides which of them is found.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]
+    pub fn with_guess(mut self, eta: &[f64]) -> Result<Canonical<'g>, MechError> {
+        check_length("the guess of the quasi-velocities", eta, self.momenta.len())?;
+        if let Inverse::Implicit { guess, .. } = &mut self.legendre.inverse {
+            guess.copy_from_slice(eta);
+        }
+        Ok(self)
     }
 
     /// The symbols y_1..y_k of the momenta.
@@ -82,27 +152,29 @@ impl<'g> Canonical<'g> {
     }
 
     /// y_s = ∂L/∂η_s in terms of (t, x, η), length k.
-    pub fn momenta_of_velocities(&self) -> Vec<Expr<'g>> {
-        let order = self.system.collecting_order();
-        self.system.graph().shorten(&self.system.momenta(), &order)
+    pub fn momenta_of_velocities(&self) -> &[Expr<'g>] {
+        &self.legendre.momenta
     }
 
-    /// η_s = ∂H/∂y_s in terms of (t, x, y), length k.
+    /// η_s = ∂H/∂y_s in terms of (t, x, y), length k; the symbols η_s where the equations are not
+    /// [closed](Canonical::is_closed).
     pub fn quasi_velocities(&self) -> &[Expr<'g>] {
         &self.quasi_velocities
     }
 
-    /// H(t, x, y)
+    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives by
+    /// t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {
         self.hamiltonian
     }
 
-    /// ẋ_i in terms of (t, x, y) (11), length n.
+    /// ẋ_i (11) in terms of (t, x, y), or (t, x, η) where they are not [closed](Canonical::is_closed), length n.
     pub fn velocities(&self) -> &[Expr<'g>] {
         &self.velocities
     }
 
-    /// ẏ_s in terms of (t, x, y) (10), length k.
+    /// ẏ_s (10) in terms of (t, x, y), or (t, x, y, η) where they are not [closed](Canonical::is_closed),
+    /// length k.
     pub fn right_hand_side(&self) -> &[Expr<'g>] {
         &self.right
     }
@@ -122,14 +194,25 @@ impl<'g> Canonical<'g> {
     /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as
     /// those of [`Equations`](crate::Equations) are.
     ///
+    /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding, from the
+    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; from the last solution where the guess
+    /// leads to none. It fails, recoverably, with [`MechError::LegendreNotSolved`] where neither does, and with
+    /// [`MechError::SingularMassMatrix`] where a pivot of M = ∂²L/∂η∂η vanishes.
+    ///
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        self.first_order()?.compile(&options.into(), LONGEST_ELIMINATION)
+        let equations = FirstOrder {
+            observables: self.observables()?,
+            conserved: self.system.integrals.len() + 1,
+            ..self.first_order()
+        };
+        equations.compile(&options.into(), LONGEST_ELIMINATION)
     }
 
-    /// The equations with w = η, M η = y − p_0: H need not be formed, since X_s H = −X_s L at fixed y and η.
-    fn first_order(&self) -> Result<FirstOrder<'g>, MechError> {
+    /// The equations with w = η, M η = y − p_0 or ∂L/∂η = y: H need not be formed, since X_s H = −X_s L at fixed
+    /// y and η. Nothing is observed.
+    pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let (system, graph) = (&self.system, self.system.graph());
         let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
         let slope = system.frame.contract(&graph.gradient(system.lagrangian, x));
@@ -137,7 +220,14 @@ impl<'g> Canonical<'g> {
         let mut rates = system.frame.velocities(eta);
         rates.extend((0..eta.len()).map(|s| graph.sum([gyroscopic[s], slope[s], system.forces[s]])));
         let parameters = system.parameters.iter().map(|&(symbol, _)| symbol);
-        Ok(FirstOrder {
+        let (right, implicit) = match &self.legendre.inverse {
+            Inverse::Closed { momenta_at_rest, .. } => (impulse(&self.momenta, momenta_at_rest), None),
+            Inverse::Implicit { guess, .. } => {
+                let implicit = Implicit { left: self.legendre.momenta.clone(), guess: guess.clone() };
+                (self.momenta.clone(), Some(implicit))
+            }
+        };
+        FirstOrder {
             graph,
             time: system.frame.time(),
             state: x.iter().chain(&self.momenta).copied().collect(),
@@ -147,18 +237,21 @@ impl<'g> Canonical<'g> {
             names: eta.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             mass: self.legendre.mass.clone(),
-            right: self.legendre.impulse(&self.momenta),
+            implicit,
+            right,
             rates: graph.shorten(&rates, &system.collecting_order()),
             collected_by: self.momenta.iter().copied().chain(parameters).collect(),
-            observables: self.observables()?,
-            conserved: system.integrals.len() + 1,
-        })
+            observables: Vec::new(),
+            conserved: 0,
+        }
     }
 
-    /// Integrals, energy and outputs in terms of (t, x, η).
+    /// Integrals, energy and outputs in terms of (t, x, y, η).
     fn observables(&self) -> Result<Vec<(String, Expr<'g>)>, MechError> {
         let (system, graph) = (&self.system, self.system.graph());
-        let energy = ("energy".to_owned(), system.energy());
+        // y_s η_s − L feels an error of η in second order only.
+        let energy = if self.is_closed() { system.energy() } else { self.hamiltonian };
+        let energy = ("energy".to_owned(), energy);
         let mut observables: Vec<_> =
             system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect();
         let symbols = system.accelerations();

@@ -33,10 +33,10 @@ pub enum MechError {
         /// The quasi-velocities in whose elimination no pivot was left.
         quasi_velocities: Vec<String>,
     },
-    /// y = ∂L/∂η is not linear in the quasi-velocities.
+    /// H(t, x, y) was asked for where y = ∂L/∂η is not linear in the quasi-velocities.
     #[error(
-        "the canonical form needs a Lagrangian that is quadratic in the quasi-velocities; ∂²L/∂η∂η depends on \
-         `{quasi_velocity}`"
+        "the Hamiltonian as a function of the momenta needs a Lagrangian that is quadratic in the quasi-velocities; \
+         ∂²L/∂η∂η depends on `{quasi_velocity}`"
     )]
     NotQuadratic {
         /// A quasi-velocity in the Hessian.
@@ -66,6 +66,22 @@ pub enum MechError {
         /// Time.
         t: f64,
         /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// Newton's method found no quasi-velocities that have the momenta.
+    #[error(
+        "y = ∂L/∂η has no solution η that could be found: after {iterations} steps |y − ∂L/∂η| is {} at t = {t}{}",
+        readable(*residual),
+        listed(state)
+    )]
+    LegendreNotSolved {
+        /// |y − ∂L/∂η|
+        residual: f64,
+        /// Number of steps made.
+        iterations: usize,
+        /// Time.
+        t: f64,
+        /// Names and values of the state (x, y).
         state: Vec<(String, f64)>,
     },
     /// A condition on velocities that is not affine in them.

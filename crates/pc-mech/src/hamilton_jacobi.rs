@@ -44,7 +44,8 @@ impl<'g> Canonical<'g> {
     /// in some symbol, as it is in the energy.
     ///
     /// # Errors
-    /// [`MechError::Forced`] if a generalised force is not zero.
+    /// [`MechError::Forced`] if a generalised force is not zero; [`MechError::NotQuadratic`] if H is not
+    /// [closed](Canonical::is_closed).
     ///
     /// ```
     /// # use pc_mech::{Graph, System};
@@ -58,6 +59,7 @@ impl<'g> Canonical<'g> {
     /// # Ok::<(), pc_mech::MechError>(())
     /// ```
     pub fn hamilton_jacobi(&self, action: Expr<'g>) -> Result<Expr<'g>, MechError> {
+        self.check_closed()?;
         let system = self.system();
         if let Some(s) = system.forces().iter().position(|force| !force.is_zero()) {
             return Err(MechError::Forced { quasi_velocity: system.quasi_velocities()[s].to_string() });
@@ -73,7 +75,7 @@ impl<'g> Canonical<'g> {
     ///
     /// # Errors [`MechError::NotAnAction`] if S does not satisfy the [equation](Canonical::hamilton_jacobi);
     /// [`MechError::IncompleteIntegral`] if det ∂(X_s S)/∂α_r = 0 at almost all points; [`MechError::Shape`]
-    /// if there are not k constants and k coordinates; [`MechError::Forced`];
+    /// if there are not k constants and k coordinates; [`MechError::Forced`]; [`MechError::NotQuadratic`];
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol).
     pub fn complete_integral(
         &self,

@@ -141,12 +141,12 @@ impl<'g> Multipliers<'g> {
     pub fn dependent_at(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<usize>, MechError> {
         let system = self.equations().system();
         let (graph, k, m) = (system.graph(), system.quasi_velocities().len(), self.constraints().len());
-        let (lower, entries) = self.lower_triangle();
+        let (lower, entries) = self.first_order().lower_triangle();
         let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
         let mut saddle = Saddle::new(k, m);
         saddle.eliminate(&lower, &values).map_err(|fault| {
             let place = match fault {
-                Fault::Pivot { index, .. } => index.saturating_sub(k),
+                Fault::Constraint { index } => index - k,
                 _ => 0,
             };
             let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);

@@ -4,58 +4,88 @@ use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::canonical::Canonical;
+use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::implicit::Newton;
+use crate::compiled::solver::Solver;
 use crate::error::MechError;
+use crate::stability::steady::check_length;
 use crate::system::System;
 
-/// The Legendre transform of L = ½ M_rs η_r η_s + p_0s η_s + L_0: y = M η + p_0.
+/// The Legendre transform of L.
 #[derive(Clone, Debug)]
 pub(crate) struct Legendre<'g> {
-    /// M, k × k.
+    /// M = ∂²L/∂η∂η, k × k, in (t, x) if L is quadratic, else in (t, x, η).
     pub(crate) mass: Matrix<Expr<'g>>,
-    /// The momenta p_0 at η = 0, length k.
-    pub(crate) momenta_at_rest: Vec<Expr<'g>>,
-    /// L_0
-    pub(crate) lagrangian_at_rest: Expr<'g>,
+    /// ∂L/∂η in (t, x, η), length k.
+    pub(crate) momenta: Vec<Expr<'g>>,
+    pub(crate) inverse: Inverse<'g>,
+}
+
+/// How y = ∂L/∂η is solved for η.
+#[derive(Clone, Debug)]
+pub(crate) enum Inverse<'g> {
+    /// Of L = ½ M_rs η_r η_s + p_0s η_s + L_0, from M η = y − p_0.
+    Closed {
+        /// p_0
+        momenta_at_rest: Vec<Expr<'g>>,
+        /// L_0
+        lagrangian_at_rest: Expr<'g>,
+    },
+    /// In numbers.
+    Implicit {
+        /// An η on which M depends.
+        quasi_velocity: Expr<'g>,
+        /// The η from which the solution is looked for.
+        guess: Vec<f64>,
+    },
 }
 
 impl<'g> Legendre<'g> {
-    /// That of a system whose Lagrangian is quadratic in the quasi-velocities.
+    /// # Errors
+    /// [`MechError::DegenerateLagrangian`]
     pub(crate) fn of(system: &System<'g>) -> Result<Legendre<'g>, MechError> {
         let graph = system.graph();
         let eta = system.quasi_velocities();
+        let (k, order) = (eta.len(), system.collecting_order());
         let momenta = system.momenta();
         let hessian: Vec<Vec<Expr<'g>>> = momenta.iter().map(|&p| graph.gradient(p, eta)).collect();
-        if let Some(eta) = eta.iter().find(|&&eta| hessian.iter().flatten().any(|m| m.depends_on(eta))) {
-            return Err(MechError::NotQuadratic { quasi_velocity: eta.to_string() });
-        }
-        let k = eta.len();
         let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        let order = system.collecting_order();
         let rest = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &at_rest), &order);
-        let mass = rest(&hessian.concat());
+        let moving = eta.iter().find(|&&eta| hessian.iter().flatten().any(|m| m.depends_on(eta)));
+        let (mass, inverse) = match moving {
+            Some(&quasi_velocity) => (
+                graph.shorten(&hessian.concat(), &order),
+                Inverse::Implicit { quasi_velocity, guess: vec![0.0; k] },
+            ),
+            None => (
+                rest(&hessian.concat()),
+                Inverse::Closed {
+                    momenta_at_rest: rest(&momenta),
+                    lagrangian_at_rest: rest(&[system.lagrangian()])[0],
+                },
+            ),
+        };
         let mass = Matrix::from_fn(k, k, |r, s| mass[r.max(s) * k + r.min(s)]);
         system.check_regular(&mass)?;
-        Ok(Legendre {
-            mass,
-            momenta_at_rest: rest(&momenta),
-            lagrangian_at_rest: rest(&[system.lagrangian()])[0],
-        })
-    }
-
-    /// M η = y − p_0
-    pub(crate) fn impulse(&self, momenta: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        momenta.iter().zip(&self.momenta_at_rest).map(|(&y, &p)| y - p).collect()
+        Ok(Legendre { mass, momenta: graph.shorten(&momenta, &order), inverse })
     }
 }
 
 /// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s; compiled.
-///
-/// Where the mass matrix is singular, what comes out is not finite.
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {
+    /// Names of x, η, y.
+    names: [Vec<String>; 3],
     parameters: Vec<f64>,
     momenta: Evaluator,
-    quasi_velocities: Evaluator,
+    quasi_velocities: QuasiVelocities,
+}
+
+/// η of (x, y)
+#[derive(Clone, Debug)]
+enum QuasiVelocities {
+    Closed(Evaluator),
+    Implicit(Box<(Newton, Solver)>),
 }
 
 impl Canonical<'_> {
@@ -73,13 +103,22 @@ impl Canonical<'_> {
                 state: x.iter().chain(moving).copied().collect(),
                 parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
             };
-            let outputs: Vec<Expr<'_>> = x.iter().chain(values).copied().collect();
-            Ok(Evaluator::new(Program::new(graph, &inputs, &outputs)?, Backend::Interpreter))
+            Ok(Evaluator::new(Program::new(graph, &inputs, values)?, Backend::Interpreter))
+        };
+        let equations = self.first_order();
+        let quasi_velocities = match &equations.implicit {
+            None => QuasiVelocities::Closed(program(self.momenta(), self.quasi_velocities())?),
+            Some(implicit) => {
+                let newton = Newton::new(&equations, implicit, Backend::Interpreter)?;
+                QuasiVelocities::Implicit(Box::new((newton, Solver::new(self.momenta().len(), 0))))
+            }
         };
         Ok(LegendreTransform {
+            names: [x, system.quasi_velocities(), self.momenta()]
+                .map(|symbols| symbols.iter().map(Expr::to_string).collect()),
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
-            momenta: program(system.quasi_velocities(), &self.momenta_of_velocities())?,
-            quasi_velocities: program(self.momenta(), self.quasi_velocities())?,
+            momenta: program(system.quasi_velocities(), self.momenta_of_velocities())?,
+            quasi_velocities,
         })
     }
 }
@@ -87,21 +126,58 @@ impl Canonical<'_> {
 impl LegendreTransform {
     /// (x, y) of the state (x, η), length n + k both.
     ///
-    /// # Panics
-    /// If the state has another length.
-    pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; state.len()];
-        self.momenta.eval(t, state, &self.parameters, &mut result);
-        result
+    /// # Errors
+    /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
+    /// ∂L/∂η.
+    pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        let mut result = self.checked(state)?;
+        let moving = &mut result[self.names[0].len()..];
+        evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
+            .map_err(|fault| self.error(fault, t, state))?;
+        Ok(result)
     }
 
-    /// (x, η) of the state (x, y), length n + k both.
+    /// (x, η) of the state (x, y), length n + k both. Where L is not quadratic, Newton's method finds it from
+    /// the [guess](Canonical::with_guess).
     ///
-    /// # Panics
-    /// If the state has another length.
-    pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; state.len()];
-        self.quasi_velocities.eval(t, state, &self.parameters, &mut result);
-        result
+    /// # Errors
+    /// [`MechError::Shape`]; [`MechError::LegendreNotSolved`], [`MechError::SingularMassMatrix`] or
+    /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
+    pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        let mut result = self.checked(state)?;
+        let moving = &mut result[self.names[0].len()..];
+        let outcome = match &mut self.quasi_velocities {
+            QuasiVelocities::Closed(program) => evaluate(program, (t, state, &self.parameters), moving),
+            QuasiVelocities::Implicit(solver) => {
+                let (newton, factors) = &mut **solver;
+                let mut known = [state, moving].concat();
+                let outcome = newton.solve(t, &mut known, &self.parameters, factors);
+                moving.copy_from_slice(&known[state.len()..]);
+                outcome
+            }
+        };
+        outcome.map_err(|fault| self.error(fault, t, state))?;
+        Ok(result)
     }
+
+    /// The state, if it has the right length.
+    fn checked(&self, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        check_length("the state", state, self.names[0].len() + self.names[1].len())?;
+        Ok(state.to_vec())
+    }
+
+    /// At the state (x, y).
+    fn error(&self, fault: Fault, t: f64, state: &[f64]) -> MechError {
+        let [x, eta, y] = &self.names;
+        fault.at(eta, t, &[&x[..], y].concat(), state)
+    }
+}
+
+fn evaluate(
+    program: &mut Evaluator,
+    (t, state, parameters): (f64, &[f64], &[f64]),
+    values: &mut [f64],
+) -> Result<(), Fault> {
+    program.eval(t, state, parameters, values);
+    check_finite(values, program, (t, state, parameters))
 }

@@ -1,9 +1,8 @@
 //! Constraints held by multipliers, in whatever coordinates.
 
 use pc_algebra::Matrix;
-use pc_expr::{Expr, Pattern};
+use pc_expr::Expr;
 
-use crate::compiled::columns::nonzeros;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
@@ -221,7 +220,7 @@ impl<'g> Multipliers<'g> {
         let (graph, eta) = (system.graph(), &system.quasi_velocities);
         let places: Vec<usize> = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a)).collect();
         let positions: Vec<Expr<'g>> = places.iter().map(|&a| self.constraints[a].expression).collect();
-        let (lower, entries) = self.lower_triangle();
+        let (lower, entries) = first_order.lower_triangle();
         let b = system.frame.b();
         let displacements: Vec<Expr<'g>> =
             (0..b.rows()).map(|i| graph.dot(b.row(i).iter().copied(), eta.iter().copied())).collect();
@@ -249,16 +248,8 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// What is not zero of its lower triangle, and where.
-    pub(crate) fn lower_triangle(&self) -> (Pattern, Vec<Expr<'g>>) {
-        let bordered = self.bordered();
-        let size = bordered.rows();
-        let below = |j: usize| (0..size).map(|i| if i < j { Expr::ZERO } else { bordered[(i, j)] }).collect();
-        nonzeros(size, &(0..size).map(below).collect::<Vec<_>>())
-    }
-
     /// The case w = (η̇, λ), g = (b η + b_0, η̇).
-    fn first_order(&self) -> FirstOrder<'g> {
+    pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let plain = self.equations.first_order();
         let graph = plain.graph;
         let negative = self.right.iter().map(|&rate| -rate);
@@ -270,6 +261,7 @@ impl<'g> Multipliers<'g> {
         FirstOrder {
             graph,
             multipliers: self.reactions.len(),
+            implicit: None,
             unknowns: plain.unknowns.into_iter().chain(self.reactions.iter().copied()).collect(),
             names: plain
                 .names

@@ -2,17 +2,47 @@
 
 use pc_expr::{Evaluator, ExprError};
 
+use crate::error::MechError;
+
 /// What is wrong, before it is known where.
 #[derive(Debug)]
 pub(crate) enum Fault {
     /// The pivot of the unknown of that index vanished.
     Pivot { index: usize, pivot: f64 },
-    /// The state is not near those that satisfy the constraints.
-    NoProjection,
+    /// The constraint of that index among unknowns and constraints is none at this state.
+    Constraint { index: usize },
+    /// The state is not near those that satisfy the constraints, which follow so many unknowns.
+    NoProjection { unknowns: usize },
+    /// Newton's method ended with |F| = `residual`.
+    NotSolved { residual: f64, iterations: usize },
     /// A part that the motion was compiled without.
     NotCompiled { what: &'static str },
     /// A value is not finite.
     Expr(ExprError),
+}
+
+impl Fault {
+    /// The error, of the unknowns and constraints called `unknowns`, at the state with these `names`.
+    pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
+        let state = || names.iter().cloned().zip(state.iter().copied()).collect();
+        match self {
+            Fault::Pivot { index, pivot } => {
+                let quasi_velocity = unknowns[index].clone();
+                MechError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }
+            }
+            Fault::Constraint { index } => {
+                MechError::SingularConstraint { constraint: unknowns[index].clone(), t, state: state() }
+            }
+            Fault::NoProjection { unknowns: k } => {
+                MechError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
+            }
+            Fault::NotSolved { residual, iterations } => {
+                MechError::LegendreNotSolved { residual, iterations, t, state: state() }
+            }
+            Fault::NotCompiled { what } => MechError::NotCompiled { what },
+            Fault::Expr(error) => error.into(),
+        }
+    }
 }
 
 /// Finds what is to blame for values that are not finite.

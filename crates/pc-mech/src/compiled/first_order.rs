@@ -1,14 +1,17 @@
 //! First-order systems whose rates contain the solution of linear equations.
 
 use pc_algebra::Matrix;
-use pc_expr::{Expr, Graph, Inputs};
+use pc_expr::{Expr, Graph, Inputs, Pattern};
 
+use crate::compiled::columns::nonzeros;
 use crate::compiled::ldl::Factors;
 
-/// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric.
+/// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
+///
+///   p(t, y, w) = r(t, y),   M(t, y, w) = ∂p/∂w.
 ///
 /// Poincaré's equations (9) are the case w = η̇ of y = (x, η), g = (b η + b_0, w). The parameters may be in
-/// g, M and r.
+/// g, p, M and r.
 #[derive(Clone, Debug)]
 pub(crate) struct FirstOrder<'g> {
     pub(crate) graph: &'g Graph,
@@ -27,6 +30,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) multipliers: usize,
     /// M, k × k.
     pub(crate) mass: Matrix<Expr<'g>>,
+    /// p, where it is not M w.
+    pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
     /// g, in t, y and w, as long as the state.
@@ -36,6 +41,15 @@ pub(crate) struct FirstOrder<'g> {
     /// Functions of t, y and w, with their names; the first `conserved` should not change along a motion.
     pub(crate) observables: Vec<(String, Expr<'g>)>,
     pub(crate) conserved: usize,
+}
+
+/// The left side of p(t, y, w) = r(t, y), not linear in w.
+#[derive(Clone, Debug)]
+pub(crate) struct Implicit<'g> {
+    /// p, k of them.
+    pub(crate) left: Vec<Expr<'g>>,
+    /// The w from which the solution is looked for.
+    pub(crate) guess: Vec<f64>,
 }
 
 impl<'g> FirstOrder<'g> {
@@ -71,10 +85,19 @@ impl<'g> FirstOrder<'g> {
         self.graph.symbols_of(&[expression]).iter().all(|symbol| parameters.contains(symbol))
     }
 
-    /// F = r − M w, in t, y and w.
+    /// The places on and below the diagonal of M that are not zero everywhere, and what stands there.
+    pub(crate) fn lower_triangle(&self) -> (Pattern, Vec<Expr<'g>>) {
+        let k = self.unknowns.len();
+        let column =
+            |j| (0..k).map(|i| if i < j { Expr::ZERO } else { self.mass[(i, j)] }).collect::<Vec<_>>();
+        nonzeros(k, &(0..k).map(column).collect::<Vec<_>>())
+    }
+
+    /// F = r − M w or r − p, in t, y and w.
     pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
         let product = |s| self.graph.dot(self.mass.row(s).iter().copied(), self.unknowns.iter().copied());
-        self.right.iter().enumerate().map(|(s, &right)| right - product(s)).collect()
+        let left = |s: usize| self.implicit.as_ref().map_or_else(|| product(s), |p| p.left[s]);
+        self.right.iter().enumerate().map(|(s, &right)| right - left(s)).collect()
     }
 
     /// ∂g/∂w, row after row.
@@ -86,7 +109,7 @@ impl<'g> FirstOrder<'g> {
     /// before.
     pub(crate) fn fresh(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let equations: Vec<Expr<'g>> =
-            self.rates.iter().chain(&self.right).chain(self.mass.entries()).copied().collect();
+            self.balance().iter().chain(&self.rates).chain(self.mass.entries()).copied().collect();
         let inputs = self.inputs(&self.unknowns);
         let mut taken = self.graph.symbols_of(&equations);
         taken.extend(inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters));

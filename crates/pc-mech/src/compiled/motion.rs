@@ -79,6 +79,7 @@ impl<'g> Equations<'g> {
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             mass: self.mass.clone(),
+            implicit: None,
             right: self.right.clone(),
             rates: self.velocities.iter().chain(&unknowns).copied().collect(),
             unknowns,
@@ -90,15 +91,15 @@ impl<'g> Equations<'g> {
 }
 
 impl FirstOrder<'_> {
-    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest`.
+    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
+    /// unknowns stand linearly in their equations.
     ///
     /// # Errors
     /// As for [`Equations::compile`].
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
-        let short = elimination::operations(&self.mass) <= longest;
-        let written_out =
-            self.multipliers == 0 && (short || !elimination::needs_no_pivoting(self.graph, &self.mass));
-        let form = if written_out {
+        let short = || elimination::operations(&self.mass) <= longest;
+        let unrolled = || short() || !elimination::needs_no_pivoting(self.graph, &self.mass);
+        let form = if self.implicit.is_none() && self.multipliers == 0 && unrolled() {
             Form::Unrolled(Box::new(Unrolled::new(self, options)?))
         } else {
             Form::Staged(Box::new(Staged::new(self, options)?))
@@ -188,7 +189,8 @@ impl Motion {
     }
 
     /// Operations of one evaluation of the right-hand side, kinematics included; without those of the
-    /// factorisation where M is factorised in numbers.
+    /// factorisation where M is factorised in numbers, and with those of one iteration where y = ∂L/∂η is solved
+    /// for η by Newton's method.
     pub fn cost(&self) -> Cost {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
@@ -204,32 +206,9 @@ impl Motion {
 
     #[cold]
     fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
-        match fault {
-            Fault::Pivot { index, pivot } => Failure::recoverable(self.singular(index, pivot, t, y)),
-            Fault::NoProjection => Failure::recoverable(MechError::NoProjection {
-                constraints: self.constraints.clone(),
-                t,
-                state: self.named(y),
-            }),
-            Fault::Expr(error) => Failure::recoverable(MechError::from(error)),
-            Fault::NotCompiled { what } => Failure::fatal(MechError::NotCompiled { what }),
-        }
-    }
-
-    /// The unknown of that index, an acceleration or a multiplier, is not determined.
-    fn singular(&self, index: usize, pivot: f64, t: f64, y: &[f64]) -> MechError {
-        let state = self.named(y);
-        let accelerations = self.quasi_velocities.len() - self.constraints.len();
-        let name = self.quasi_velocities[index].clone();
-        if index < accelerations {
-            MechError::SingularMassMatrix { quasi_velocity: name, pivot, t, state }
-        } else {
-            MechError::SingularConstraint { constraint: name, t, state }
-        }
-    }
-
-    fn named(&self, y: &[f64]) -> Vec<(String, f64)> {
-        self.names.iter().cloned().zip(y.iter().copied()).collect()
+        let fatal = matches!(fault, Fault::NotCompiled { .. });
+        let error = fault.at(&self.quasi_velocities, t, &self.names, y);
+        if fatal { Failure::fatal(error) } else { Failure::recoverable(error) }
     }
 
     fn write_jacobian(

@@ -58,7 +58,8 @@ impl Saddle {
     /// finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] with the index of the unknown, or k and that of the constraint, whose pivot vanishes.
+    /// [`Fault::Constraint`] with k and the index of the constraint that the others leave nothing to restrict;
+    /// [`Fault::Pivot`] with the index of the unknown whose pivot vanishes.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
         self.eliminate(lower, values)?;
         self.express_dependent();
@@ -117,8 +118,7 @@ impl Saddle {
                 if this > best.2 { (row, column, this) } else { best }
             });
             if largest <= VANISHING_PIVOT {
-                let index = k + self.rows[step];
-                return Err(Fault::Pivot { index, pivot: largest });
+                return Err(Fault::Constraint { index: k + self.rows[step] });
             }
             self.rows.swap(step, row);
             self.columns.swap(step, column);
@@ -319,6 +319,6 @@ mod tests {
         ];
         let (pattern, values) = lower(&whole);
         let fault = Saddle::new(2, 2).factorise(&pattern, &values).unwrap_err();
-        assert!(matches!(fault, Fault::Pivot { index: 2 | 3, .. }), "{fault:?}");
+        assert!(matches!(fault, Fault::Constraint { index: 2 | 3 }), "{fault:?}");
     }
 }

@@ -28,7 +28,7 @@ impl Solver {
     /// finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] with the index of the unknown whose pivot vanishes.
+    /// [`Fault::Pivot`] with the index of the unknown whose pivot vanishes, or [`Fault::Constraint`].
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
         match self {
             Solver::Ldl(ldl) => ldl.factorise(lower, values),

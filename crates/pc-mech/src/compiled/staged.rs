@@ -1,5 +1,4 @@
-//! First-order systems whose M is factorised in numbers: programs before the solution of M w = r, and after
-//! it.
+//! First-order systems whose M is factorised in numbers: programs before the solution for w, and after it.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
@@ -7,17 +6,15 @@ use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
 use crate::compiled::columns::{Layout, derivative, nonzeros};
 use crate::compiled::fault::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::solver::Solver;
 
-/// ẏ = g(t, y, w) and its derivatives, with w from M w = r.
+/// ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
 #[derive(Clone, Debug)]
 pub(crate) struct Staged {
     dim: usize,
-    /// Of (t, y): what is not zero of the lower triangle of M, then r.
-    equations: Evaluator,
-    lower: Pattern,
-    values: Vec<f64>,
+    unknowns: Unknowns,
     solver: Solver,
     /// y, then w.
     known: Vec<f64>,
@@ -31,18 +28,25 @@ pub(crate) struct Staged {
     observables: Evaluator,
 }
 
+/// What determines w.
+#[derive(Clone, Debug)]
+enum Unknowns {
+    /// M w = r: of (t, y), what is not zero of the lower triangle of M, then r.
+    Linear { equations: Evaluator, lower: Pattern, values: Vec<f64> },
+    /// p(t, y, w) = r
+    Implicit(Box<Newton>),
+}
+
 impl Staged {
     /// # Errors
     /// As for [`Program::new`].
     pub(crate) fn new(system: &FirstOrder<'_>, options: &CompileOptions) -> Result<Staged, ExprError> {
         let graph = system.graph;
         let k = system.unknowns.len();
-        let below: Vec<Vec<Expr<'_>>> = (0..k)
-            .map(|j| (0..k).map(|i| if i < j { Expr::ZERO } else { system.mass[(i, j)] }).collect())
-            .collect();
-        let (lower, mut equations) = nonzeros(k, &below);
+        let (lower, mut equations) = system.lower_triangle();
         equations.extend(&system.right);
-        let known = system.inputs(&system.unknowns);
+        equations.extend(system.implicit.iter().flat_map(|implicit| &implicit.left));
+        let (inputs, known) = (system.inputs(&[]), system.inputs(&system.unknowns));
         let all: Vec<Expr<'_>> = equations.iter().chain(&system.rates).copied().collect();
         let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
         let compiled = |inputs, outputs: &[Expr<'_>], backend| -> Result<Evaluator, ExprError> {
@@ -51,11 +55,17 @@ impl Staged {
         let stage = |wanted: bool, symbols: &[Expr<'_>]| {
             wanted.then(|| Stage::new(system, symbols, options.backend)).transpose()
         };
+        let unknowns = match &system.implicit {
+            Some(implicit) => Unknowns::Implicit(Box::new(Newton::new(system, implicit, options.backend)?)),
+            None => Unknowns::Linear {
+                values: vec![0.0; equations.len()],
+                equations: compiled(&inputs, &equations, options.backend)?,
+                lower,
+            },
+        };
         Ok(Staged {
             dim: system.state.len(),
-            values: vec![0.0; equations.len()],
-            equations: compiled(&system.inputs(&[]), &equations, options.backend)?,
-            lower,
+            unknowns,
             solver: Solver::new(k, system.multipliers),
             known: vec![0.0; known.state.len()],
             rates: compiled(&known, &system.rates, options.backend)?,
@@ -75,17 +85,22 @@ impl Staged {
         self.jacobian.as_ref().map(|stage| &stage.pattern)
     }
 
-    /// Factorises M and solves for w.
+    /// Solves for w and factorises M.
     fn solve(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
-        self.equations.eval(t, y, p, &mut self.values);
-        check_finite(&self.values, &self.equations, (t, y, p))?;
-        let (mass, right) = self.values.split_at(self.lower.len());
-        self.solver.factorise(&self.lower, mass)?;
-        let (state, unknowns) = self.known.split_at_mut(self.dim);
-        state.copy_from_slice(y);
-        unknowns.copy_from_slice(right);
-        self.solver.solve(unknowns);
-        Ok(())
+        self.known[..self.dim].copy_from_slice(y);
+        match &mut self.unknowns {
+            Unknowns::Linear { equations, lower, values } => {
+                equations.eval(t, y, p, values);
+                check_finite(values, equations, (t, y, p))?;
+                let (mass, right) = values.split_at(lower.len());
+                self.solver.factorise(lower, mass)?;
+                let unknowns = &mut self.known[self.dim..];
+                unknowns.copy_from_slice(right);
+                self.solver.solve(unknowns);
+                Ok(())
+            }
+            Unknowns::Implicit(newton) => newton.solve(t, &mut self.known, p, &mut self.solver),
+        }
     }
 
     pub(crate) fn rhs(&mut self, t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]) -> Result<(), Fault> {
@@ -94,7 +109,7 @@ impl Staged {
         check_finite(ydot, &self.rates, (t, &self.known, p))
     }
 
-    /// Observables of w are not finite where M is singular.
+    /// Observables of w are not finite where w cannot be solved for.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
         if self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);
@@ -138,7 +153,7 @@ impl Staged {
     }
 }
 
-/// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w, for symbols q.
+/// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
 #[derive(Clone, Debug)]
 struct Stage {
     /// Of (t, (y, w)): what is not zero of ∂F/∂q, of ∂g/∂q, of ∂g/∂w.

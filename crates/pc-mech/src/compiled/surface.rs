@@ -99,7 +99,7 @@ impl Surface {
     /// Moves `y` to the surface.
     ///
     /// # Errors
-    /// [`Fault::NoProjection`] if the way leads nowhere, [`Fault::Pivot`] where the surface has an edge.
+    /// [`Fault::NoProjection`] if the way leads nowhere, [`Fault::Constraint`] where the surface has an edge.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
@@ -136,7 +136,7 @@ impl Surface {
             if length >= before / 2.0 || length == 0.0 {
                 let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
                 let small = largest(&self.moved) <= ROUNDING * largest(&y[..n]) || length <= ROUNDING * first;
-                return if small { Ok(()) } else { Err(Fault::NoProjection) };
+                return if small { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
             }
             for (x, moved) in y[..n].iter_mut().zip(&self.moved) {
                 *x += moved;
@@ -145,7 +145,7 @@ impl Surface {
             first = first.min(length);
             before = length;
         }
-        Err(Fault::NoProjection)
+        Err(Fault::NoProjection { unknowns: self.k })
     }
 
     /// g is affine in η: the second time takes away the rounding of the first.

@@ -209,7 +209,8 @@ impl<'g> PoissonBracket<'g> {
 }
 
 impl<'g> Canonical<'g> {
-    /// The function f(t, x, η) in terms of (t, x, y).
+    /// The function f(t, x, η) in terms of (t, x, y); f itself where the equations are not
+    /// [closed](Canonical::is_closed).
     #[must_use]
     pub fn in_momenta(&self, f: Expr<'g>) -> Expr<'g> {
         let (system, eta) = (self.system(), self.quasi_velocities());

@@ -3,6 +3,7 @@
 use pc_expr::{Expr, Graph};
 
 use crate::canonical::Canonical;
+use crate::compiled::ldl::Factors;
 use crate::poincare::Equations;
 use crate::system::System;
 
@@ -27,7 +28,8 @@ impl Conservation<'_> {
 /// The derivative along the motion, df/dt = ∂f/∂t + ẋ_i ∂f/∂x_i + η̇_s ∂f/∂η_s, or with y_s in place of η_s.
 ///
 /// Of [`Equations`] for functions of (t, x, η, η̇), nonholonomic ones included, and of [`Canonical`]
-/// equations for functions of (t, x, y).
+/// equations for functions of (t, x, y). Where these are not [closed](Canonical::is_closed), the functions may
+/// contain η too, and the rates are in (t, x, η).
 #[derive(Clone, Debug)]
 pub struct Rates<'g> {
     pub(crate) graph: &'g Graph,
@@ -38,6 +40,8 @@ pub struct Rates<'g> {
     parameters: Vec<(Expr<'g>, Expr<'g>)>,
     /// The symbols of η̇ with their expressions in (t, x, η).
     accelerations: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The symbols of y with their expressions in (t, x, η), where these are not solved for η.
+    momenta: Vec<(Expr<'g>, Expr<'g>)>,
     /// Each symbol that changes, with its rate.
     pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
 }
@@ -47,14 +51,37 @@ impl<'g> Equations<'g> {
     pub fn rates(&self) -> Rates<'g> {
         let (system, accelerations) = (self.system(), self.accelerations());
         let symbols = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
-        Rates::new(system, system.quasi_velocities(), self.velocities(), &accelerations, symbols)
+        let rates = Rates::new(system, system.quasi_velocities(), self.velocities(), &accelerations);
+        Rates { accelerations: symbols, ..rates }
     }
 }
 
 impl<'g> Canonical<'g> {
     /// The derivative along the motion of functions of (t, x, y).
     pub fn rates(&self) -> Rates<'g> {
-        Rates::new(self.system(), self.momenta(), self.velocities(), self.right_hand_side(), Vec::new())
+        let system = self.system();
+        let mut rates = Rates::new(system, self.momenta(), self.velocities(), self.right_hand_side());
+        if !self.is_closed() {
+            rates.flow.extend(system.quasi_velocities().iter().copied().zip(self.accelerations()));
+            rates.momenta = self.values_of_momenta();
+        }
+        rates
+    }
+
+    fn values_of_momenta(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.momenta().iter().copied().zip(self.momenta_of_velocities().iter().copied()).collect()
+    }
+
+    /// η̇ in terms of (t, x, η), from ẏ = ∂p/∂t + ∂p/∂x ẋ + M η̇ with p = ∂L/∂η.
+    fn accelerations(&self) -> Vec<Expr<'g>> {
+        let (system, graph) = (self.system(), self.system().graph());
+        let x = system.frame().coordinates().iter().copied().zip(self.velocities().iter().copied());
+        let along: Vec<_> = x.chain([(system.frame().time(), Expr::ONE)]).collect();
+        let transport = graph.directional(self.momenta_of_velocities(), &along);
+        let rates = graph.substitute(self.right_hand_side(), &self.values_of_momenta());
+        let right: Vec<Expr<'g>> =
+            rates.iter().zip(transport).map(|(&rate, transport)| rate - transport).collect();
+        Factors::of(graph, &self.legendre.mass).solve(graph, &right)
     }
 }
 
@@ -64,7 +91,6 @@ impl<'g> Rates<'g> {
         moving: &[Expr<'g>],
         velocities: &[Expr<'g>],
         right: &[Expr<'g>],
-        accelerations: Vec<(Expr<'g>, Expr<'g>)>,
     ) -> Rates<'g> {
         let (time, x) = (system.frame().time(), system.frame().coordinates());
         let state = x.iter().chain(moving).copied();
@@ -75,7 +101,8 @@ impl<'g> Rates<'g> {
             coordinates: x.to_vec(),
             moving: moving.to_vec(),
             parameters: system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect(),
-            accelerations,
+            accelerations: Vec::new(),
+            momenta: Vec::new(),
             flow: flow.collect(),
         }
     }
@@ -88,7 +115,7 @@ impl<'g> Rates<'g> {
     /// The rates of several functions, as many as these.
     pub fn of_all(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let functions = self.graph.substitute(functions, &self.accelerations);
-        self.graph.directional(&functions, &self.flow)
+        self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)
     }
 
     /// Whether the motion keeps f constant. [`Conservation::Changing`] is no proof of the contrary where the
@@ -113,6 +140,7 @@ impl<'g> Rates<'g> {
         Rates {
             flow: bind(&self.flow),
             accelerations: bind(&self.accelerations),
+            momenta: bind(&self.momenta),
             parameters: Vec::new(),
             ..self.clone()
         }

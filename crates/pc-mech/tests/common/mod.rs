@@ -2,7 +2,9 @@
 
 #![allow(dead_code, reason = "no file uses all of them")]
 
-use pc_mech::{Expr, Graph, LieAlgebra, System, SystemBuilder};
+use pc_mech::{
+    Canonical, CompileOptions, Expr, Graph, LieAlgebra, Motion, System, SystemBuilder, VectorField,
+};
 
 /// A heavy top in Poisson's variables γ, with its moments of inertia and the weight times the place of its centre.
 pub(crate) fn top<'g, E>(graph: &'g Graph, inertia: [E; 3], m: [E; 3]) -> SystemBuilder<'g>
@@ -47,4 +49,21 @@ pub(crate) fn driven(graph: &Graph) -> SystemBuilder<'_> {
     System::builder(graph).coordinates(["x", "y"]).quasi_velocities(["u", "v"]).kinematics(|t, x, eta| {
         [eta[0] * (1.0 + t.square()) + t * x[1], eta[1] * x[0] - t * eta[0] + x[0].square()]
     })
+}
+
+/// Canonical equations with all their derivatives.
+pub(crate) fn compiled(canonical: &Canonical<'_>) -> Motion {
+    canonical.compile_for(CompileOptions::default().jvp(true).parameter_jacobian(true)).unwrap()
+}
+
+/// ẏ at (t, y).
+pub(crate) fn rates(motion: &mut Motion, t: f64, y: &[f64]) -> Vec<f64> {
+    let mut ydot = vec![f64::NAN; y.len()];
+    motion.rhs(t, y, &mut ydot).unwrap();
+    ydot
+}
+
+/// Numbers that look random, between −1 and 1.
+pub(crate) fn some(i: u32, j: u32) -> f64 {
+    (f64::from(i * 7 + j * 13) * 0.618).sin()
 }
