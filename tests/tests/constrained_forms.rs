@@ -161,7 +161,7 @@ fn the_canonical_form_gives_equations_30() {
         let graph = Graph::new();
         let case = Case::new(described, &graph);
         let canonical = case.constrained.free_system().unwrap().canonical().unwrap();
-        let momenta = canonical.momenta_of_velocities();
+        let momenta = canonical.momenta_of_velocities().to_vec();
         let expected = case.rates(&momenta);
         let known: Vec<_> = canonical.momenta().iter().copied().zip(momenta).collect();
         let found = graph.substitute(canonical.right_hand_side(), &known);
