@@ -60,7 +60,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     let (_, equations) = input::derive(&model, &graph)?;
     let system = equations.system();
     let rates = kinematics(system, equations.velocities());
-    for line in rates.iter().chain(&brackets(system)[..3]).chain(&balance(&equations)) {
+    for line in rates.iter().chain(&brackets(system, &[])[..3]).chain(&balance(&equations)) {
         println!("  {line}");
     }
 

@@ -44,6 +44,9 @@ pub struct ModelArguments {
     /// Give a parameter another value than that of the file (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
+    /// Move the start to where the constraints are satisfied, by the shortest way in the kinetic metric
+    #[arg(long)]
+    pub project_start: bool,
 }
 
 /// `NAME=VALUE`, the value as written.
@@ -72,7 +75,8 @@ pub struct DeriveArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Form of the equations: poincare, canonical (in momenta) or lagrange (in velocities)
+    /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
+    /// are constraints) or voronets (constraints solved for velocities)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = form)]
     pub form: Form,
     /// How to print
@@ -172,6 +176,8 @@ pub enum Form {
     Canonical,
     /// Equations for the velocities.
     Lagrange,
+    /// Equations for independent velocities.
+    Voronets,
 }
 
 /// Form of the equations that are integrated.
@@ -193,7 +199,7 @@ pub enum Method {
 }
 
 fn form(text: &str) -> Result<Form, String> {
-    choice(text, &["voronets"])
+    choice(text, &[])
 }
 
 fn run_form(text: &str) -> Result<RunForm, String> {

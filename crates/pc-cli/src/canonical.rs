@@ -17,7 +17,7 @@ pub fn text(equations: &Canonical<'_>, operations: &Operations) -> String {
     };
     sections(&[
         ("Kinematics", kinematics(system, equations.velocities())),
-        ("Brackets", brackets(system)),
+        ("Brackets", brackets(system, &[])),
         ("Momenta", lines(&momenta(equations, Style::Book))),
         ("Hamiltonian", vec![equations.hamiltonian().display(Style::Book)]),
         ("Equations", lines(&equations.balance(Style::Book))),
@@ -34,7 +34,7 @@ pub fn momenta(equations: &Canonical<'_>, style: Style) -> Vec<(String, String)>
 /// The equations for programs. Where they are not `closed`, there are no `quasi_velocities_of_momenta`, and the
 /// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
 pub fn object(title: &str, equations: &Canonical<'_>, operations: &Operations) -> Value {
-    let mut object = description(title, equations.system());
+    let mut object = description(title, equations.system(), &[]);
     let solved = equations.is_closed().then(|| strings(equations.quasi_velocities()));
     for (key, value) in [
         ("momenta", json!(strings(equations.momenta()))),

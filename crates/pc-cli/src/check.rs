@@ -62,10 +62,10 @@ impl Report {
             Operations::of(equations).map_err(|error| model.derivation_error(MechError::from(error)))?;
         let names = |symbols: &[Expr<'_>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
 
-        let mut motion = model.compile(equations, assembly.t_start, &assembly.start)?;
-        let mut rate = vec![0.0; assembly.start.len()];
+        let (mut motion, start) = model.compile(assembly)?;
+        let mut rate = vec![0.0; start.len()];
         // `compile` has tried the same
-        let evaluated = motion.rhs(assembly.t_start, &assembly.start, &mut rate).is_ok();
+        let evaluated = motion.rhs(assembly.t_start, &start, &mut rate).is_ok();
         let largest_rate = rate.iter().fold(0.0f64, |largest, r| largest.max(r.abs()));
 
         let state = frame.coordinates().iter().chain(system.quasi_velocities()).copied();

@@ -2,7 +2,9 @@
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Cost, ExprError, Inputs, Program};
-use pc_mech::{Canonical, Equations, Expr, Graph, MechError, Style, System};
+use pc_mech::{Canonical, Constraint, Equations, Expr, Graph, MechError, Multipliers, Style, System};
+use pc_model::Assembly;
+use pc_nonholo::{Kind, NonholoError, Voronets};
 use serde_json::{Map, Value, json};
 
 use crate::args::{DeriveArguments, Form, Page};
@@ -19,35 +21,101 @@ use crate::text::{columns, combination, print};
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = Graph::new();
-    let system = model.assemble(&graph)?.system;
+    let assembly = model.assemble(&graph)?;
     let title = input::title(&model);
-    let page = page(arguments, title, &system).map_err(|error| model.derivation_error(error))?;
+    let page = page(arguments, title, &assembly).map_err(|error| model.constraint_error(error))?;
     print(|out| write!(out, "{page}"))
 }
 
 /// The equations in the form and format that are asked for.
-fn page(arguments: &DeriveArguments, title: &str, system: &System<'_>) -> Result<String, MechError> {
-    let (heading, system) = match arguments.form {
-        Form::Poincare => (format!("{title}: Poincaré's equations"), system.clone()),
-        Form::Lagrange => (format!("{title}: Lagrange's equations"), system.in_velocities()?),
-        Form::Canonical => {
-            let equations = system.canonical()?;
-            let operations = Operations::of_canonical(&equations)?;
-            let heading = format!("{title}: canonical equations");
-            return Ok(match arguments.format {
-                Page::Text => underlined(&heading) + &canonical::text(&equations, &operations),
-                Page::Latex => latex::canonical_page(&heading, &equations),
-                Page::Json => format!("{:#}\n", canonical::object(title, &equations, &operations)),
-            });
-        }
-    };
-    let equations = system.poincare()?;
-    let operations = Operations::of(&equations)?;
+fn page(arguments: &DeriveArguments, title: &str, assembly: &Assembly<'_>) -> Result<String, NonholoError> {
+    if arguments.form == Form::Canonical {
+        let equations = assembly.free_system()?.canonical()?;
+        let operations = Operations::of_canonical(&equations).map_err(MechError::from)?;
+        let heading = format!("{title}: canonical equations");
+        return Ok(match arguments.format {
+            Page::Text => underlined(&heading) + &canonical::text(&equations, &operations),
+            Page::Latex => latex::canonical_page(&heading, &equations),
+            Page::Json => format!("{:#}\n", canonical::object(title, &equations, &operations)),
+        });
+    }
+    let (name, derived) = Derived::new(arguments.form, assembly)?;
+    let heading = format!("{title}: {name}");
+    let operations = Operations::of(&derived.equations).map_err(MechError::from)?;
     Ok(match arguments.format {
-        Page::Text => underlined(&heading) + &text(&equations, &operations),
-        Page::Latex => latex::page(&heading, &equations),
-        Page::Json => format!("{:#}\n", object(title, &equations, &operations)),
+        Page::Text => underlined(&heading) + &text(&derived, &operations),
+        Page::Latex => latex::page(&heading, &derived),
+        Page::Json => format!("{:#}\n", object(title, &derived, &operations)),
     })
+}
+
+/// Equations of motion with what belongs to them.
+#[derive(Clone, Debug)]
+pub struct Derived<'g> {
+    /// M η̇ = r of the independent quasi-velocities.
+    pub equations: Equations<'g>,
+    /// The quasi-velocities that constraints keep at zero, over which brackets are summed too.
+    pub vanishing: Vec<Expr<'g>>,
+    /// The constraints with what they do.
+    pub constraints: Vec<(Constraint<'g>, Kind)>,
+    /// The reactions with what they are equal to.
+    pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'g> Derived<'g> {
+    /// The equations in a form, with its name.
+    fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
+        let (bound, system) = (&assembly.bound, &assembly.system);
+        let multipliers = bound.multipliers();
+        let kinds = bound.verdicts().iter().map(|verdict| verdict.kind);
+        let constraints = multipliers.map(Multipliers::constraints).unwrap_or_default();
+        let plain = Derived {
+            equations: assembly.equations()?,
+            vanishing: Vec::new(),
+            constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
+            reactions: Vec::new(),
+        };
+        let with = |equations: Equations<'g>, multipliers: &Multipliers<'g>| Derived {
+            equations,
+            constraints: multipliers.constraints().iter().cloned().zip(kinds.clone()).collect(),
+            ..plain.clone()
+        };
+        Ok(match (form, multipliers) {
+            (Form::Lagrange | Form::Voronets, None) => {
+                ("Lagrange's equations", Derived { equations: system.in_velocities()?.poincare()?, ..plain })
+            }
+            (Form::Lagrange, Some(multipliers)) => {
+                let held = multipliers.in_velocities()?;
+                let system = held.equations().system().with_added_forces(&held.reaction_forces())?;
+                ("Lagrange's equations with multipliers", with(system.poincare()?, &held))
+            }
+            (Form::Voronets, Some(multipliers)) => {
+                let held = multipliers.in_velocities()?;
+                let mut transform = system.velocity_transform()?;
+                let start = transform.to_velocities(assembly.t_start, &assembly.start);
+                let lagrange = held.equations().system();
+                let state = lagrange.frame().coordinates().iter().chain(lagrange.quasi_velocities()).copied();
+                let mut at: Vec<(Expr<'g>, f64)> = state.zip(start).collect();
+                at.push((lagrange.frame().time(), assembly.t_start));
+                let voronets = Voronets::new(&held, &at)?;
+                let name =
+                    if voronets.is_chaplygin() { "Chaplygin's equations" } else { "Voronets' equations" };
+                (name, with(voronets.system()?.poincare()?, &held))
+            }
+            (Form::Poincare | Form::Canonical, _) => {
+                let reduced = bound.constrained(&assembly.at_start())?;
+                let name = "Poincaré's equations";
+                match (reduced, multipliers) {
+                    (Some(constrained), Some(multipliers)) => {
+                        let reactions = multipliers.reactions().iter().copied().zip(constrained.reactions());
+                        let vanishing = constrained.vanishing().to_vec();
+                        (name, Derived { vanishing, reactions: reactions.collect(), ..plain })
+                    }
+                    _ => (name, plain),
+                }
+            }
+        })
+    }
 }
 
 fn underlined(heading: &str) -> String {
@@ -107,16 +175,47 @@ impl Operations {
     }
 }
 
-/// The equations as a book prints them: kinematics, brackets, mass matrix, M η̇ = r, energy, operations.
-pub fn text(equations: &Equations<'_>, operations: &Operations) -> String {
+/// The equations as a book prints them: constraints, kinematics, brackets, mass matrix, M η̇ = r, energy, reactions,
+/// operations.
+pub fn text(derived: &Derived<'_>, operations: &Operations) -> String {
+    let equations = &derived.equations;
+    let reactions: Vec<(String, String)> = derived
+        .reactions
+        .iter()
+        .map(|(reaction, value)| (reaction.display(Style::Book), value.display(Style::Book)))
+        .collect();
     sections(&[
+        ("Constraints", constraints(&derived.constraints)),
         ("Kinematics", kinematics(equations.system(), equations.velocities())),
-        ("Brackets", brackets(equations.system())),
+        ("Brackets", brackets(equations.system(), &derived.vanishing)),
         ("Mass matrix", mass_matrix(equations)),
         ("Equations", balance(equations)),
         ("Energy", vec![equations.energy().display(Style::Book)]),
+        ("Reactions", aligned(reactions.iter().map(|(left, right)| (left, right)))),
         ("Operations of one right-hand side", operations.lines()),
     ])
+}
+
+/// What vanishes, a line a constraint.
+fn constraints(list: &[(Constraint<'_>, Kind)]) -> Vec<String> {
+    let lines = list.iter().map(|(constraint, kind)| {
+        format!(
+            "{}: {} = 0   ({})",
+            constraint.name(),
+            constraint.expression().display(Style::Book),
+            kind_in_words(*kind)
+        )
+    });
+    lines.collect()
+}
+
+/// What a constraint does.
+pub fn kind_in_words(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Position => "holonomic",
+        Kind::Integrable => "holonomic in disguise: integrable",
+        Kind::Nonholonomic { .. } => "nonholonomic",
+    }
 }
 
 /// Titles with the lines under them; those without lines are left out.
@@ -151,22 +250,25 @@ pub fn aligned<'a>(pairs: impl Iterator<Item = (&'a String, &'a String)> + Clone
     pairs.map(|(left, right)| format!("{left:width$} = {right}")).collect()
 }
 
-/// The brackets [X_r, X_s] = c_rs^m X_m that are not zero, by the names of the quasi-velocities, `t` for time.
-pub fn brackets(system: &System<'_>) -> Vec<String> {
+/// The brackets [X_r, X_s] = c_rs^m X_m of the free operators that are not zero, by the names of the quasi-velocities,
+/// `t` for time; they may have components along `vanishing`.
+pub fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<String> {
     let structure = system.structure();
-    let name = operator_names(system.quasi_velocities(), "t");
-    let k = structure.operators();
+    let free = system.quasi_velocities();
+    let all: Vec<String> = free.iter().chain(vanishing).map(Expr::to_string).collect();
+    let name: Vec<String> = std::iter::once("t".to_owned()).chain(all).collect();
     let mut lines = Vec::new();
-    for (r, s) in (0..=k).flat_map(|r| (r + 1..=k).map(move |s| (r, s))) {
+    for (r, s) in (0..=free.len()).flat_map(|r| (r + 1..=free.len()).map(move |s| (r, s))) {
+        let components = 1..=structure.operators().min(name.len() - 1);
         let sum =
-            combination((1..=k).map(|m| (structure.get(r, s, m).display(Style::Book), name[m].clone())));
+            combination(components.map(|m| (structure.get(r, s, m).display(Style::Book), name[m].clone())));
         if sum != "0" {
             lines.push(format!("[{}, {}] = {sum}", name[r], name[s]));
         }
     }
     if lines.is_empty() {
         lines.push("all operators commute".to_owned());
-    } else if let Some(known) = recognised(structure) {
+    } else if let Some(known) = recognised(structure).filter(|_| vanishing.is_empty()) {
         lines.push(format!("the algebra {known}"));
     }
     lines
@@ -232,8 +334,16 @@ pub fn counted(what: &str, cost: &Cost) -> String {
 }
 
 /// The equations for programs.
-pub fn object(title: &str, equations: &Equations<'_>, operations: &Operations) -> Value {
-    let mut object = description(title, equations.system());
+pub fn object(title: &str, derived: &Derived<'_>, operations: &Operations) -> Value {
+    let equations = &derived.equations;
+    let mut object = description(title, equations.system(), &derived.vanishing);
+    if !derived.constraints.is_empty() {
+        let constraints: Vec<Value> = derived.constraints.iter().map(constraint_object).collect();
+        object.insert("constraints".to_owned(), json!(constraints));
+        let reactions =
+            derived.reactions.iter().map(|(name, value)| (name.to_string(), json!(value.to_string())));
+        object.insert("reactions".to_owned(), Value::Object(reactions.collect()));
+    }
     object.insert("mass_matrix".to_owned(), json!(matrix(&equations.mass_matrix().to_rows())));
     object.insert("equations".to_owned(), json!(strings(equations.right_hand_side())));
     object.insert("energy".to_owned(), json!(equations.energy().to_string()));
@@ -241,13 +351,23 @@ pub fn object(title: &str, equations: &Equations<'_>, operations: &Operations) -
     Value::Object(object)
 }
 
+fn constraint_object((constraint, kind): &(Constraint<'_>, Kind)) -> Value {
+    json!({
+        "name": constraint.name(),
+        "expression": constraint.expression().to_string(),
+        "kind": kind_in_words(*kind),
+    })
+}
+
 /// What all forms of the equations have in common.
-pub fn description(title: &str, system: &System<'_>) -> Map<String, Value> {
+pub fn description(title: &str, system: &System<'_>, vanishing: &[Expr<'_>]) -> Map<String, Value> {
     let frame = system.frame();
-    let name = operator_names(system.quasi_velocities(), "0");
+    let name = operator_names(&[system.quasi_velocities(), vanishing].concat(), "0");
+    let free = system.quasi_velocities().len();
     let structure: Vec<Value> = system
         .structure()
         .nonzero()
+        .filter(|&(r, s, m, _)| r <= free && s <= free && m < name.len())
         .map(|(r, s, m, c)| json!({ "r": name[r], "s": name[s], "m": name[m], "value": c.to_string() }))
         .collect();
     let parameters: Map<String, Value> =

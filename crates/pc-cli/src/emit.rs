@@ -26,7 +26,9 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(input::title(&model));
     if let Some(t_end) = &model.document().simulation.t_end {
-        options = options.start(assembly.t_start, &assembly.start, t_end.value);
+        let system = equations.system();
+        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+        options = options.start(assembly.t_start, &assembly.start_of(&state), t_end.value);
     }
     let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
 

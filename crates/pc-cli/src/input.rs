@@ -20,6 +20,7 @@ use crate::error::CliError;
 /// [`CliError`] if it cannot be found, read or understood, or has no such parameter.
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
+    model.project_start(arguments.project_start);
     for Setting { name, value } in &arguments.set {
         match value.parse::<f64>() {
             Ok(value) if value.is_finite() => model.set(name, value)?,
@@ -58,13 +59,13 @@ fn no_such_model(name: &str) -> CliError {
     CliError::NoSuchModel { name: name.to_owned(), nearest }
 }
 
-/// The system of a model and its equations, expressions in `graph`.
+/// The system of a model and its equations in independent quasi-velocities, expressions in `graph`.
 ///
 /// # Errors
 /// [`ModelError`] at the place in the file that is to blame.
 pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equations<'g>), ModelError> {
     let assembly = model.assemble(graph)?;
-    let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
+    let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;
     Ok((assembly, equations))
 }
 

@@ -2,19 +2,28 @@
 
 use std::fmt::Write as _;
 
-use pc_mech::{Canonical, Equations, Expr, Style, System};
+use pc_mech::{Canonical, Expr, Style, System};
 
 use crate::canonical;
+use crate::derive::Derived;
 
 /// One display for each part of Poincaré's equations, with a comment above it.
-pub fn page(heading: &str, equations: &Equations<'_>) -> String {
+pub fn page(heading: &str, derived: &Derived<'_>) -> String {
+    let equations = &derived.equations;
+    let set = |list: &[(Expr<'_>, Expr<'_>)]| -> Vec<(String, String)> {
+        list.iter().map(|(left, right)| (left.display(Style::Latex), right.display(Style::Latex))).collect()
+    };
+    let constraints = derived.constraints.iter();
+    let constraints = constraints.map(|(c, _)| (c.expression().display(Style::Latex), "0".to_owned()));
     displays(
         heading,
         &[
+            ("Constraints", constraints.collect()),
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
-            ("Brackets", brackets(equations.system())),
+            ("Brackets", brackets(equations.system(), &derived.vanishing)),
             ("Equations", equations.balance(Style::Latex)),
             ("Energy", vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
+            ("Reactions", set(&derived.reactions)),
         ],
     )
 }
@@ -25,7 +34,7 @@ pub fn canonical_page(heading: &str, equations: &Canonical<'_>) -> String {
         heading,
         &[
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
-            ("Brackets", brackets(equations.system())),
+            ("Brackets", brackets(equations.system(), &[])),
             ("Momenta", canonical::momenta(equations, Style::Latex)),
             ("Hamiltonian", vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))]),
             ("Equations", equations.balance(Style::Latex)),
@@ -60,16 +69,18 @@ fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<(String, Stri
         .collect()
 }
 
-fn brackets(system: &System<'_>) -> Vec<(String, String)> {
+fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<(String, String)> {
     let structure = system.structure();
     let graph = system.graph();
-    let k = structure.operators();
-    let operator = |s: usize| match s.checked_sub(1).and_then(|s| system.quasi_velocities().get(s)) {
+    let free = system.quasi_velocities().len();
+    let all = [system.quasi_velocities(), vanishing].concat();
+    let k = structure.operators().min(all.len());
+    let operator = |s: usize| match s.checked_sub(1).and_then(|s| all.get(s)) {
         Some(eta) => format!("X_{{{}}}", eta.display(Style::Latex)),
         None => format!("X_{{{s}}}"),
     };
     let mut lines = Vec::new();
-    for (r, s) in (0..=k).flat_map(|r| (r + 1..=k).map(move |s| (r, s))) {
+    for (r, s) in (0..=free).flat_map(|r| (r + 1..=free).map(move |s| (r, s))) {
         // The operators stand in for symbols of a sum, so that signs and brackets are set as in any other.
         let placeholders: Vec<Expr<'_>> = (1..=k).map(|m| graph.symbol(&format!("X_{m}"))).collect();
         let sum = graph.dot((1..=k).map(|m| structure.get(r, s, m)), placeholders.iter().copied());

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use pc_mech::Graph;
 use pc_model::Model;
-use pc_solve::{SolveError, Statistics, solve_observed};
+use pc_solve::{SolveError, Statistics, Trajectory, solve_observed};
 
 use crate::args::{RunArguments, RunForm};
 use crate::error::CliError;
@@ -30,6 +30,8 @@ pub struct Run {
     pub state: Vec<String>,
     /// What was reached.
     pub table: Table,
+    /// The constraints that are held, with the largest residual of each at the output times.
+    pub constraints: Vec<(String, f64)>,
     /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
     pub keeps_energy: bool,
     /// How it ended.
@@ -95,8 +97,8 @@ pub fn integrate(
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
     let graph = Graph::new();
-    let (assembly, equations) = input::derive(model, &graph)?;
-    let mut flow = Flow::new(model, &assembly, &equations, form)?;
+    let assembly = model.assemble(&graph)?;
+    let mut flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
 
     interrupt::catch();
@@ -111,6 +113,7 @@ pub fn integrate(
     let wall = start.elapsed();
     drop(progress);
 
+    let keeps_energy = assembly.free_system().is_ok_and(|system| system.energy_rate().is_zero());
     let (trajectory, ending) = match solved {
         Ok(trajectory) if trajectory.is_complete() => (trajectory, Ending::Completed),
         Ok(trajectory) => (trajectory, Ending::Interrupted),
@@ -121,12 +124,27 @@ pub fn integrate(
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
         table: Table::new(&mut flow, &trajectory),
-        keeps_energy: assembly.system.energy_rate().is_zero(),
+        constraints: residuals(&mut flow, &trajectory),
+        keeps_energy,
         statistics: *trajectory.statistics(),
         plan,
         ending,
         wall,
     })
+}
+
+fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
+    let mut worst: Vec<(String, f64)> =
+        flow.motion.constraint_names().iter().map(|name| (name.clone(), 0.0)).collect();
+    for (t, y) in trajectory.iter() {
+        for ((_, worst), residual) in worst.iter_mut().zip(flow.motion.constraint_residuals(t, y)) {
+            // f64::max would lose a NaN
+            if residual.abs() > *worst || residual.is_nan() {
+                *worst = residual.abs();
+            }
+        }
+    }
+    worst
 }
 
 fn write(run: &Run, destination: &Destination, picture: Option<&Destination>) -> Result<(), CliError> {

@@ -28,6 +28,9 @@ pub fn text(run: &Run) -> String {
     line("time", &[format!("{} to {}, {reached}", short(plan.t_start, 10), short(plan.t_end, 10))]);
     line("work", &[work_done(run)]);
     line("drift", &drifts(run));
+    if !run.constraints.is_empty() {
+        line("held", &held(run));
+    }
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.quasi_velocities().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
@@ -70,6 +73,12 @@ fn drifts(run: &Run) -> Vec<String> {
         format!("{name:width$}  {:<8} {relative}{note}", small(drift.absolute))
     });
     drifts.collect()
+}
+
+fn held(run: &Run) -> Vec<String> {
+    let width = run.constraints.iter().map(|(name, _)| columns(name)).max().unwrap_or(0);
+    let line = |(name, worst): &(String, f64)| format!("{name:width$}  to {}", small(*worst));
+    run.constraints.iter().map(line).collect()
 }
 
 /// The summary for files; the time it took is left out, so that the same run gives the same file.

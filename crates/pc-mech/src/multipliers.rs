@@ -189,6 +189,32 @@ impl<'g> Multipliers<'g> {
         self.constraints.get(constraint).is_some_and(|c| c.is_holonomic(&self.equations.system))
     }
 
+    /// The same in the velocities of the coordinates, η = a ẋ + a_0 (2): Lagrange's equations with multipliers.
+    ///
+    /// # Errors
+    /// As for [`System::in_velocities`].
+    pub fn in_velocities(&self) -> Result<Multipliers<'g>, MechError> {
+        let system = &self.equations.system;
+        let lagrange = system.in_velocities()?;
+        let (graph, (a, a0)) = (system.graph(), system.frame.definitions()?);
+        let definition =
+            |s: usize| graph.dot(a.row(s).iter().copied(), lagrange.quasi_velocities.iter().copied()) + a0[s];
+        let definitions: Vec<(Expr<'g>, Expr<'g>)> =
+            system.quasi_velocities.iter().enumerate().map(|(s, &eta)| (eta, definition(s))).collect();
+        let put = |constraint: &Constraint<'g>| Constraint {
+            name: constraint.name.clone(),
+            expression: graph.substitute(&[constraint.expression], &definitions)[0],
+        };
+        lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
+    }
+
+    /// The forces C_αs λ_α on the quasi-velocities, with the symbols λ, length k.
+    pub fn reaction_forces(&self) -> Vec<Expr<'g>> {
+        let graph = self.equations.system.graph();
+        let on = |s: usize| graph.dot(self.coefficients.column(s), self.reactions.iter().copied());
+        (0..self.coefficients.columns()).map(on).collect()
+    }
+
     /// The same with the reactions as observables, after all others.
     #[must_use]
     pub fn observe_reactions(self) -> Multipliers<'g> {

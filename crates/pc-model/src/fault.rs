@@ -99,6 +99,32 @@ pub enum Fault {
         "the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere"
     )]
     DependentDefinitions,
+    /// A constraint called holonomic that is not.
+    #[error(
+        "the constraint `{constraint}` is not holonomic: velocities it allows lead off every surface (component {residual:.1e})"
+    )]
+    NotHolonomic {
+        /// Its name.
+        constraint: String,
+        /// The largest component along it of the commutators of the velocities allowed.
+        residual: f64,
+    },
+    /// A start that does not satisfy a constraint.
+    #[error("the start is off the constraint `{constraint}`: {what}it is {residual:.6e}, not 0")]
+    OffConstraint {
+        /// Empty, or `the rate of `.
+        what: &'static str,
+        /// Its name.
+        constraint: String,
+        /// Its value at the start.
+        residual: f64,
+    },
+    /// A constraint that cannot be kept.
+    #[error("{message}")]
+    Constraint {
+        /// Why.
+        message: String,
+    },
     /// A catalogue name that does not exist.
     #[error("there is no algebra named `{name}`")]
     UnknownAlgebra {
@@ -239,6 +265,9 @@ impl Fault {
             | Fault::NotClosed { .. }
             | Fault::Contradiction { .. }
             | Fault::Degenerate { .. }
+            | Fault::NotHolonomic { .. }
+            | Fault::OffConstraint { .. }
+            | Fault::Constraint { .. }
             | Fault::NotFinite { .. }
             | Fault::SingularStart { .. }
             | Fault::Derivation { .. } => Category::Inconsistent,
@@ -271,6 +300,11 @@ impl Fault {
             Fault::DefinitionCount { .. } | Fault::DependentDefinitions => {
                 "give as many independent definitions (and constraints) as there are coordinates".into()
             }
+            Fault::NotHolonomic { .. } => "leave its kind out, or write it as a function of coordinates and t".into(),
+            Fault::OffConstraint { .. } => {
+                "give a start that satisfies it, or have it moved there by --project-start".into()
+            }
+            Fault::Constraint { .. } => "check [constraints] and the start".into(),
             Fault::UnknownAlgebra { known, .. } => {
                 format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
             }

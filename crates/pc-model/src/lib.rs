@@ -19,6 +19,8 @@
 //! # Ok::<(), pc_model::ModelError>(())
 //! ```
 
+mod assembly;
+mod bound;
 mod builtin;
 pub mod document;
 pub mod error;
@@ -27,6 +29,7 @@ mod model;
 mod scope;
 pub mod source;
 
+pub use bound::{Bound, Form, Held, Verdict};
 pub use builtin::{BUILTIN, Builtin};
 pub use document::Document;
 pub use error::{Category, Diagnostic, ErrorKind, ModelError};

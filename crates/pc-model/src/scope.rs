@@ -19,6 +19,8 @@ pub(crate) enum Stage {
     Kinematics,
     /// Mass, inertia, place and attitude of a body: coordinates and t.
     Position,
+    /// A constraint: everything but accelerations.
+    Constraint,
     /// The energy or a force: everything but accelerations.
     Dynamics,
     /// Integrals and outputs: everything.
@@ -32,6 +34,7 @@ impl Stage {
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
             Stage::Position => "the mass, inertia, position or rotation of a body",
+            Stage::Constraint => "a constraint",
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Observation => "an integral or output",
         }
@@ -43,7 +46,7 @@ impl Stage {
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position => "parameters, coordinates and t",
-            Stage::Dynamics | Stage::Observation => "declared names",
+            Stage::Constraint | Stage::Dynamics | Stage::Observation => "declared names",
         }
     }
 }
@@ -282,7 +285,7 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
             Stage::Start | Stage::Kinematics | Stage::Position => true,
-            Stage::Definition | Stage::Dynamics | Stage::Observation => false,
+            Stage::Definition | Stage::Constraint | Stage::Dynamics | Stage::Observation => false,
         };
         if refused {
             let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };

@@ -36,6 +36,16 @@ impl<'g> Constrained<'g> {
         Ok(Constrained { system, equations })
     }
 
+    /// The whole system, its free quasi-velocities first.
+    pub fn system(&self) -> &System<'g> {
+        &self.system
+    }
+
+    /// The quasi-velocities that are kept at zero.
+    pub fn vanishing(&self) -> &[Expr<'g>] {
+        &self.system.quasi_velocities()[self.equations.right_hand_side().len()..]
+    }
+
     /// The equations (30) of the free quasi-velocities.
     pub fn equations(&self) -> &Equations<'g> {
         &self.equations

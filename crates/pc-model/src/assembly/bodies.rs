@@ -23,7 +23,7 @@ impl<'g> Assembler<'g, '_> {
         eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Vec<Body<'g>>, ModelError> {
-        self.model.document.bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
+        self.model.document().bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
     }
 
     fn body(

@@ -1,0 +1,275 @@
+//! From a document to a mechanical system.
+
+mod bodies;
+mod brackets;
+mod constraints;
+mod frame;
+
+use pc_mech::{Expr, Graph, System};
+
+use self::bodies::Body;
+use crate::document::NamedExpression;
+use crate::error::{ErrorKind, ModelError};
+use crate::fault::Fault;
+use crate::model::{Assembly, Model};
+use crate::scope::{Scope, Stage, entry};
+
+/// The mechanical system of a model, its expressions in `graph`, and its start state.
+///
+/// # Errors
+/// [`ModelError`] at the place in the file that is to blame.
+pub(crate) fn assemble<'g>(model: &Model, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
+    Assembler { model, graph, scope: Scope::new(graph, model.document()) }.assemble()
+}
+
+struct Assembler<'g, 'm> {
+    model: &'m Model,
+    graph: &'g Graph,
+    scope: Scope<'g, 'm>,
+}
+
+impl<'g> Assembler<'g, '_> {
+    fn assemble(&mut self) -> Result<Assembly<'g>, ModelError> {
+        let document = self.model.document();
+        let parameters: Vec<(Expr<'g>, f64)> =
+            self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
+        let mut start = self.start(&parameters)?;
+        let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let constraints = self.constraints()?;
+        let frame = self.frame(&constraints)?;
+        let mut eta =
+            if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
+        let declared = eta.len();
+        eta.extend(constraints.iter().filter_map(|constraint| constraint.defines()));
+        start.resize(frame.coordinates().len() + eta.len(), 0.0);
+
+        let velocities = frame.velocities(&eta);
+        let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self
+            .scope
+            .velocities()
+            .into_iter()
+            .zip(velocities)
+            .filter(|(symbol, value)| symbol != value)
+            .collect();
+        let lagrangian = self.lagrangian(&x_dot)?;
+        let bodies = self.bodies(&eta, &x_dot)?;
+        let dissipation = self.dissipation(&x_dot)?;
+        let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
+        let integrals = self.observed(&document.integrals, &x_dot)?;
+        let outputs = self.observed(&document.outputs, &x_dot)?;
+
+        let state: Vec<Expr<'g>> = frame.coordinates().iter().chain(&eta).copied().collect();
+        let mut values = parameters.clone();
+        values.push((frame.time(), t_start));
+        values.extend(state.iter().copied().zip(start.iter().copied()));
+        self.check_finite(&values, &x_dot, &state)?;
+
+        let mut builder = System::builder(self.graph)
+            .coordinates(document.coordinates.iter().map(|c| &c.name.text))
+            .quasi_velocities(eta.iter().map(Expr::to_string))
+            .near(values.iter().copied())
+            .lagrangian(|_, _, _| lagrangian)
+            .dissipation(|_, _, _| dissipation)
+            .forces(|_, _, _| forces)
+            .force_on_coordinates(|_, _, _| on_coordinates);
+        for body in bodies {
+            builder = match body {
+                Body::Particle(particle) => builder.particle(|_, _, _| particle),
+                Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
+            };
+        }
+        for (symbol, value) in parameters {
+            builder = builder.parameter(symbol, value);
+        }
+        for (name, value) in integrals {
+            builder = builder.integral(name, |_, _, _| value);
+        }
+        for (name, value) in outputs {
+            builder = builder.output(name, |_, _, _| value);
+        }
+        if let Some(structure) = self.structure(&eta)? {
+            builder = builder.structure(structure);
+        }
+        let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
+        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;
+        Ok(Assembly { system, bound, t_start, start, declared })
+    }
+
+    /// Whether η_s = ẋ_s because no quasi-velocity is declared.
+    fn is_lagrangian_form(&self) -> bool {
+        self.model.document().quasi_velocities.is_empty()
+    }
+
+    fn start(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<Vec<f64>, ModelError> {
+        let document = self.model.document();
+        let mut start = Vec::new();
+        for coordinate in &document.coordinates {
+            start.push(self.start_value(&coordinate.expression, parameters)?);
+        }
+        for quasi_velocity in &document.quasi_velocities {
+            start.push(match &quasi_velocity.start {
+                Some(expression) => self.start_value(expression, parameters)?,
+                None => 0.0,
+            });
+        }
+        for velocity in &document.start_velocities {
+            let name = &velocity.name;
+            if entry(&document.coordinates, &name.text).is_none() {
+                return Err(self.not_a_coordinate(name));
+            }
+            if !self.is_lagrangian_form() {
+                let what = "start velocities of coordinates beside quasi-velocities are";
+                return Err(self.model.error(&name.place, ErrorKind::Unsupported { what }));
+            }
+        }
+        if self.is_lagrangian_form() {
+            for coordinate in &document.coordinates {
+                start.push(match entry(&document.start_velocities, &coordinate.name.text) {
+                    Some(velocity) => self.start_value(&velocity.expression, parameters)?,
+                    None => 0.0,
+                });
+            }
+        }
+        Ok(start)
+    }
+
+    fn start_value(
+        &mut self,
+        expression: &crate::document::Expression,
+        parameters: &[(Expr<'g>, f64)],
+    ) -> Result<f64, ModelError> {
+        let value = self.scope.resolve(expression, Stage::Start)?;
+        let values = self.graph.evaluate(&[value], parameters);
+        let value = values.map_or(f64::NAN, |values| values[0]); // parameters are all there can be in it
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let fault = |text| Fault::NotFinite { text, value, state: Vec::new() };
+        Err(self.scope.error(expression, expression.ast.span, fault))
+    }
+
+    fn not_a_coordinate(&self, name: &crate::document::Name) -> ModelError {
+        let coordinates = self.model.document().coordinates.iter().map(|c| c.name.text.clone()).collect();
+        self.model.error(&name.place, Fault::NotACoordinate { name: name.text.clone(), coordinates })
+    }
+
+    /// T − V of `[lagrangian]`, the whole energy but for that of the bodies.
+    fn lagrangian(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
+        let Some(energy) = &self.model.document().lagrangian else { return Ok(Expr::ZERO) };
+        let mut lagrangian = Expr::ZERO;
+        for (expression, sign) in [(&energy.kinetic, 1), (&energy.potential, -1), (&energy.lagrangian, 1)] {
+            if let Some(expression) = expression {
+                lagrangian += self.dynamic(expression, x_dot)? * sign;
+            }
+        }
+        Ok(lagrangian)
+    }
+
+    fn dissipation(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
+        let energy = self.model.document().lagrangian.as_ref();
+        match energy.and_then(|energy| energy.dissipation.as_ref()) {
+            Some(dissipation) => self.dynamic(dissipation, x_dot),
+            None => Ok(Expr::ZERO),
+        }
+    }
+
+    /// An expression of the dynamics with ẋ = b η + b_0 put in.
+    fn dynamic(
+        &mut self,
+        expression: &crate::document::Expression,
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Expr<'g>, ModelError> {
+        let value = self.scope.resolve(expression, Stage::Dynamics)?;
+        Ok(self.graph.substitute(&[value], x_dot)[0])
+    }
+
+    /// The entries of `[forces]`: Q_s on quasi-velocities, and F_i on coordinates.
+    fn forces(
+        &mut self,
+        operators: usize,
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<(Vec<Expr<'g>>, Vec<Expr<'g>>), ModelError> {
+        let document = self.model.document();
+        let mut on_coordinates = vec![Expr::ZERO; document.coordinates.len()];
+        let mut forces = match self.is_lagrangian_form() {
+            true => on_coordinates.clone(),
+            false => vec![Expr::ZERO; operators],
+        };
+        for force in &document.forces {
+            let name = &force.name;
+            let on_eta = document.quasi_velocities.iter().position(|q| q.name.text == name.text);
+            let on_x = document.coordinates.iter().position(|c| c.name.text == name.text);
+            let value = self.dynamic(&force.expression, x_dot)?;
+            match (on_eta, on_x) {
+                (Some(s), _) => forces[s] += value,
+                (None, Some(i)) => on_coordinates[i] += value,
+                (None, None) => {
+                    let quasi_velocities = document.quasi_velocities.iter().map(|q| q.name.text.clone());
+                    let coordinates = document.coordinates.iter().map(|c| c.name.text.clone());
+                    let known = quasi_velocities.chain(coordinates).collect();
+                    return Err(self
+                        .model
+                        .error(&name.place, Fault::NothingToPush { name: name.text.clone(), known }));
+                }
+            }
+        }
+        Ok((forces, on_coordinates))
+    }
+
+    fn observed(
+        &mut self,
+        list: &[NamedExpression],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Vec<(String, Expr<'g>)>, ModelError> {
+        let mut observed = Vec::new();
+        for item in list {
+            let value = self.scope.resolve(&item.expression, Stage::Observation)?;
+            observed.push((item.name.text.clone(), self.with_velocities(value, x_dot)));
+        }
+        Ok(observed)
+    }
+
+    /// Puts ẋ = b η + b_0 in, and its derivative along the motion for the accelerations x''.
+    fn with_velocities(&self, value: Expr<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+        let graph = self.graph;
+        let eta = self.scope.quasi_velocities();
+        let mut rates: Vec<(Expr<'g>, Expr<'g>)> = x_dot
+            .iter()
+            .filter_map(|(velocity, rate)| {
+                let name = velocity.symbol_name()?;
+                Some((graph.symbol(name.strip_suffix('\'')?), *rate))
+            })
+            .collect();
+        rates.extend(eta.iter().map(|eta| (*eta, graph.symbol(&format!("{eta}'")))));
+        rates.push((graph.symbol("t"), Expr::ONE));
+        let velocities: Vec<Expr<'g>> = x_dot.iter().map(|&(_, rate)| rate).collect();
+        let accelerations = graph.directional(&velocities, &rates);
+        let mut replacements = x_dot.to_vec();
+        for (&(velocity, _), acceleration) in x_dot.iter().zip(accelerations) {
+            replacements.push((graph.symbol(&format!("{velocity}'")), acceleration));
+        }
+        graph.substitute(&[value], &replacements)[0]
+    }
+
+    /// Looks for the first part of the model, as written, that is not a number at the start.
+    fn check_finite(
+        &self,
+        values: &[(Expr<'g>, f64)],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+        state: &[Expr<'g>],
+    ) -> Result<(), ModelError> {
+        for written in &self.scope.written {
+            let value = self.graph.substitute(&[written.value], x_dot);
+            // What contains accelerations has no value yet: it is checked when the motion is computed.
+            let Ok(value) = self.graph.evaluate(&value, values) else { continue };
+            if value[0].is_finite() {
+                continue;
+            }
+            let shown = values.iter().filter(|(symbol, _)| state.contains(symbol));
+            let state = shown.map(|(symbol, value)| (symbol.to_string(), *value)).collect();
+            let fault = Fault::NotFinite { text: written.text.clone(), value: value[0], state };
+            return Err(self.model.error(&written.place, fault));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,136 @@
+//! How constraints bind a system, and its equations of motion under them.
+
+use pc_mech::{Equations, Expr, Multipliers, System};
+use pc_nonholo::{Adapted, Constrained, Kind, NonholoError, Redundant};
+
+/// What a constraint does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Its name.
+    pub constraint: String,
+    /// Its kind.
+    pub kind: Kind,
+}
+
+/// The constraints of a model.
+#[derive(Clone, Debug)]
+pub struct Bound<'g> {
+    form: Form<'g>,
+    multipliers: Option<Multipliers<'g>>,
+    verdicts: Vec<Verdict>,
+    redundant: Vec<Redundant>,
+}
+
+/// How the constraints are kept.
+#[derive(Clone, Debug)]
+pub enum Form<'g> {
+    /// There are none.
+    Free,
+    /// All say that quasi-velocities of the system vanish: equations (30) of the others.
+    Vanishing(Constrained<'g>),
+    /// Any others: multipliers.
+    Held(Box<Held<'g>>),
+}
+
+/// Constraints kept by multipliers.
+#[derive(Clone, Debug)]
+pub struct Held<'g> {
+    /// The equations of all quasi-velocities.
+    pub multipliers: Multipliers<'g>,
+    /// Whether all constraints are integrable.
+    pub holonomic: bool,
+}
+
+impl<'g> Bound<'g> {
+    pub(crate) fn free() -> Bound<'g> {
+        Bound::nothing(Vec::new())
+    }
+
+    /// Constraints that say nothing.
+    pub(crate) fn nothing(redundant: Vec<Redundant>) -> Bound<'g> {
+        Bound { form: Form::Free, multipliers: None, verdicts: Vec::new(), redundant }
+    }
+
+    /// Constraints that bind, kept in some form.
+    pub(crate) fn new(
+        form: Form<'g>,
+        multipliers: Multipliers<'g>,
+        verdicts: Vec<Verdict>,
+        redundant: Vec<Redundant>,
+    ) -> Bound<'g> {
+        Bound { form, multipliers: Some(multipliers), verdicts, redundant }
+    }
+
+    /// The equations with multipliers, unless nothing binds.
+    pub fn multipliers(&self) -> Option<&Multipliers<'g>> {
+        self.multipliers.as_ref()
+    }
+
+    /// How the constraints are kept.
+    pub fn form(&self) -> &Form<'g> {
+        &self.form
+    }
+
+    /// What each constraint that binds does.
+    pub fn verdicts(&self) -> &[Verdict] {
+        &self.verdicts
+    }
+
+    /// The constraints that follow from others and were dropped.
+    pub fn redundant(&self) -> &[Redundant] {
+        &self.redundant
+    }
+
+    /// The system in a frame in which the constraints are that quasi-velocities vanish: that of the model if it is such,
+    /// else the one that is best at the values `at` of time and state. None if there are no constraints, or only
+    /// integrable ones held by multipliers.
+    ///
+    /// # Errors
+    /// [`NonholoError`] if there is no such frame.
+    pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
+        Ok(match &self.form {
+            Form::Free => None,
+            Form::Vanishing(constrained) => Some(constrained.clone()),
+            Form::Held(held) if held.holonomic => None,
+            Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
+        })
+    }
+
+    /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by
+    /// multipliers are for the choice of independent ones that is best at `at`.
+    ///
+    /// # Errors
+    /// [`NonholoError`] if they cannot be derived.
+    pub fn equations(
+        &self,
+        system: &System<'g>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Equations<'g>, NonholoError> {
+        match self.constrained(at)? {
+            Some(constrained) => Ok(constrained.equations().clone()),
+            None => Ok(self.independent(system, at)?.poincare()?),
+        }
+    }
+
+    /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
+    ///
+    /// # Errors
+    /// As for [`equations`](Bound::equations).
+    pub fn free_system(
+        &self,
+        system: &System<'g>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<System<'g>, NonholoError> {
+        match self.constrained(at)? {
+            Some(constrained) => constrained.free_system(),
+            None => self.independent(system, at),
+        }
+    }
+
+    fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {
+        match &self.form {
+            Form::Held(held) => Ok(held.multipliers.in_independent_velocities(at)?),
+            Form::Free | Form::Vanishing(_) => Ok(system.clone()),
+        }
+    }
+}
