@@ -93,6 +93,9 @@ impl<'g> Frame<'g> {
     /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators
     /// 0..k, with the triple it belongs to.
     pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
+        if structure.nonzero().next().is_none() {
+            return 0.0;
+        }
         let k = self.operators();
         let mut worst = 0.0f64;
         for r in 0..=k {

@@ -24,7 +24,7 @@ pub struct Arguments {
 /// What to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Say whether a model holds together: ranks, closure, Jacobi identity, start, integrals
+    /// Say whether a model holds together, what its motion keeps, and whether a steady motion is near
     Check(CheckArguments),
     /// Print the equations of motion
     Derive(DeriveArguments),

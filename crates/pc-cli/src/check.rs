@@ -1,14 +1,21 @@
 //! `pc check`: whether a model holds together.
 
-use pc_mech::{Conservation, Equations, Expr, Graph, MechError, Neighbourhood, Number, System, VectorField};
+mod frame;
+mod integrals;
+mod steady;
+
+use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood, VectorField};
 use pc_model::{Assembly, Model};
 use serde_json::{Value, json};
 
+use self::frame::FrameFacts;
+use self::integrals::Integral;
+use self::steady::Search;
 use crate::args::{CheckArguments, Format};
-use crate::derive::{Operations, counted, recognised};
+use crate::derive::{Operations, counted};
 use crate::error::CliError;
 use crate::input;
-use crate::text::{assignments, columns, combination, labelled, print, short, small, wrapped};
+use crate::text::{assignments, columns, labelled, print, short, small, wrapped};
 
 /// Prints what can be said of a model before it is run.
 ///
@@ -27,7 +34,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
 
 /// What can be said of a model before it is run.
 #[derive(Clone, Debug)]
-struct Report {
+struct Report<'g> {
     title: String,
     coordinates: Vec<String>,
     quasi_velocities: Vec<String>,
@@ -40,22 +47,18 @@ struct Report {
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
-    integrals: Vec<Integral>,
+    frame: FrameFacts,
+    integrals: Vec<Integral<'g>>,
+    steady: Search,
     operations: Operations,
 }
 
-/// A function that may keep its value.
-#[derive(Clone, Debug)]
-struct Integral {
-    name: String,
-    expression: String,
-    /// Where it comes from.
-    how: &'static str,
-    verdict: Verdict,
-}
-
-impl Report {
-    fn new(model: &Model, assembly: &Assembly<'_>, equations: &Equations<'_>) -> Result<Report, CliError> {
+impl<'g> Report<'g> {
+    fn new(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        equations: &Equations<'g>,
+    ) -> Result<Report<'g>, CliError> {
         let system = &assembly.system;
         let (frame, structure, graph) = (system.frame(), system.structure(), system.graph());
         let operations =
@@ -74,26 +77,7 @@ impl Report {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let rates = equations.rates();
-        let verdict = |function| match rates.verdict(function) {
-            Conservation::Conserved => Verdict::Conserved,
-            Conservation::ConservedHere => Verdict::ConservedHere,
-            Conservation::Changing(rate) => {
-                let value = graph.evaluate(&[rate], &near.centre).ok();
-                Verdict::Rate(value.map(|values| values[0]).filter(|value| value.is_finite()))
-            }
-        };
-        let declared = system.integrals().iter().map(|(name, value)| (name.clone(), *value, "declared"));
-        let integrals = declared
-            .chain([("energy".to_owned(), equations.energy(), "energy")])
-            .chain(cyclic_momenta(system))
-            .map(|(name, value, how)| Integral {
-                name,
-                expression: value.to_string(),
-                how,
-                verdict: verdict(value),
-            })
-            .collect();
+        let integrals = integrals::integrals(equations, &near);
         Ok(Report {
             title: input::title(model).to_owned(),
             coordinates: names(frame.coordinates()),
@@ -102,18 +86,13 @@ impl Report {
             given_algebra: model.document().algebra.is_some(),
             closure_residual: frame.closure_residual(structure, &near),
             jacobi_residual: frame.jacobi_residual(structure, &near),
-            algebra: match recognised(structure) {
-                Some(name) => format!("{name}, constant structure coefficients"),
-                None if structure.nonzero().next().is_none() => "commutative".to_owned(),
-                None if structure.are_constant() => {
-                    "constant structure coefficients, not one of the catalogue".to_owned()
-                }
-                None => "none: the structure coefficients depend on the state or on time".to_owned(),
-            },
+            algebra: frame::algebra(structure),
             mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
             t_start: assembly.t_start,
             start: assembly.start.clone(),
             largest_rate: if evaluated { largest_rate } else { f64::NAN },
+            frame: FrameFacts::of(system, &near),
+            steady: steady::steady_motion(assembly, equations, &mut motion, &integrals),
             integrals,
             operations,
         })
@@ -139,10 +118,12 @@ impl Report {
         };
         let names = self.coordinates.iter().chain(&self.quasi_velocities).map(String::as_str);
         let start = assignments(names.zip(self.start.iter().copied()), WIDTH);
-        let entries: [(&str, Vec<String>); 11] = [
+        let rank = [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(self.frame.constraints());
+        let entries: [(&str, Vec<String>); 12] = [
             ("coordinates", counted_names("n", &self.coordinates)),
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
-            ("rank of the frame", vec![format!("{} of {k}, {brackets}", self.rank)]),
+            ("rank of the frame", rank.collect()),
+            ("holonomic", self.frame.holonomic(WIDTH)),
             ("closure", vec![residual(self.closure_residual)]),
             ("Jacobi identity", vec![residual(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
@@ -170,36 +151,27 @@ impl Report {
             text += &labelled(label, LABEL, lines);
         }
         let width = self.integrals.iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
-        let integrals: Vec<String> = self
-            .integrals
-            .iter()
-            .map(|integral| format!("{:width$}  {}", integral.name, integral.verdict.words()))
-            .collect();
-        text + &labelled("integrals", LABEL, &integrals)
+        let mut integrals = Vec::new();
+        for integral in &self.integrals {
+            let lines = (0..).zip(integral.lines());
+            integrals.extend(
+                lines.map(|(i, line)| format!("{:width$}  {line}", if i == 0 { &integral.name } else { "" })),
+            );
+        }
+        text += &labelled("integrals", LABEL, &integrals);
+        text + &labelled("steady motion", LABEL, &self.steady.lines(WIDTH))
     }
 
     fn json(&self) -> Value {
-        let integrals: Vec<Value> = self
-            .integrals
-            .iter()
-            .map(|integral| {
-                let mut object = json!({
-                    "name": integral.name,
-                    "expression": integral.expression,
-                    "how": integral.how,
-                    "verdict": integral.verdict.words(),
-                });
-                if let Verdict::Rate(rate) = integral.verdict {
-                    object["rate_at_start"] = json!(rate);
-                }
-                object
-            })
-            .collect();
+        let integrals: Vec<Value> = self.integrals.iter().map(Integral::object).collect();
+        let (frame_constraints, holonomic) = self.frame.objects();
         json!({
             "model": self.title,
             "coordinates": self.coordinates.len(),
             "quasi_velocities": self.quasi_velocities.len(),
             "rank": self.rank,
+            "frame_constraints": frame_constraints,
+            "holonomic": holonomic,
             "closure_residual": self.closure_residual,
             "constraints": [],
             "jacobi_residual": self.jacobi_residual,
@@ -207,49 +179,7 @@ impl Report {
             "mass_matrix_rank": self.mass_rank,
             "start_residual": 0.0,
             "integrals": integrals,
+            "steady_motion": self.steady.object(),
         })
-    }
-}
-
-/// The momenta of cyclic displacements that are not declared as integrals, for the values of the parameters.
-fn cyclic_momenta<'g>(system: &System<'g>) -> Vec<(String, Expr<'g>, &'static str)> {
-    let bound = system.with_parameters_bound();
-    let is_declared = |momentum: Expr<'g>| {
-        let mut known = bound.integrals().iter().filter(|(_, known)| !known.is_zero());
-        known.any(|&(_, known)| (momentum / known).constant().is_some())
-    };
-    let name = |coefficients: &[Number]| {
-        let names = system.quasi_velocities().iter().map(ToString::to_string);
-        format!("momentum of {}", combination(coefficients.iter().map(ToString::to_string).zip(names)))
-    };
-    bound
-        .cyclic_displacements()
-        .into_iter()
-        .filter(|cyclic| !is_declared(cyclic.momentum))
-        .map(|cyclic| (name(&cyclic.coefficients), cyclic.momentum, "cyclic displacement"))
-        .collect()
-}
-
-/// What is known of the rate of change of a function along the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Verdict {
-    /// It vanishes identically.
-    Conserved,
-    /// It vanishes identically for these values of the parameters.
-    ConservedHere,
-    /// It is not seen to vanish; its value at the start, if it has one.
-    Rate(Option<f64>),
-}
-
-impl Verdict {
-    fn words(self) -> String {
-        match self {
-            Verdict::Conserved => "conserved (proved)".to_owned(),
-            Verdict::ConservedHere => "conserved for these parameters (proved)".to_owned(),
-            Verdict::Rate(Some(rate)) => {
-                format!("not proved to be conserved: changes at the rate {} at the start", short(rate, 4))
-            }
-            Verdict::Rate(None) => "not proved to be conserved".to_owned(),
-        }
     }
 }

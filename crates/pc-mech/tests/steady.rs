@@ -136,6 +136,37 @@ fn a_member_of_a_family_is_found_near_the_guess() {
     assert!(steady.state.iter().zip(guess).all(|(y, guess)| (y - guess).abs() < 0.15), "{:?}", steady.state);
 }
 
+/// In Poisson's variables γ² is part of the state: without it among the equations the iteration leaves γ² = 1,
+/// and finds a steady motion of a heavier top. With γ² and the momentum about the vertical kept the motion is a
+/// rotation about it, C ω_3 being that momentum.
+#[test]
+fn a_steady_motion_is_found_on_a_surface() {
+    let graph = Graph::new();
+    let mut motion = top_in_poisson_variables(&graph).compile().unwrap();
+    let start = [0.36, 0.48, 0.8, 0.1, -0.2, 1.5];
+    let momentum = |y: &[f64]| A * (y[0] * y[3] + y[1] * y[4]) + C * y[2] * y[5];
+    let surface = |y: &[f64]| {
+        let vertical = y[0] * y[0] + y[1] * y[1] + y[2] * y[2] - 1.0;
+        let normals = [
+            [2.0 * y[0], 2.0 * y[1], 2.0 * y[2], 0.0, 0.0, 0.0],
+            [A * y[3], A * y[4], C * y[5], A * y[0], A * y[1], C * y[2]],
+        ];
+        Ok((vec![vertical, momentum(y) - momentum(&start)], Matrix::from_fn(2, 6, |i, j| normals[i][j])))
+    };
+    let options = SteadyOptions::default();
+    let found = motion.steady_motion_on(0.0, &start, &options, surface).unwrap();
+    let [g1, g2, g3, w1, w2, w3] = found.state[..] else { panic!("six components") };
+    // The iteration ends at the rounding of numbers of the size 1; a double root leaves half the digits.
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-7;
+    assert!(close(g1 * g1 + g2 * g2 + g3 * g3, 1.0), "{found:?}");
+    assert!(close(momentum(&found.state), momentum(&start)), "{found:?}");
+    assert!(close(w1 * g2, w2 * g1) && close(w2 * g3, w3 * g2) && close(w3 * g1, w1 * g3), "{found:?}");
+
+    let free = motion.steady_motion(0.0, &start, &options).unwrap();
+    let square: f64 = free.state[..3].iter().map(|g| g * g).sum();
+    assert!((square - 1.0).abs() > 1e-3, "{square}");
+}
+
 /// C² ω_3² = 4 A mgl, from the eigenvalues: unstable below. Near it the real part grows as a square root, so
 /// that the tolerance of the verdict, about 10⁻⁷ |A|, is 10⁻¹³ in ω_3.
 #[test]
@@ -172,6 +203,22 @@ fn the_sleeping_top_is_stable_above_its_threshold() {
     // A λ² + C ω_3 λ + mgl < 0 for the multiplier λ of the momentum
     let lambda = fast.multipliers[1].1;
     assert!(A * lambda * lambda + C * 2.0 * expected * lambda + MGL < 0.0, "{lambda}");
+}
+
+/// Euler's top about its longest axis: H alone has no extremum there, H under the momentum has; the integrals may
+/// be given.
+#[test]
+fn the_second_variation_is_taken_under_given_integrals() {
+    let graph = Graph::new();
+    let top = euler_top(&graph);
+    let state = [2.0, 0.0, 0.0];
+    let declared = top.second_variation(&state).unwrap();
+    assert_eq!(declared.verdict, Verdict::Stable);
+    assert_eq!(top.second_variation_under(top.system().integrals(), &state).unwrap(), declared);
+    assert_eq!(top.second_variation_under(&[], &state).unwrap().verdict, Verdict::Undecided);
+    let changing = [("ω1".to_owned(), graph.symbol("ω1"))];
+    let refused = top.second_variation_under(&changing, &state);
+    assert!(matches!(refused, Err(MechError::NotConserved { name }) if name == "ω1"));
 }
 
 #[test]

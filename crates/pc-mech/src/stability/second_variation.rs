@@ -59,14 +59,26 @@ impl<'g> Equations<'g> {
     /// [`MechError::NotConserved`] if H or an integral changes along motions or depends on the time;
     /// [`MechError::Shape`]; [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol).
     pub fn second_variation(&self, state: &[f64]) -> Result<SecondVariation, MechError> {
+        self.second_variation_under(self.system().integrals(), state)
+    }
+
+    /// The same under the given integrals with their names, functions of (x, η) and parameters.
+    ///
+    /// # Errors
+    /// As [`second_variation`](Equations::second_variation).
+    pub fn second_variation_under(
+        &self,
+        integrals: &[(String, Expr<'g>)],
+        state: &[f64],
+    ) -> Result<SecondVariation, MechError> {
         let system = self.system();
         let symbols: Vec<Expr<'g>> =
             system.frame().coordinates().iter().chain(system.quasi_velocities()).copied().collect();
         check_length("the state", state, symbols.len())?;
-        self.check_conserved(&symbols)?;
+        self.check_conserved(integrals, &symbols)?;
 
         let functions: Vec<Expr<'g>> =
-            [self.energy()].into_iter().chain(system.integrals().iter().map(|&(_, f)| f)).collect();
+            [self.energy()].into_iter().chain(integrals.iter().map(|&(_, f)| f)).collect();
         let variables: Vec<Expr<'g>> =
             symbols.iter().copied().filter(|&y| functions.iter().any(|f| f.depends_on(y))).collect();
         let values: Vec<(Expr<'g>, f64)> = symbols
@@ -77,20 +89,24 @@ impl<'g> Equations<'g> {
             .collect();
         let expansions: Vec<Expansion> =
             functions.iter().map(|&f| self.expand(f, &variables, &values)).collect::<Result<_, _>>()?;
-        let names = system.integrals().iter().map(|(name, _)| name.clone());
+        let names = integrals.iter().map(|(name, _)| name.clone());
         let mut result = decide(&expansions)?;
         result.variables = variables.iter().map(Expr::to_string).collect();
         result.multipliers = names.zip(result.multipliers).map(|(name, (_, value))| (name, value)).collect();
         Ok(result)
     }
 
-    fn check_conserved(&self, symbols: &[Expr<'g>]) -> Result<(), MechError> {
+    fn check_conserved(
+        &self,
+        integrals: &[(String, Expr<'g>)],
+        symbols: &[Expr<'g>],
+    ) -> Result<(), MechError> {
         let (system, graph) = (self.system(), self.system().graph());
         let accelerations = self.accelerations();
         let rates = self.velocities().iter().chain(&accelerations).copied();
         let along: Vec<_> = symbols.iter().copied().zip(rates).collect();
         let energy = ("energy".to_owned(), self.energy());
-        for (name, function) in [&energy].into_iter().chain(system.integrals()) {
+        for (name, function) in [&energy].into_iter().chain(integrals) {
             let rate = graph.directional(&[*function], &along)[0];
             let drift = function.derivative(system.frame().time());
             if graph.generic_rank(&[vec![rate], vec![drift]]) > 0 {

@@ -128,6 +128,24 @@ impl Motion {
         guess: &[f64],
         options: &SteadyOptions,
     ) -> Result<SteadyMotion, MechError> {
+        let size = self.dim();
+        self.steady_motion_on(t, guess, options, |_| Ok((Vec::new(), Matrix::from_fn(0, size, |_, _| 0.0))))
+    }
+
+    /// The same among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
+    ///
+    /// `surface` answers g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
+    /// functions g that the motion keeps leave steady motions steady.
+    ///
+    /// # Errors
+    /// As [`steady_motion`](Motion::steady_motion), and those of `surface`.
+    pub fn steady_motion_on(
+        &mut self,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+        mut surface: impl FnMut(&[f64]) -> Result<(Vec<f64>, Matrix<f64>), MechError>,
+    ) -> Result<SteadyMotion, MechError> {
         check_length("the guess", guess, self.dim())?;
         let cyclic = self.cyclic(options.cyclic.as_deref())?;
         let fixed = self.components(&options.fixed)?;
@@ -141,13 +159,18 @@ impl Motion {
                 state[j] = value;
             }
             let rates = self.rates(t, &state)?;
-            let slopes = self.linearised(t, &state)?;
-            Ok((kept.iter().map(|&i| rates[i]).collect(), part(&slopes, &kept, &free)))
+            let slopes = part(&self.linearised(t, &state)?, &kept, &free);
+            let (distances, normals) = surface(&state)?;
+            let values = kept.iter().map(|&i| rates[i]).chain(distances).collect();
+            let on_surface = |i: usize, j: usize| normals[(i - kept.len(), free[j])];
+            let rows = kept.len() + normals.rows();
+            let entry = |i, j| if i < kept.len() { slopes[(i, j)] } else { on_surface(i, j) };
+            Ok((values, Matrix::from_fn(rows, free.len(), entry)))
         })?;
         for (&j, &value) in free.iter().zip(&end.point) {
             state[j] = value;
         }
-        let residual = crate::numeric::dense::norm(&end.values);
+        let residual = crate::numeric::dense::norm(&end.values[..kept.len()]);
         if !end.is_solution(options.tolerance) {
             let state = self.names().iter().cloned().zip(state).collect();
             return Err(MechError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
