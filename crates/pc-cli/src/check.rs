@@ -4,15 +4,16 @@ mod frame;
 mod integrals;
 mod steady;
 
-use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood, VectorField};
-use pc_model::{Assembly, Model};
+use pc_mech::{Equations, Expr, Graph, MechError, Motion, Neighbourhood, VectorField};
+use pc_model::{Assembly, Form, Model, Verdict};
+use pc_nonholo::Kind;
 use serde_json::{Value, json};
 
 use self::frame::FrameFacts;
 use self::integrals::Integral;
 use self::steady::Search;
 use crate::args::{CheckArguments, Format};
-use crate::derive::{Operations, counted};
+use crate::derive::{Operations, counted, kind_in_words};
 use crate::error::CliError;
 use crate::input;
 use crate::text::{assignments, columns, labelled, print, short, small, wrapped};
@@ -48,6 +49,10 @@ struct Report<'g> {
     start: Vec<f64>,
     largest_rate: f64,
     frame: FrameFacts,
+    /// Each with what it does.
+    constraints: Vec<(String, String)>,
+    verdicts: Vec<Verdict>,
+    start_residual: f64,
     integrals: Vec<Integral<'g>>,
     steady: Search,
     operations: Operations,
@@ -92,7 +97,10 @@ impl<'g> Report<'g> {
             start: assembly.start.clone(),
             largest_rate: if evaluated { largest_rate } else { f64::NAN },
             frame: FrameFacts::of(system, &near),
-            steady: steady::steady_motion(assembly, equations, &mut motion, &integrals),
+            constraints: constraints(assembly),
+            verdicts: assembly.bound.verdicts().to_vec(),
+            start_residual: start_residual(assembly, &near),
+            steady: steady_motion(assembly, equations, motion, &integrals),
             integrals,
             operations,
         })
@@ -127,7 +135,7 @@ impl<'g> Report<'g> {
             ("closure", vec![residual(self.closure_residual)]),
             ("Jacobi identity", vec![residual(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
-            ("constraints", vec!["none".to_owned()]),
+            ("constraints", self.constraint_lines()),
             ("mass matrix", vec![format!("symmetric, rank {} of {k}", self.mass_rank)]),
             ("start", start),
             (
@@ -162,6 +170,13 @@ impl<'g> Report<'g> {
         text + &labelled("steady motion", LABEL, &self.steady.lines(WIDTH))
     }
 
+    fn constraint_lines(&self) -> Vec<String> {
+        match self.constraints.as_slice() {
+            [] => vec!["none".to_owned()],
+            all => all.iter().map(|(name, what)| format!("{name}: {what}")).collect(),
+        }
+    }
+
     fn json(&self) -> Value {
         let integrals: Vec<Value> = self.integrals.iter().map(Integral::object).collect();
         let (frame_constraints, holonomic) = self.frame.objects();
@@ -173,13 +188,73 @@ impl<'g> Report<'g> {
             "frame_constraints": frame_constraints,
             "holonomic": holonomic,
             "closure_residual": self.closure_residual,
-            "constraints": [],
+            "constraints": self.verdicts.iter().map(constraint).collect::<Vec<_>>(),
             "jacobi_residual": self.jacobi_residual,
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,
-            "start_residual": 0.0,
+            "start_residual": self.start_residual,
             "integrals": integrals,
             "steady_motion": self.steady.object(),
         })
     }
+}
+
+/// The steady motion near the start of the equations of a model, of which `motion` is what is integrated.
+fn steady_motion<'g>(
+    assembly: &Assembly<'g>,
+    equations: &Equations<'g>,
+    motion: Motion,
+    integrals: &[Integral<'g>],
+) -> Search {
+    let system = equations.system();
+    let start = assembly.start_of(&[system.frame().coordinates(), system.quasi_velocities()].concat());
+    let Form::Held(held) = assembly.bound.form() else {
+        return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
+    };
+    let Ok(mut independent) = equations.compile() else { return Search::None };
+    let constraints = held.multipliers.constraints().iter();
+    let positions: Vec<(String, Expr<'g>)> = constraints
+        .filter(|constraint| constraint.is_holonomic(&assembly.system))
+        .map(|constraint| (constraint.name().to_owned(), constraint.expression()))
+        .collect();
+    steady::steady_motion(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
+}
+
+/// The constraints, those dropped at the end, each with what it does.
+fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
+    let binding = assembly.bound.verdicts().iter().map(|verdict| {
+        let words = kind_in_words(verdict.kind);
+        let words = match verdict.kind {
+            Kind::Nonholonomic { residual } => format!("{words}, by {} in a bracket", short(residual, 3)),
+            Kind::Position | Kind::Integrable => words.to_owned(),
+        };
+        (verdict.constraint.clone(), words)
+    });
+    let redundant = assembly.bound.redundant().iter().map(|redundant| {
+        let of = match redundant.follows_from.as_slice() {
+            [] => "says nothing".to_owned(),
+            names => format!("follows from {}", names.join(", ")),
+        };
+        (redundant.constraint.clone(), format!("{of}; dropped"))
+    });
+    let all: Vec<_> = binding.chain(redundant).collect();
+    all
+}
+
+fn constraint(verdict: &Verdict) -> Value {
+    let residual = match verdict.kind {
+        Kind::Nonholonomic { residual } => residual,
+        Kind::Position | Kind::Integrable => 0.0,
+    };
+    json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
+}
+
+/// The largest value at the start of what should vanish.
+fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
+    let Some(multipliers) = assembly.bound.multipliers() else { return 0.0 };
+    let graph = assembly.system.graph();
+    let value = |x: Expr<'_>| graph.evaluate(&[x], &near.centre).map_or(f64::NAN, |values| values[0]);
+    let constraints = multipliers.constraints().iter();
+    let both = constraints.flat_map(|c| [c.expression(), c.velocity(&assembly.system)]);
+    both.map(|x| value(x).abs()).fold(0.0, f64::max)
 }

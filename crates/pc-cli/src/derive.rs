@@ -58,6 +58,8 @@ pub struct Derived<'g> {
     pub vanishing: Vec<Expr<'g>>,
     /// The constraints with what they do.
     pub constraints: Vec<(Constraint<'g>, Kind)>,
+    /// What the quasi-velocities that vanish are in velocities, where that is known.
+    pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
     /// The reactions with what they are equal to.
     pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
 }
@@ -73,6 +75,7 @@ impl<'g> Derived<'g> {
             equations: assembly.equations()?,
             vanishing: Vec::new(),
             constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
+            definitions: Vec::new(),
             reactions: Vec::new(),
         };
         let with = |equations: Equations<'g>, multipliers: &Multipliers<'g>| Derived {
@@ -109,7 +112,11 @@ impl<'g> Derived<'g> {
                     (Some(constrained), Some(multipliers)) => {
                         let reactions = multipliers.reactions().iter().copied().zip(constrained.reactions());
                         let vanishing = constrained.vanishing().to_vec();
-                        (name, Derived { vanishing, reactions: reactions.collect(), ..plain })
+                        let in_velocities = multipliers.in_velocities().ok();
+                        let velocities = in_velocities.iter().flat_map(|held| held.velocities().to_vec());
+                        let definitions = multipliers.constraints().iter().map(Constraint::expression);
+                        let definitions = definitions.zip(velocities).collect();
+                        (name, Derived { vanishing, reactions: reactions.collect(), definitions, ..plain })
                     }
                     _ => (name, plain),
                 }
@@ -160,11 +167,11 @@ impl Operations {
         rates: &[Expr<'g>],
     ) -> Result<Operations, ExprError> {
         let graph = system.graph();
-        let inputs = Inputs {
-            time: Some(system.frame().time()),
-            state: system.frame().coordinates().iter().chain(moving).copied().collect(),
-            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
-        };
+        let time = system.frame().time();
+        let state: Vec<Expr<'g>> = system.frame().coordinates().iter().chain(moving).copied().collect();
+        // Parameters, and what else stands in the equations: external forces, reactions.
+        let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
+        let inputs = Inputs { time: Some(time), parameters: others.collect(), state };
         let numbers: Vec<_> =
             system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect();
         let bound = graph.substitute(rates, &numbers);
@@ -185,7 +192,7 @@ pub fn text(derived: &Derived<'_>, operations: &Operations) -> String {
         .map(|(reaction, value)| (reaction.display(Style::Book), value.display(Style::Book)))
         .collect();
     sections(&[
-        ("Constraints", constraints(&derived.constraints)),
+        ("Constraints", constraints(derived)),
         ("Kinematics", kinematics(equations.system(), equations.velocities())),
         ("Brackets", brackets(equations.system(), &derived.vanishing)),
         ("Mass matrix", mass_matrix(equations)),
@@ -197,16 +204,22 @@ pub fn text(derived: &Derived<'_>, operations: &Operations) -> String {
 }
 
 /// What vanishes, a line a constraint.
-fn constraints(list: &[(Constraint<'_>, Kind)]) -> Vec<String> {
-    let lines = list.iter().map(|(constraint, kind)| {
-        format!(
-            "{}: {} = 0   ({})",
-            constraint.name(),
-            constraint.expression().display(Style::Book),
-            kind_in_words(*kind)
-        )
+fn constraints(derived: &Derived<'_>) -> Vec<String> {
+    let lines = derived.constraints.iter().map(|(constraint, kind)| {
+        let (left, kind) = (derived.vanishing(constraint, Style::Book), kind_in_words(*kind));
+        format!("{}: {left} = 0   ({kind})", constraint.name())
     });
     lines.collect()
+}
+
+impl<'g> Derived<'g> {
+    /// The left-hand side of a constraint, written out if it is a quasi-velocity.
+    pub fn vanishing(&self, constraint: &Constraint<'g>, style: Style) -> String {
+        let expression = constraint.expression();
+        let known =
+            self.definitions.iter().find(|(eta, _)| *eta == expression && self.vanishing.contains(eta));
+        known.map_or(expression, |&(_, definition)| definition).display(style)
+    }
 }
 
 /// What a constraint does.
@@ -228,14 +241,13 @@ pub fn sections(parts: &[(&str, Vec<String>)]) -> String {
     written.join("\n")
 }
 
-/// ẋ_i = `velocities`, a line each; none where these are the velocities themselves.
+/// ẋ_i = `velocities`, a line each but for those that are quasi-velocities themselves.
 pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
-    let rates: Vec<String> = system.frame().coordinates().iter().map(|x| format!("{x}'")).collect();
-    let velocities: Vec<String> = velocities.iter().map(|v| v.display(Style::Book)).collect();
-    if rates == velocities {
-        return Vec::new();
-    }
-    aligned(rates.iter().zip(&velocities))
+    let rates = system.frame().coordinates().iter().map(|x| format!("{x}'"));
+    let velocities = velocities.iter().map(|v| v.display(Style::Book));
+    let lines: Vec<(String, String)> =
+        rates.zip(velocities).filter(|(rate, velocity)| rate != velocity).collect();
+    aligned(lines.iter().map(|(rate, velocity)| (rate, velocity)))
 }
 
 /// M η̇ = r, a line an equation.

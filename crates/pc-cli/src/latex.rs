@@ -14,7 +14,7 @@ pub fn page(heading: &str, derived: &Derived<'_>) -> String {
         list.iter().map(|(left, right)| (left.display(Style::Latex), right.display(Style::Latex))).collect()
     };
     let constraints = derived.constraints.iter();
-    let constraints = constraints.map(|(c, _)| (c.expression().display(Style::Latex), "0".to_owned()));
+    let constraints = constraints.map(|(c, _)| (derived.vanishing(c, Style::Latex), "0".to_owned()));
     displays(
         heading,
         &[

@@ -3,7 +3,6 @@
 use pc_mech::{
     Eigenvalue, Equations, Expr, ExprError, Graph, Matrix, Motion, SteadyMotion, SteadyOptions, Verdict,
 };
-use pc_model::Assembly;
 use serde_json::{Map, Value, json};
 
 use super::integrals::{Integral, bind, rank_of_gradients};
@@ -48,13 +47,14 @@ pub(super) enum Search {
     Found(Box<Steady>),
 }
 
-/// The steady motion near the start, among the states in which coordinates that are not independent keep their
-/// relations.
+/// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are not
+/// independent keep their relations; `positions` are those that constraints say.
 pub(super) fn steady_motion<'g>(
-    assembly: &Assembly<'g>,
     equations: &Equations<'g>,
     motion: &mut Motion,
+    (t_start, start): (f64, &[f64]),
     integrals: &[Integral<'g>],
+    positions: &[(String, Expr<'g>)],
 ) -> Search {
     let system = equations.system();
     let (frame, time) = (system.frame(), system.frame().time());
@@ -66,18 +66,26 @@ pub(super) fn steady_motion<'g>(
     if all.any(|&x| bind(system, x).depends_on(time)) {
         return Search::NotAutonomous;
     }
-    let Ok(slopes) = motion.linearised(assembly.t_start, &assembly.start) else { return Search::None };
+    let Ok(slopes) = motion.linearised(t_start, start) else { return Search::None };
     let steepest = MOST_STEEPER * largest(&slopes);
     let known = Known::of(equations, integrals);
     let bound = equations.with_parameters_bound();
     let all = known.integrals.clone();
-    for same in known.choices() {
-        let Some(surface) = Surface::new(equations, &same, &assembly.start) else {
+    for mut same in known.choices() {
+        for (name, position) in positions {
+            let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
+            let more = [functions.as_slice(), &[bind(system, *position)]].concat();
+            if rank_of_gradients(system.graph(), &more, frame.coordinates())
+                > rank_of_gradients(system.graph(), &functions, frame.coordinates())
+            {
+                same.push((name.clone(), bind(system, *position)));
+            }
+        }
+        let Some(surface) = Surface::new(equations, &same, start) else {
             return Search::SurfaceUnknown;
         };
         let options = SteadyOptions::default().iterations(MOST_STEPS);
-        let found =
-            motion.steady_motion_on(assembly.t_start, &assembly.start, &options, |y| Ok(surface.at(y)?));
+        let found = motion.steady_motion_on(t_start, start, &options, |y| Ok(surface.at(y)?));
         let Some(found) = found.ok().filter(|found| largest(&found.first_approximation) <= steepest) else {
             continue;
         };
@@ -88,7 +96,7 @@ pub(super) fn steady_motion<'g>(
         });
         let same = same.into_iter().map(|(name, _)| name).collect();
         let rates = constant_rates(equations, &found);
-        if let Some(steady) = Steady::new(&found, names, &assembly.start, rates, same, second) {
+        if let Some(steady) = Steady::new(&found, names, start, rates, same, second) {
             return Search::Found(Box::new(steady));
         }
     }
@@ -177,7 +185,9 @@ impl<'g> Surface<'g> {
         let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
         let of_coordinates = |f: &Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
         let relations: Vec<Expr<'g>> = functions.iter().copied().filter(of_coordinates).collect();
-        if rank_of_gradients(graph, &relations, x) != x.len() - system.frame().rank() {
+        // Where velocities are bound the frame keeps no function that is not said to be a position.
+        let is_bound = system.structure().operators() != eta.len();
+        if !is_bound && rank_of_gradients(graph, &relations, x) != x.len() - system.frame().rank() {
             return None;
         }
         let slopes = functions.iter().flat_map(|&f| graph.gradient(f, &symbols));
