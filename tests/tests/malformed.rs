@@ -11,8 +11,7 @@ fn start(name: &str, bytes: &[u8]) -> Result<bool, ModelError> {
     let model = Model::new(Document::from_bytes(name, bytes)?);
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
-    let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
-    model.compile(&equations, assembly.t_start, &assembly.start)?;
+    model.compile(&assembly)?;
     Ok(model.document().simulation.t_end.is_some())
 }
 
