@@ -51,7 +51,7 @@ impl<'g> Frame<'g> {
                 .collect();
             match self.residual(&commutator, &c, near) {
                 residual if residual > ROUNDING => Err(AlgebraError::NotClosed { pair: (r, s), residual }),
-                _ => Ok(c),
+                _ => Ok(self.graph().shorten(&c, &[])),
             }
         })
     }

@@ -110,27 +110,55 @@ impl Graph {
         Some(at_zero)
     }
 
-    /// e written without the symbols that it contains but does not depend on: they are put to a regular value.
+    /// e written without the symbols and angles that it contains but does not depend on: they are put to a regular
+    /// value.
     fn forget<'g>(&'g self, e: Expr<'g>) -> Expr<'g> {
         let mut short = e;
         for z in self.repeated_symbols(e) {
-            if !self.symbols_of(&[short]).contains(&z) || short.depends_on(z) {
-                continue;
-            }
-            // A form with a vanishing denominator or another value is not taken: try the next point.
-            for (sin, cos) in [(0, 1), (1, 0)]
-                .map(|(s, c)| (Number::integer(s), Number::integer(c)))
-                .into_iter()
-                .chain([(Number::ratio(3, 5), Number::ratio(4, 5))])
-            {
-                let candidate = self.at_point(short, z, sin, cos);
-                if self.is_same_value(candidate, e) {
-                    short = candidate;
-                    break;
-                }
+            if self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
+                short = self.at_regular_point(short, z, true);
             }
         }
+        for angle in self.composite_angles(short) {
+            short = self.at_regular_point(short, angle, false);
+        }
         short
+    }
+
+    /// e with sin z and cos z at the first point of the circle that does not change its value, and z = 0 too if `whole`;
+    /// e itself if there is none.
+    fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool) -> Expr<'g> {
+        // A form with a vanishing denominator or another value is not taken: try the next point.
+        let points = [(0, 1), (1, 0)].map(|(s, c)| (Number::integer(s), Number::integer(c)));
+        points
+            .into_iter()
+            .chain([(Number::ratio(3, 5), Number::ratio(4, 5))])
+            .map(|(sin, cos)| self.at_point(e, z, whole, sin, cos))
+            .find(|&candidate| self.is_same_value(candidate, e))
+            .unwrap_or(e)
+    }
+
+    /// The angles that are no symbols, of which e contains both sine and cosine: Ω t in sin Ω t and cos Ω t.
+    fn composite_angles<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
+        let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
+        let angles: Vec<NodeId> = self.with(|dag| {
+            let cone = Cone::below(dag, [Atom::Node(root)]);
+            let (mut sines, mut cosines) = (Vec::new(), Vec::new());
+            for &node in &cone.order {
+                if let Node::Call { function, args } = dag.node(node)
+                    && !matches!(dag.node(args[0]), Node::Symbol(_))
+                {
+                    match function {
+                        Function::Sin => sines.push(args[0]),
+                        Function::Cos => cosines.push(args[0]),
+                        _ => {}
+                    }
+                }
+            }
+            sines.retain(|angle| cosines.contains(angle));
+            sines
+        });
+        angles.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
     /// The symbols that occur more than once when e is written out: what occurs once does not cancel.
@@ -154,14 +182,14 @@ impl Graph {
         repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// e with z = 0, sin z and cos z as given.
-    fn at_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, sin: Number, cos: Number) -> Expr<'g> {
-        let (symbol, output) = (z.symbol_in(self), e.atom_in(self));
+    /// e with sin z and cos z as given, and z = 0 if `whole`.
+    fn at_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool, sin: Number, cos: Number) -> Expr<'g> {
+        let (Atom::Node(angle), output) = (z.atom_in(self), e.atom_in(self)) else { return e };
         self.build(|dag| {
             let divisions = dag.zero_divisions().len();
-            let mut replacements = vec![(symbol, Atom::ZERO)];
+            let mut replacements = if whole { vec![(angle, Atom::ZERO)] } else { Vec::new() };
             for (function, value) in [(Function::Sin, sin), (Function::Cos, cos)] {
-                if let Some(node) = call_node(dag, function, symbol) {
+                if let Some(node) = call_node(dag, function, angle) {
                     replacements.push((node, Atom::Constant(value)));
                 }
             }
@@ -254,8 +282,8 @@ impl Dag {
     }
 }
 
-fn call_node(dag: &mut Dag, function: Function, symbol: NodeId) -> Option<NodeId> {
-    match dag.call(function, &[Atom::Node(symbol)]) {
+fn call_node(dag: &mut Dag, function: Function, angle: NodeId) -> Option<NodeId> {
+    match dag.call(function, &[Atom::Node(angle)]) {
         Atom::Node(node) => Some(node),
         Atom::Constant(_) => None,
     }

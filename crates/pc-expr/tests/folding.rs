@@ -374,3 +374,16 @@ proptest! {
         }
     }
 }
+
+/// Ω t is an angle of its own: t stands elsewhere, and Ω t does not matter.
+#[test]
+fn angles_that_are_no_symbols_are_forgotten() {
+    let graph = Graph::new();
+    let [rate, t] = graph.symbols(["Ω", "t"]);
+    let (sin, cos) = ((rate * t).sin(), (rate * t).cos());
+    let growth = 1.0 + t;
+    let both = (cos / growth).square() + (sin / growth).square();
+    assert_eq!(graph.shorten(&[both], &[])[0], growth.powi(-2));
+    let one = (cos / growth).square() + 2.0 * (sin / growth).square();
+    assert_eq!(graph.shorten(&[one], &[])[0], one, "what depends on the angle stays");
+}

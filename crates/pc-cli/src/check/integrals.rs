@@ -276,6 +276,10 @@ impl Verdict<'_> {
         match self {
             Verdict::Conserved => "conserved (proved)".to_owned(),
             Verdict::ConservedHere => "conserved for these parameters (proved)".to_owned(),
+            // Rounding of a rate that is zero there.
+            Verdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
+                "not proved to be conserved, though it does not change at the start".to_owned()
+            }
             Verdict::Rate { at_start: Some(rate), .. } => {
                 format!("not proved to be conserved: changes at the rate {} at the start", short(rate, 4))
             }
