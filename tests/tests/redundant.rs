@@ -81,6 +81,9 @@ fn run(motion: &mut Motion, start: &[f64], method: Method) -> Outcome {
     outcome
 }
 
+/// A function of the state.
+type Function = fn(&[f64]) -> f64;
+
 /// How often a function of the state changes its sign.
 fn crossings(states: &[Vec<f64>], f: impl Fn(&[f64]) -> f64) -> usize {
     states.windows(2).filter(|pair| f(&pair[0]) * f(&pair[1]) < 0.0).count()
@@ -112,7 +115,7 @@ fn a_double_pendulum_goes_right_round() {
         // Both links horizontal, the upper turning at the rate 8, the lower at 2.
         let start = [1.0, 0.0, 1.8, 0.0, 0.0, 8.0, 0.0, 9.6];
         let outcome = run(&mut double(&graph), &start, method);
-        let choices: [(&str, fn(&[f64]) -> f64); 4] =
+        let choices: [(&str, Function); 4] =
             [("x1", |y| y[0]), ("y1", |y| y[1]), ("x2 - x1", |y| y[2] - y[0]), ("y2 - y1", |y| y[3] - y[1])];
         for (name, f) in choices {
             let passed = crossings(&outcome.states, f);

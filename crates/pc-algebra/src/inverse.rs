@@ -42,6 +42,12 @@ pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix
     Some(result)
 }
 
+/// The determinant of a square matrix; `None` for more than four rows, where it is no short expression.
+pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
+    let all: Vec<usize> = (0..matrix.rows()).collect();
+    (all.len() <= COFACTORS && matrix.columns() == all.len()).then(|| minor(graph, matrix, &all, &all))
+}
+
 /// Gauss–Jordan elimination of `left | right`, in whatever order pivots are chosen.
 struct Elimination<'g> {
     graph: &'g Graph,

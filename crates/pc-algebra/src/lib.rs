@@ -117,7 +117,7 @@ pub use group::{
 };
 pub use holonomy::Holonomy;
 pub use integrability::Integrability;
-pub use inverse::inverse;
+pub use inverse::{determinant, inverse};
 pub use lie_algebra::LieAlgebra;
 pub use matrix::Matrix;
 pub use representation::Representation;

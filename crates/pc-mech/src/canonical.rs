@@ -162,6 +162,14 @@ impl<'g> Canonical<'g> {
         &self.quasi_velocities
     }
 
+    /// η_s = ∂H/∂y_s in terms of (t, x, y), length k.
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
+    pub fn closed_quasi_velocities(&self) -> Result<&[Expr<'g>], MechError> {
+        self.check_closed().map(|()| self.quasi_velocities.as_slice())
+    }
+
     /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives by
     /// t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {

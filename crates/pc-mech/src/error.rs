@@ -154,13 +154,12 @@ pub enum MechError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Gyroscopic forces whose matrix is not antisymmetric.
-    #[error(
-        "gyroscopic forces have an antisymmetric matrix; its entries for `{}` and `{}` do not add up to zero",
-        pair[0], pair[1]
-    )]
+    /// A matrix that must be antisymmetric and is not.
+    #[error("{what} is antisymmetric; its entries for `{}` and `{}` do not add up to zero", pair[0], pair[1])]
     NotSkew {
-        /// The quasi-velocities of the entries.
+        /// The matrix.
+        what: &'static str,
+        /// The variables of the entries.
         pair: [String; 2],
     },
     /// A part of a body that depends on velocities.

@@ -41,9 +41,10 @@ impl<'g> Force<'g> {
                 let pairs = (0..k).flat_map(|s| (0..=s).map(move |r| (r, s)));
                 let skew = |(r, s)| graph.generic_rank(&[vec![gamma[(s, r)] + gamma[(r, s)]]]) == 0;
                 match pairs.into_iter().find(|&pair| !skew(pair)) {
-                    Some((r, s)) => {
-                        Err(MechError::NotSkew { pair: [eta[r].to_string(), eta[s].to_string()] })
-                    }
+                    Some((r, s)) => Err(MechError::NotSkew {
+                        what: "the matrix of gyroscopic forces",
+                        pair: [eta[r].to_string(), eta[s].to_string()],
+                    }),
                     None => {
                         Ok((0..k).map(|s| graph.dot(gamma.row(s).to_vec(), eta.iter().copied())).collect())
                     }

@@ -67,7 +67,7 @@ pub use legendre::LegendreTransform;
 pub use multipliers::{Constraint, Multipliers};
 pub use pc_algebra::{
     AlgebraError, EulerAngles, Frame, LieAlgebra, LieGroup, Matrix, Neighbourhood, RotationMatrices,
-    StructureCoefficients, UnitQuaternions,
+    StructureCoefficients, UnitQuaternions, determinant,
 };
 pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,

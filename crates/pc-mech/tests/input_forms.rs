@@ -149,7 +149,10 @@ fn gyroscopic_forces_do_no_work() {
         let matrix = Matrix::from_fn(3, 3, |i, j| if (i, j) == entry { g1 } else { Expr::ZERO });
         common::top_of_parameters(&graph).gyroscopic(|_, _, _| matrix).build().unwrap_err()
     };
-    assert_eq!(refused((2, 0)), MechError::NotSkew { pair: ["ω1".into(), "ω3".into()] });
+    assert_eq!(
+        refused((2, 0)),
+        MechError::NotSkew { what: "the matrix of gyroscopic forces", pair: ["ω1".into(), "ω3".into()] }
+    );
     assert_eq!(
         refused((1, 1)).to_string(),
         "gyroscopic forces have an antisymmetric matrix; its entries for `ω2` and `ω2` do not add up to zero"

@@ -8,6 +8,7 @@ mod frame;
 use pc_mech::{Expr, Graph, System};
 
 use self::bodies::Body;
+use self::constraints::Written;
 use crate::document::NamedExpression;
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
@@ -40,7 +41,7 @@ impl<'g> Assembler<'g, '_> {
         let mut eta =
             if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
         let declared = eta.len();
-        eta.extend(constraints.iter().filter_map(|constraint| constraint.defines()));
+        eta.extend(constraints.iter().filter_map(Written::defines));
         start.resize(frame.coordinates().len() + eta.len(), 0.0);
 
         let velocities = frame.velocities(&eta);

@@ -27,7 +27,7 @@ pub enum Form<'g> {
     /// There are none.
     Free,
     /// All say that quasi-velocities of the system vanish: equations (30) of the others.
-    Vanishing(Constrained<'g>),
+    Vanishing(Box<Constrained<'g>>),
     /// Any others: multipliers.
     Held(Box<Held<'g>>),
 }
@@ -90,7 +90,7 @@ impl<'g> Bound<'g> {
     pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
         Ok(match &self.form {
             Form::Free => None,
-            Form::Vanishing(constrained) => Some(constrained.clone()),
+            Form::Vanishing(constrained) => Some((**constrained).clone()),
             Form::Held(held) if held.holonomic => None,
             Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
         })

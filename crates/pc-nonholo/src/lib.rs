@@ -31,13 +31,16 @@
 //! ```
 
 mod adapted;
+mod almost_poisson;
 mod constrained;
 mod error;
+mod measure;
 mod sorted;
 mod voronets;
 
 pub use adapted::Adapted;
 pub use constrained::Constrained;
 pub use error::NonholoError;
+pub use measure::InvariantMeasure;
 pub use sorted::{Kind, Redundant, Sorted};
 pub use voronets::Voronets;

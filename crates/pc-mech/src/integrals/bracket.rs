@@ -4,6 +4,7 @@ use pc_algebra::{Frame, LieAlgebra, Matrix, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
 use crate::canonical::Canonical;
+use crate::error::{MechError, shape};
 use crate::integrals::polynomials::independent;
 use crate::system::System;
 
@@ -129,6 +130,40 @@ impl<'g> PoissonBracket<'g> {
             (0..k).map(|m| Expr::from(algebra.constant(r, s, m)) * y[m]).sum()
         };
         PoissonBracket { graph, tensor: Matrix::from_fn(k, k, entry), variables: y, time_momentum: None }
+    }
+
+    /// The bracket with (z_i, z_j) = `tensor`_ij of the variables z, whether or not it satisfies Jacobi's identity.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`] if the tensor is not square with a row a variable; [`MechError::NotSkew`].
+    pub fn of_tensor(
+        graph: &'g Graph,
+        variables: Vec<Expr<'g>>,
+        tensor: Matrix<Expr<'g>>,
+    ) -> Result<PoissonBracket<'g>, MechError> {
+        let size = variables.len();
+        shape("the rows of the tensor", tensor.rows(), size)?;
+        shape("the columns of the tensor", tensor.columns(), size)?;
+        let mut pairs = (0..size).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        match pairs.find(|&(i, j)| !(tensor[(i, j)] + tensor[(j, i)]).is_zero()) {
+            Some((i, j)) => {
+                let pair = [i, j].map(|z| variables[z].to_string());
+                Err(MechError::NotSkew { what: "a Poisson tensor", pair })
+            }
+            None => Ok(PoissonBracket { graph, variables, tensor, time_momentum: None }),
+        }
+    }
+
+    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect.
+    pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
+        let z = &self.variables;
+        let triples = (0..z.len())
+            .flat_map(|i| (i + 1..z.len()).flat_map(move |j| (j + 1..z.len()).map(move |k| [i, j, k])));
+        let mut defects = triples.map(|triple| {
+            let [f, g, h] = triple.map(|i| z[i]);
+            ([f, g, h], self.jacobi_defect(f, g, h))
+        });
+        defects.find(|(_, defect)| !defect.is_zero())
     }
 
     /// The graph of all its expressions.

@@ -110,7 +110,9 @@ impl<'g> Assembler<'g, '_> {
         let redundant = sorted.redundant().to_vec();
         let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
         let form = match vanishing {
-            Some(eta) => Form::Vanishing(Constrained::new(system, &eta).map_err(|error| self.blame(error))?),
+            Some(eta) => {
+                Form::Vanishing(Box::new(Constrained::new(system, &eta).map_err(|error| self.blame(error))?))
+            }
             None => {
                 let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
                 Form::Held(Box::new(held))

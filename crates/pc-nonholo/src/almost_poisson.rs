@@ -1,0 +1,68 @@
+//! The bracket that nonholonomic constraints leave.
+
+use pc_mech::{Expr, Matrix, PoissonBracket};
+
+use crate::constrained::Constrained;
+use crate::error::NonholoError;
+
+impl<'g> Constrained<'g> {
+    /// The almost-Poisson bracket of coordinates and momenta y_s = ∂θ/∂η_s of the free quasi-velocities,
+    ///
+    ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + (c_rs^m y_m + c_rs^α (∂L/∂η_α)_0) ∂f/∂y_s ∂g/∂y_r,   r, s, m ≤ l,
+    ///
+    /// the (∂L/∂η_α)_0 as functions of (x, y). It is skew and generates the motion (34) of a stationary system without
+    /// forces, ẋ_i = (x_i, H), ẏ_s = (y_s, H); Jacobi's identity holds if and only if the constraints are integrable
+    /// [van der Schaft, Maschke, Rep. Math. Phys. 34 (1994) 225], which
+    /// [`jacobi_violation`](PoissonBracket::jacobi_violation) tells.
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if H has no closed form.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System};
+    /// use pc_nonholo::Adapted;
+    ///
+    /// // The particle with ż = y ẋ.
+    /// let graph = Graph::new();
+    /// let [y, vx, vz] = graph.symbols(["y", "x'", "z'"]);
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x", "y", "z"])
+    ///     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+    ///     .build()?;
+    /// let held = particle.with_multipliers(&[Constraint::new("knife", vz - y * vx)])?;
+    /// let at: Vec<_> = ["x", "y", "z", "x'", "y'", "z'", "t"].map(|name| (graph.symbol(name), 0.5)).into();
+    /// let constrained = Adapted::new(&held, &at)?.constrained()?;
+    /// let bracket = constrained.almost_poisson_bracket()?;
+    /// assert!(bracket.jacobi_violation().is_some());
+    /// # Ok::<(), pc_nonholo::NonholoError>(())
+    /// ```
+    pub fn almost_poisson_bracket(&self) -> Result<PoissonBracket<'g>, NonholoError> {
+        let (system, graph) = (self.free_system()?, self.system().graph());
+        let canonical = system.canonical()?;
+        let dropped = self.dropped_momenta(canonical.closed_quasi_velocities()?);
+        let (n, l) = (system.frame().coordinates().len(), dropped.1);
+        let structure = self.system().structure();
+        let plain = system.bracket();
+        let more = |s: usize, r: usize| {
+            graph.dot(
+                (0..dropped.0.len()).map(|a| structure.get(r + 1, s + 1, l + a + 1)),
+                dropped.0.iter().copied(),
+            )
+        };
+        let tensor = Matrix::from_fn(n + l, n + l, |i, j| {
+            let known = plain.tensor()[(i, j)];
+            if i < n || j < n { known } else { known + more(i - n, j - n) }
+        });
+        Ok(PoissonBracket::of_tensor(graph, plain.variables().to_vec(), tensor)?)
+    }
+
+    /// (∂L/∂η_α)_0 with the free quasi-velocities put in, and the number of these.
+    fn dropped_momenta(&self, free: &[Expr<'g>]) -> (Vec<Expr<'g>>, usize) {
+        let (system, l) = (self.system(), free.len());
+        let eta = system.quasi_velocities();
+        let known: Vec<_> = eta[..l].iter().copied().zip(free.iter().copied()).collect();
+        let zeros = eta[l..].iter().map(|&eta| (eta, Expr::ZERO));
+        let values: Vec<_> = known.into_iter().chain(zeros).collect();
+        (system.graph().substitute(&system.momenta()[l..], &values), l)
+    }
+}

@@ -1,0 +1,119 @@
+//! Phase volume: invariant measures and Chaplygin's reducing multiplier.
+
+use pc_mech::{Expr, Number, determinant};
+
+use crate::constrained::Constrained;
+use crate::error::NonholoError;
+
+/// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of the coordinates and c_i rational.
+#[derive(Clone, Debug)]
+pub struct InvariantMeasure<'g> {
+    /// The ψ_i with their powers c_i, none of them 0.
+    pub factors: Vec<(Expr<'g>, Number)>,
+}
+
+impl<'g> InvariantMeasure<'g> {
+    /// The density N.
+    pub fn density(&self) -> Expr<'g> {
+        let power = |&(factor, power): &(Expr<'g>, Number)| {
+            let twice = (power * Number::integer(2)).as_integer();
+            match (power.as_integer(), twice) {
+                (Some(power), _) => factor.powi(power),
+                (None, Some(twice)) => factor.sqrt().powi(twice),
+                (None, None) => (factor.log() * power).exp(),
+            }
+        };
+        self.factors.iter().map(power).fold(Expr::ONE, |density, factor| density * factor)
+    }
+}
+
+impl<'g> Constrained<'g> {
+    /// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s of the motion in coordinates and momenta (34): the rate at which phase
+    /// volume dx dy grows, in terms of (t, x, y).
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+    pub fn divergence(&self) -> Result<Expr<'g>, NonholoError> {
+        let (system, graph) = (self.free_system()?, self.system().graph());
+        let canonical = system.canonical()?;
+        canonical.closed_quasi_velocities()?;
+        let along = |variables: &[Expr<'g>], rates: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            variables.iter().zip(rates).map(|(&z, &rate)| graph.gradient(rate, &[z])[0]).collect()
+        };
+        let x = along(system.frame().coordinates(), canonical.velocities());
+        let y = along(canonical.momenta(), canonical.right_hand_side());
+        let order: Vec<Expr<'g>> = canonical.momenta().to_vec();
+        Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y))], &order)[0])
+    }
+
+    /// The invariant measure whose density is a product of powers of `factors`, functions of the coordinates that are
+    /// positive, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved. Without `factors` the
+    /// entries of the mass matrix and its determinant are tried.
+    ///
+    /// A Chaplygin system of two degrees of freedom with such a measure in its independent coordinates and momenta is
+    /// Hamiltonian in the time τ, dt = N dτ: N is its reducing multiplier [Chaplygin 1911].
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System};
+    /// use pc_nonholo::Adapted;
+    ///
+    /// // The particle with ż = y ẋ keeps dx dp/√(1 + y²).
+    /// let graph = Graph::new();
+    /// let [y, vx, vz] = graph.symbols(["y", "x'", "z'"]);
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x", "y", "z"])
+    ///     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+    ///     .build()?;
+    /// let held = particle.with_multipliers(&[Constraint::new("knife", vz - y * vx)])?;
+    /// let at: Vec<_> = ["x", "y", "z", "x'", "y'", "z'", "t"].map(|name| (graph.symbol(name), 0.5)).into();
+    /// let measure = Adapted::new(&held, &at)?.constrained()?.invariant_measure(&[])?;
+    /// assert_eq!(measure.map(|measure| measure.density()), Some(1.0 / (1.0 + y.square()).sqrt()));
+    /// # Ok::<(), pc_nonholo::NonholoError>(())
+    /// ```
+    pub fn invariant_measure(
+        &self,
+        factors: &[Expr<'g>],
+    ) -> Result<Option<InvariantMeasure<'g>>, NonholoError> {
+        let (system, graph) = (self.free_system()?, self.system().graph());
+        let canonical = system.canonical()?;
+        let divergence = self.divergence()?;
+        if divergence.is_zero() {
+            return Ok(Some(InvariantMeasure { factors: Vec::new() }));
+        }
+        let factors = if factors.is_empty() { self.inertias() } else { factors.to_vec() };
+        let along: Vec<_> = system
+            .frame()
+            .coordinates()
+            .iter()
+            .copied()
+            .zip(canonical.velocities().iter().copied())
+            .chain([(system.frame().time(), Expr::ONE)])
+            .collect();
+        let rates = graph.directional(&factors, &along);
+        let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
+        let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();
+        // The last column is the divergence: a relation in which it stands gives the powers.
+        let relation = graph.linear_relations(&columns).into_iter().find(|c| !c[factors.len()].is_zero());
+        Ok(relation.map(|c| {
+            let scale = c[factors.len()].recip();
+            let powers = factors.into_iter().zip(c.into_iter().map(|c| c * scale));
+            InvariantMeasure { factors: powers.filter(|(_, power)| !power.is_zero()).collect() }
+        }))
+    }
+
+    /// The entries of the mass matrix of the free quasi-velocities, and its determinant, as far as they are not constant.
+    fn inertias(&self) -> Vec<Expr<'g>> {
+        let mass = self.equations().mass_matrix();
+        let diagonal = (0..mass.rows()).map(|s| mass[(s, s)]);
+        let mut inertias: Vec<Expr<'g>> = Vec::new();
+        for inertia in diagonal.chain(determinant(self.system().graph(), mass)) {
+            if inertia.constant().is_none() && !inertias.contains(&inertia) {
+                inertias.push(inertia);
+            }
+        }
+        inertias
+    }
+}
