@@ -42,6 +42,7 @@ mod lagrange;
 mod legendre;
 mod multipliers;
 mod numeric;
+mod orthonormal;
 mod poincare;
 mod reduction;
 mod restriction;

@@ -48,6 +48,11 @@ impl<'g> Factors<'g> {
 }
 
 impl<'g> Ldl<'g> {
+    /// √D_s L_is η_i
+    pub(crate) fn orthonormal(&self, graph: &'g Graph, s: usize, eta: &[Expr<'g>]) -> Expr<'g> {
+        self.diagonal[s].sqrt() * graph.dot(self.lower.column(s), eta.iter().copied())
+    }
+
     /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has
     /// the fewest entries left; `None` if the diagonal that is left is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {

@@ -1,0 +1,66 @@
+//! Frames in which the mass matrix is the unit matrix.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::compiled::ldl::Factors;
+use crate::error::MechError;
+use crate::system::System;
+
+impl<'g> System<'g> {
+    /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ, so
+    /// that T = ½ η'_s η'_s but for parts of lower degree. As many as there are `names` are made, of the first
+    /// quasi-velocities; the others, such as those that constraints keep at zero, stay.
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`] unless the metric is independent of η; [`MechError::DegenerateLagrangian`];
+    /// [`MechError::Shape`] if there are more names than quasi-velocities.
+    ///
+    /// ```
+    /// use pc_mech::{Graph, System};
+    ///
+    /// // Polar coordinates: the velocities along and across the radius.
+    /// let graph = Graph::new();
+    /// let polar = System::builder(&graph)
+    ///     .coordinates(["ρ", "φ"])
+    ///     .lagrangian(|_, x, v| (v[0].square() + x[0].square() * v[1].square()) / 2.0)
+    ///     .build()?;
+    /// let orthonormal = polar.in_orthonormal_frame(["η1", "η2"])?;
+    /// let equations = orthonormal.poincare()?;
+    /// assert_eq!(equations.mass_matrix()[(1, 1)], 1.into());
+    /// let velocities: Vec<String> = equations.velocities().iter().map(|v| v.to_string()).collect();
+    /// assert_eq!(velocities, ["η1", "η2/sqrt(ρ^2)"]);
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn in_orthonormal_frame<S: AsRef<str>>(
+        &self,
+        names: impl IntoIterator<Item = S>,
+    ) -> Result<System<'g>, MechError> {
+        let (graph, eta) = (self.graph(), &self.quasi_velocities);
+        let names: Vec<String> = names.into_iter().map(|name| name.as_ref().to_owned()).collect();
+        let free = names.len();
+        if free > eta.len() {
+            let what = "the list of names";
+            return Err(MechError::Shape { what, found: free, expected: eta.len() });
+        }
+        let momenta = self.momenta();
+        let hessian: Vec<Vec<Expr<'g>>> =
+            momenta[..free].iter().map(|&p| graph.gradient(p, &eta[..free])).collect();
+        if let Some(eta) = eta.iter().find(|&&eta| hessian.iter().flatten().any(|m| m.depends_on(eta))) {
+            return Err(MechError::NotQuadratic { quasi_velocity: eta.to_string() });
+        }
+        let order = self.collecting_order();
+        let entries = graph.shorten(&hessian.concat(), &order);
+        let mass = Matrix::from_fn(free, free, |r, s| entries[r.max(s) * free + r.min(s)]);
+        self.check_regular(&mass)?;
+        let Factors::Ldl(factors) = Factors::of(graph, &mass) else {
+            // A regular matrix without a pivot on its diagonal is no metric.
+            let quasi_velocities = eta[..free].iter().map(Expr::to_string).collect();
+            return Err(MechError::DegenerateLagrangian { rank: 0, size: free, quasi_velocities });
+        };
+        let made = (0..free).map(|s| factors.orthonormal(graph, s, &eta[..free]));
+        let definitions: Vec<Expr<'g>> = made.chain(eta[free..].iter().copied()).collect();
+        let names = names.into_iter().chain(eta[free..].iter().map(Expr::to_string));
+        self.in_quasi_velocities(names, &definitions)
+    }
+}
