@@ -90,7 +90,7 @@ impl Echelon {
     }
 }
 
-/// row ← row − row[pivot]·other, where other[pivot] = 1 and other is 0 before.
+/// row ← row − row_p·other with p = `pivot`, where other_p = 1 and other is 0 before.
 fn subtract(row: &mut [BigRational], other: &[BigRational], pivot: usize) {
     if row[pivot].is_zero() {
         return;

@@ -6,7 +6,7 @@ use crate::poincare::Equations;
 use crate::system::System;
 
 impl<'g> Equations<'g> {
-    /// The left and right sides of M η̇ = r, one pair of texts an equation.
+    /// The left and right sides of M η̇ = r, k pairs of texts.
     ///
     /// A right side that is a polynomial in the quasi-velocities is written as a sum of their products; the compiled
     /// equations nest them where that saves operations.

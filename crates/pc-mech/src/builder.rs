@@ -92,7 +92,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the velocities ẋ_1..ẋ_n, affine in η (3); without it ẋ = η.
+    /// Gives the velocities ẋ_1..ẋ_n, affine in η: b and b_0 of (3). Without it ẋ = η.
     #[must_use]
     pub fn kinematics<I: IntoIterator<Item = Expr<'g>>>(
         mut self,
@@ -103,21 +103,23 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph.
+    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph: one from
+    /// [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or of a [group](crate::LieGroup::left_frame).
     #[must_use]
     pub fn frame(mut self, frame: Frame<'g>) -> Self {
         self.kinematics = Kinematics::Frame(frame);
         self
     }
 
-    /// Gives the brackets [X_r, X_s] = c_rs^m X_m of a stationary frame: needed where b does not determine them
+    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: needed where b does not determine them
     /// (rank b < k, or no coordinates), checked against the frame everywhere else.
     #[must_use]
     pub fn algebra(self, algebra: &LieAlgebra) -> Self {
         self.structure(algebra.structure_coefficients())
     }
 
-    /// Gives all structure coefficients, c_0s^m included.
+    /// Gives all structure coefficients (5), c_0s^m included; needed and checked as those of an
+    /// [algebra](SystemBuilder::algebra).
     #[must_use]
     pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
         self.structure = Some(structure);
@@ -208,7 +210,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds forces F_1..F_n on the coordinates, with the power F_i ẋ_i: Q_s = b_is F_i.
+    /// Adds forces F_1..F_n on the coordinates, with the virtual work F_i δx_i: Q_s = b_is F_i (8).
     #[must_use]
     pub fn force_on_coordinates<I: IntoIterator<Item = Expr<'g>>>(
         mut self,
@@ -286,7 +288,10 @@ impl<'g> SystemBuilder<'g> {
     /// The system, its frame closed and its structure coefficients known.
     ///
     /// # Errors
-    /// Any [`MechError`]; of the frame above all [`AlgebraError`].
+    /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
+    /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed or contradict it;
+    /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
+    /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
         let (eta, velocities) = (self.eta(), self.velocity_symbols());
         let k = eta.len();

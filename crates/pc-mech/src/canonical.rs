@@ -29,7 +29,7 @@ pub struct Canonical<'g> {
 }
 
 impl<'g> System<'g> {
-    /// The symbols of the momenta y_s: `p_` before the name of the quasi-velocity, `p_x` for the velocity `x'`.
+    /// The symbols of the k momenta y_s: `p_` before the name of the quasi-velocity, `p_x` for the velocity `x'`.
     pub fn momentum_symbols(&self) -> Vec<Expr<'g>> {
         let name = |eta: &Expr<'g>| format!("p_{}", eta.to_string().trim_end_matches('\''));
         self.quasi_velocities.iter().map(|eta| self.unused(name(eta), "p_")).collect()
@@ -187,7 +187,7 @@ impl<'g> Canonical<'g> {
         &self.right
     }
 
-    /// The two sides of the equations (10), one pair of texts an equation: sums of products of momenta.
+    /// The two sides of the equations (10), k pairs of texts: sums of products of momenta.
     pub fn balance(&self, style: Style) -> Vec<(String, String)> {
         let graph = self.system.graph();
         let sides = self.momenta.iter().zip(&self.right);

@@ -118,7 +118,7 @@ impl<'g> Equations<'g> {
     /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments.
     ///
     /// C comes as a header and a source file, Rust as one file. Both say at their head how they are used. The same
-    /// system in a new graph gives the same text. Its operations are those of a [`Program`](pc_expr::Program) of the
+    /// system in a new graph gives the same text. Its operations are those of a [`Program`] of the
     /// same expressions, so that the values are those of the interpreter to the last bit where the mathematical library
     /// is the same.
     ///

@@ -10,7 +10,7 @@ use crate::error::MechError;
 use crate::multipliers::Multipliers;
 use crate::poincare::Equations;
 
-/// Forces on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
+/// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
 ///
 /// Implemented by closures `FnMut(t, y, q)` that write all q; one that may fail, or that knows its derivatives,
 /// implements it by hand. The state y is that of the motion: (x, η), or coordinates and momenta of the

@@ -73,7 +73,8 @@ impl<'g> Canonical<'g> {
 
     /// The complete integral S = `action` with the constants α of the names given, k of them.
     ///
-    /// # Errors [`MechError::NotAnAction`] if S does not satisfy the [equation](Canonical::hamilton_jacobi);
+    /// # Errors
+    /// [`MechError::NotAnAction`] if S does not satisfy the [equation](Canonical::hamilton_jacobi);
     /// [`MechError::IncompleteIntegral`] if det ∂(X_s S)/∂α_r = 0 at almost all points; [`MechError::Shape`]
     /// if there are not k constants and k coordinates; [`MechError::Forced`]; [`MechError::NotQuadratic`];
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol).

@@ -48,8 +48,8 @@ impl<'g> Multipliers<'g> {
         self.eliminated(&solved, structure)
     }
 
-    /// η_D = −C_D⁻¹ (C_I η_I + c_0): the quasi-velocities of the indices `dependent`, each with its expression in the
-    /// others.
+    /// η_D = −C_D⁻¹ (C_I η_I + c_0): the quasi-velocities of the m indices `dependent`, each with its expression in the
+    /// k − m others.
     ///
     /// # Errors
     /// [`MechError::DependentConstraint`] if det C_D = 0 everywhere.
@@ -132,7 +132,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
+    /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
     /// and quasi-velocities, rising; `at` may have other values of parameters.
     ///
     /// # Errors

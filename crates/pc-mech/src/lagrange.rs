@@ -9,7 +9,7 @@ use crate::system::System;
 impl<'g> System<'g> {
     /// The system with η = ẋ: its equations (9) are Lagrange's, d/dt ∂L/∂ẋ_i − ∂L/∂x_i = Q_i.
     ///
-    /// With η = a ẋ + a_0 (2) for the old quasi-velocities, Q_i = a_si Q_s.
+    /// With η = a ẋ + a_0 (2) for the old quasi-velocities, n = k of them, Q_i = a_si Q_s.
     ///
     /// # Errors
     /// [`MechError::Redundant`] if there are not as many quasi-velocities as coordinates, and

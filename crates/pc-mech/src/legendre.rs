@@ -71,7 +71,7 @@ impl<'g> Legendre<'g> {
     }
 }
 
-/// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s; compiled.
+/// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {
     /// Names of x, η, y.

@@ -1,28 +1,315 @@
-//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion.
+//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion, and what can be said of the motions.
 //!
-//!   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s   (9)
+//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
+//! corrected. Conventions are those of [`pc_algebra`]: index 0 is time; i, j = 1..n count coordinates, r, s, m = 1..k
+//! quasi-velocities; repeated indices are summed over. The library is unit-agnostic: any consistent units will do.
 //!
-//! Conventions are those of [`pc_algebra`]: ẋ = b η + b_0 (3), [X_r, X_s] = c_rs^m X_m (5), L = T + U with U minus
-//! the potential energy. Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994).
+//! # System
+//!
+//! A [`System`] is a frame with its algebra, a Lagrangian and forces:
+//!
+//! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
+//! Q_s (8), the force conjugate to η_s.
+//!
+//! [`System::builder`] takes each in the form in which a book has it. The frame: [velocities in terms of
+//! η](SystemBuilder::kinematics), a [`Frame`](SystemBuilder::frame), or neither, and then η = ẋ. The
+//! [algebra](SystemBuilder::algebra) only where b does not determine it, having a rank below k. The Lagrangian is the sum of
+//! [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x, η)](SystemBuilder::lagrangian), [L(t, x,
+//! ẋ)](SystemBuilder::lagrangian_in_velocities) and what each [particle](SystemBuilder::particle) and [rigid
+//! body](SystemBuilder::rigid_body) adds. So is Q: [on η](SystemBuilder::forces), [on
+//! x](SystemBuilder::force_on_coordinates), on the bodies, of a [dissipation function](SystemBuilder::dissipation),
+//! [gyroscopic](SystemBuilder::gyroscopic), or [computed outside](SystemBuilder::external_force).
+//!
+//! # Poincaré's equations
+//!
+//! [`System::poincare`] derives
+//!
+//! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s (9)
+//!
+//! and solves them for η̇: [`Equations`] are M η̇ = r with M = ∂²L/∂η∂η.
 //!
 //! ```
 //! use pc_mech::{Graph, LieAlgebra, System};
 //!
 //! // The heavy top in Poisson's variables: γ the vertical in body axes, ω the body angular velocity.
 //! let graph = Graph::new();
-//! let [a, c, mgl] = graph.symbols(["A", "C", "mgl"]);
+//! let [a, b, c, mgl] = graph.symbols(["A", "B", "C", "mgl"]);
 //! let top = System::builder(&graph)
-//!     .parameter(a, 1.0).parameter(c, 0.5).parameter(mgl, 1.0)
+//!     .parameter(a, 1.0).parameter(b, 2.0).parameter(c, 3.0).parameter(mgl, 1.0)
 //!     .coordinates(["γ1", "γ2", "γ3"])
 //!     .quasi_velocities(["ω1", "ω2", "ω3"])
 //!     .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
 //!     .algebra(&LieAlgebra::so3())
-//!     .lagrangian(|_, g, w| (a*(w[0].square() + w[1].square()) + c*w[2].square())/2.0 - mgl*g[2])
+//!     .kinetic(|_, _, w| (a*w[0].square() + b*w[1].square() + c*w[2].square())/2.0)
+//!     .potential(|_, g, _| mgl*g[2])
 //!     .build()?;
 //! let equations = top.poincare()?;
-//! assert_eq!(equations.right_hand_side()[2], 0.0.into());
-//! let motion = equations.compile()?; // a `VectorField`, to be given to any integrator
+//! assert_eq!(equations.mass_matrix()[(0, 0)], a);
+//! assert_eq!(equations.right_hand_side()[0].to_string(), "mgl*γ2 + ω2*ω3*(B - C)"); // (24)
 //! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! With η = ẋ all c_rs^m vanish and (9) are Lagrange's equations. On a group, with constant c_rs^m and X_s L = 0, they are
+//! Euler's. For η_s = dπ_s/dt that are the velocities of no coordinates they are those of Boltzmann and Hamel (18), with
+//! ∂/∂π_s for X_s. [`System::in_quasi_velocities`] goes from one to the other, [`System::in_velocities`] back to Lagrange's:
+//!
+//! ```
+//! use pc_mech::{Graph, System};
+//!
+//! // The spherical pendulum, and its velocity along the meridian and along the parallel.
+//! let graph = Graph::new();
+//! let [theta, rate, turn, u, v] = graph.symbols(["θ", "θ'", "ψ'", "u", "v"]);
+//! let pendulum = System::builder(&graph)
+//!     .coordinates(["θ", "ψ"])
+//!     .lagrangian(|_, x, v| (v[0].square() + (x[0].sin() * v[1]).square()) / 2.0 + x[0].cos())
+//!     .build()?;
+//! let hamel = pendulum.in_quasi_velocities(["u", "v"], &[rate, theta.sin() * turn])?;
+//! assert_eq!(hamel.lagrangian(), (u.square() + v.square()) / 2.0 + theta.cos());
+//! assert_eq!(hamel.poincare()?.right_hand_side()[1].to_string(), "-u*v*cos(θ)/sin(θ)");
+//! assert_eq!(hamel.in_velocities()?.lagrangian(), pendulum.lagrangian());
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Redundant coordinates
+//!
+//! Coordinates with relations f_α(t, x) = 0 between them, or velocities with C η + c_0 = 0, are given a [`Constraint`] each.
+//! [`System::with_multipliers`] keeps all of them and adds the reactions,
+//!
+//! M η̇ = r + Cᵀ λ;
+//!
+//! its [`Motion`] has no singular positions but those of the constraints themselves, and a projection by which an integrator
+//! stays on them.
+//! [`Multipliers::in_independent_velocities`] solves for some velocities and leaves the equations
+//!
+//! d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s (14)–(16),
+//!
+//! fewer, without reactions, and singular where the choice is. The first is for long motions and for reactions, the
+//! second for what is done with a system afterwards; canonical equations are (17) then. Constraints on velocities that
+//! are not integrable are refused by the second: they are the matter of `pc-nonholo`.
+//!
+//! ```
+//! use pc_mech::{Constraint, Graph, System};
+//!
+//! // The spherical pendulum in Cartesian coordinates; l = m = 1, g = 10.
+//! let graph = Graph::new();
+//! let pendulum = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .kinetic(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .potential(|_, x, _| 10.0 * x[2])
+//!     .build()?;
+//! let [x, y, z, vx, vy, vz] = graph.symbols(["x", "y", "z", "x'", "y'", "z'"]);
+//! let rod = Constraint::new("rod", (x.square() + y.square() + z.square() - 1.0) / 2.0);
+//! let held = pendulum.with_multipliers(&[rod])?.observe_reactions();
+//!
+//! // On a circle at cos α = 4/5 below, with v² = g sin² α/cos α = 4.5, the tension is g/cos α.
+//! let circling = [0.6, 0.0, -0.8, 0.0, 4.5f64.sqrt(), 0.0];
+//! let mut motion = held.compile()?;
+//! let tension = -motion.observe(0.0, &circling)[1]; // after the energy
+//! assert!((tension - 12.5).abs() < 1e-14);
+//!
+//! let at: Vec<_> = [x, y, z, vx, vy, vz].into_iter().zip(circling).collect();
+//! let free = held.in_independent_velocities(&at)?;
+//! assert_eq!(free.quasi_velocities(), [vx, vy]);
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Canonical equations
+//!
+//! With momenta y_s = ∂L/∂η_s and H(t, x, y) = y_s η_s − L, Chetaev's equations are
+//!
+//! ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s (10), ẋ_i = b_i0 + b_is ∂H/∂y_s (11).
+//!
+//! [`System::canonical`] gives them as [`Canonical`]. A quadratic L is solved for η in an expression; any other by Newton's
+//! method at each evaluation, which [`Canonical::is_closed`] tells. [`LegendreTransform`] takes states there and back.
+//!
+//! ```
+//! use pc_mech::{Graph, System};
+//!
+//! // Kepler's problem in polar coordinates.
+//! let graph = Graph::new();
+//! let kepler = System::builder(&graph)
+//!     .coordinates(["r", "φ"])
+//!     .lagrangian(|_, x, v| (v[0].square() + (x[0] * v[1]).square()) / 2.0 + 1.0 / x[0])
+//!     .build()?;
+//! let canonical = kepler.canonical()?;
+//! let [r, p, area] = graph.symbols(["r", "p_r", "p_φ"]);
+//! assert_eq!(canonical.hamiltonian(), (p.square() + area.square() / r.square()) / 2.0 - 1.0 / r);
+//! assert_eq!(canonical.right_hand_side(), [area.square() / r.powi(3) - 1.0 / r.square(), 0.0.into()]);
+//!
+//! // A relativistic particle: y = η/√(1 − η²), so that y = 3/4 has η = 3/5.
+//! let particle = System::builder(&graph)
+//!     .coordinates(["x"])
+//!     .lagrangian(|_, _, v| -(1.0 - v[0].square()).sqrt())
+//!     .build()?
+//!     .canonical()?;
+//! let state = particle.legendre_transform()?.to_quasi_velocities(0.0, &[0.0, 0.75])?;
+//! assert!(!particle.is_closed() && (state[1] - 0.6).abs() < 1e-15);
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Brackets
+//!
+//! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
+//!
+//! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
+//!
+//! [`System::bracket`] is this [`PoissonBracket`]; for all others [`System::extended_bracket`] adds time and its
+//! momentum y_0, with H + y_0 for H. Functions that commute with everything are [Casimirs](PoissonBracket::casimirs). The
+//! bracket of two integrals is an integral (Poisson's theorem); [`PoissonBracket::closure`] adds what is new.
+//!
+//! ```
+//! use pc_mech::{Graph, System};
+//!
+//! // Two components of the angular momentum in space bring the third.
+//! let graph = Graph::new();
+//! let point = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .build()?;
+//! let [x, y, z, px, py, pz] = graph.symbols(["x", "y", "z", "p_x", "p_y", "p_z"]);
+//! let all = point.bracket().closure(&[y * pz - z * py, z * px - x * pz]);
+//! assert_eq!(all[2..], [x * py - y * px]);
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Integrals
+//!
+//! [`System::energy_rate`] is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`System::cyclic_displacements`] finds the
+//! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
+//! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
+//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
+//!
+//! ```
+//! use pc_mech::{Conservation, Graph, LieAlgebra, System};
+//!
+//! // Lagrange's top, with friction about its axis and without.
+//! let graph = Graph::new();
+//! let [a, c, n] = graph.symbols(["A", "C", "n"]);
+//! let top = |friction| {
+//!     System::builder(&graph)
+//!         .coordinates(["γ1", "γ2", "γ3"])
+//!         .quasi_velocities(["ω1", "ω2", "ω3"])
+//!         .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
+//!         .algebra(&LieAlgebra::so3())
+//!         .lagrangian(|_, g, w| (a*(w[0].square() + w[1].square()) + c*w[2].square())/2.0 - g[2])
+//!         .dissipation(|_, _, w| friction * w[2].square() / 2.0)
+//!         .build()
+//! };
+//! let rubbed = top(n)?;
+//! assert_eq!(rubbed.energy_rate().to_string(), "-n*ω3^2");
+//! assert!(matches!(rubbed.poincare()?.rates().verdict(rubbed.momenta()[2]), Conservation::Changing(_)));
+//!
+//! let top = top(0.0.into())?;
+//! assert_eq!(top.cyclic_displacements()[0].momentum.to_string(), "C*ω3");
+//! let rates = top.canonical()?.rates();
+//! let found: Vec<String> = rates.integrals(&rates.ansatz(1, 1)).iter().map(|f| f.to_string()).collect();
+//! assert_eq!(found, ["p_ω3", "γ1*p_ω1 + γ2*p_ω2 + γ3*p_ω3"]);
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Symmetry
+//!
+//! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with invariant L none
+//! remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m, and the bracket
+//! is that of the [algebra alone](PoissonBracket::lie_poisson).
+//!
+//! ```
+//! use pc_mech::{Graph, LieGroup, RotationMatrices, System};
+//!
+//! // A free rigid body with its nine direction cosines; moments of inertia 1, 2, 3.
+//! let graph = Graph::new();
+//! let names = ["R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"];
+//! let frame = RotationMatrices.left_frame(&graph, graph.symbol("t"), graph.symbols(names).to_vec())?;
+//! let body = System::builder(&graph)
+//!     .coordinates(names)
+//!     .quasi_velocities(["1", "2", "3"])
+//!     .frame(frame)
+//!     .kinetic(|_, _, w| (w[0].square() + 2.0 * w[1].square() + 3.0 * w[2].square()) / 2.0)
+//!     .build()?;
+//! let free = body.reduced()?;
+//! assert_eq!(free.canonical()?.right_hand_side()[0].to_string(), "-1/6*p_2*p_3");
+//! assert_eq!(free.bracket().casimirs(2)[0].to_string(), "p_1^2 + p_2^2 + p_3^2");
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Hamilton–Jacobi
+//!
+//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`Canonical::hamilton_jacobi`] puts S in and
+//! proves it; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//!
+//! ```
+//! use pc_mech::{Graph, System};
+//!
+//! // Free fall, g = 1: Hamilton's principal function of the motion from α at t = 0. Then β = −ẋ(0).
+//! let graph = Graph::new();
+//! let [t, x, start] = graph.symbols(["t", "x", "α"]);
+//! let particle =
+//!     System::builder(&graph).coordinates(["x"]).lagrangian(|_, x, v| v[0].square() / 2.0 - x[0]).build()?;
+//! let action = (x - start).square() / (2.0 * t) - t * (x + start) / 2.0 - t.powi(3) / 24.0;
+//! let state = particle.canonical()?.complete_integral(action, &["α"])?.state(2.0, &[5.0], &[-3.0], &[0.0])?;
+//! assert_eq!(state, [9.0, 1.0]); // 5 + 3 t − t²/2, 3 − t
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Steady motions and stability
+//!
+//! [`Motion::steady_motion`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
+//! [`Spectrum`] shows instability, or asymptotic stability; [`Equations::second_variation`] of the energy under constant
+//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
+//! nothing.
+//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
+//!
+//! ```
+//! use pc_mech::{Graph, LieAlgebra, Spectrum, System, Verdict};
+//!
+//! // The sleeping top, upright: stable if C² ω² > 4 A mgl. With A = mgl = 1, C = 1/2: if ω > 4.
+//! let graph = Graph::new();
+//! let top = System::builder(&graph)
+//!     .coordinates(["γ1", "γ2", "γ3"])
+//!     .quasi_velocities(["ω1", "ω2", "ω3"])
+//!     .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
+//!     .algebra(&LieAlgebra::so3())
+//!     .lagrangian(|_, g, w| (w[0].square() + w[1].square() + w[2].square()/2.0)/2.0 - g[2])
+//!     .integral("area", |_, g, w| w[0]*g[0] + w[1]*g[1] + w[2]*g[2]/2.0)
+//!     .integral("spin", |_, _, w| w[2])
+//!     .integral("γ²", |_, g, _| g[0].square() + g[1].square() + g[2].square())
+//!     .build()?
+//!     .poincare()?;
+//! let sleeping = |spin| [0.0, 0.0, 1.0, 0.0, 0.0, spin];
+//! assert_eq!(top.second_variation(&sleeping(4.01))?.verdict, Verdict::Stable);
+//! let first_approximation = top.compile()?.linearised(0.0, &sleeping(3.99))?;
+//! assert_eq!(Spectrum::of(&first_approximation, 0.0)?.verdict(), Verdict::Unstable);
+//! # Ok::<(), pc_mech::MechError>(())
+//! ```
+//!
+//! # Numbers and source
+//!
+//! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a [`VectorField`]
+//! ẏ = f(t, y) that owns all it needs; [`CompileOptions`] say which derivatives it has, and for which kernel. Parameters
+//! stay adjustable. Integrals, energy and outputs are [observed](Motion::observe). With an [`ExternalForce`] it is a
+//! [`ForcedMotion`]. [`Equations::emit`] writes the same operations as C or Rust without dependencies.
+//!
+//! ```
+//! use pc_mech::{EmitOptions, Graph, Language, System, VectorField};
+//!
+//! let graph = Graph::new();
+//! let k = graph.symbol("k");
+//! let oscillator = System::builder(&graph)
+//!     .parameter(k, 1.0)
+//!     .coordinates(["x"])
+//!     .lagrangian(|_, x, v| (v[0].square() - k * x[0].square()) / 2.0)
+//!     .build()?
+//!     .poincare()?;
+//! let mut motion = oscillator.compile()?;
+//! motion.parameters_mut()[0] = 9.0;
+//! let mut rates = [0.0; 2];
+//! motion.rhs(0.0, &[2.0, 1.0], &mut rates)?;
+//! assert_eq!((rates, motion.observe(0.0, &[2.0, 1.0])), ([1.0, -18.0], vec![18.5]));
+//!
+//! let source = &oscillator.emit(&EmitOptions::new(Language::Rust, "oscillator"))?[0];
+//! assert_eq!(source.name, "oscillator.rs");
+//! assert!(source.text.contains("ydot[1] = -x*k;"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod bodies;

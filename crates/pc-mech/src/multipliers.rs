@@ -53,7 +53,7 @@ impl<'g> Constraint<'g> {
     }
 }
 
-/// Poincaré's equations with multipliers,
+/// Poincaré's equations with multipliers (Lagrange's equations of the first kind, in quasi-velocities),
 ///
 ///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
 ///
@@ -163,7 +163,7 @@ impl<'g> Multipliers<'g> {
         &self.equations
     }
 
-    /// The constraints.
+    /// The constraints, m of them.
     pub fn constraints(&self) -> &[Constraint<'g>] {
         &self.constraints
     }
@@ -178,8 +178,8 @@ impl<'g> Multipliers<'g> {
         &self.coefficients
     }
 
-    /// The symbols λ_α of the reactions, `λ_` before the name of the constraint; outputs of the system may contain
-    /// them.
+    /// The symbols λ_α of the reactions, length m, `λ_` before the name of the constraint; outputs of the system may
+    /// contain them.
     pub fn reactions(&self) -> &[Expr<'g>] {
         &self.reactions
     }

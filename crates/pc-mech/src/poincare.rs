@@ -7,7 +7,8 @@ use crate::compiled::ldl::Factors;
 use crate::error::MechError;
 use crate::system::System;
 
-/// The equations of motion ẋ = b η + b_0, M η̇ = r.
+/// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k quasi-velocities, or (30)
+/// with l free ones in place of k.
 #[derive(Clone, Debug)]
 pub struct Equations<'g> {
     pub(crate) system: System<'g>,
@@ -131,7 +132,7 @@ impl<'g> Equations<'g> {
         &self.right
     }
 
-    /// The energy y_s η_s − L.
+    /// The energy y_s η_s − L in terms of (t, x, η).
     pub fn energy(&self) -> Expr<'g> {
         self.energy
     }

@@ -33,22 +33,22 @@ impl<'g> System<'g> {
         self.frame.graph()
     }
 
-    /// The frame X_0..X_k.
+    /// The frame: the operators X_0..X_k (4), with b (n × k) and b_0 (n) of (3).
     pub fn frame(&self) -> &Frame<'g> {
         &self.frame
     }
 
-    /// The structure coefficients c_rs^m.
+    /// The structure coefficients c_rs^m (5), r, s = 0..k, m = 1..k.
     pub fn structure(&self) -> &StructureCoefficients<'g> {
         &self.structure
     }
 
-    /// The symbols η_1..η_k.
+    /// The symbols η_1..η_k of the quasi-velocities (2).
     pub fn quasi_velocities(&self) -> &[Expr<'g>] {
         &self.quasi_velocities
     }
 
-    /// The parameters with their values.
+    /// The parameters with their values, in the order of declaration.
     pub fn parameters(&self) -> &[(Expr<'g>, f64)] {
         &self.parameters
     }
@@ -58,13 +58,13 @@ impl<'g> System<'g> {
         self.lagrangian
     }
 
-    /// The generalised forces Q_1..Q_k.
+    /// The generalised forces Q_1..Q_k (8), without those that follow from L.
     pub fn forces(&self) -> &[Expr<'g>] {
         &self.forces
     }
 
     /// The symbols in Q that stand for [external forces](SystemBuilder::external_force), each with the name of the
-    /// quasi-velocity on which it acts.
+    /// quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
     }
@@ -79,7 +79,7 @@ impl<'g> System<'g> {
         &self.outputs
     }
 
-    /// The symbols of η̇: integrals and outputs may contain them.
+    /// The symbols of η̇, k of them: integrals and outputs may contain them.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
         self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
     }
@@ -125,7 +125,7 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with the parameters replaced by their numbers.
+    /// The same system with the parameters replaced by their numbers: none is left to be changed at run time.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();
@@ -159,12 +159,12 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The momenta ∂L/∂η_s.
+    /// The momenta ∂L/∂η_s in terms of (t, x, η), length k.
     pub fn momenta(&self) -> Vec<Expr<'g>> {
         self.graph().gradient(self.lagrangian, &self.quasi_velocities)
     }
 
-    /// The energy η_s ∂L/∂η_s − L.
+    /// The energy η_s ∂L/∂η_s − L in terms of (t, x, η): T − U where T is a quadratic form in η.
     pub fn energy(&self) -> Expr<'g> {
         self.graph().dot(self.momenta(), self.quasi_velocities.iter().copied()) - self.lagrangian
     }

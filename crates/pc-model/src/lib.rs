@@ -1,5 +1,9 @@
 //! The text model: TOML to a mechanical system, with spans in every error.
 //!
+//! A [`Document`] is what stands in the text, section by section. A [`Model`] is one with the values of its parameters;
+//! [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a [`System`](pc_mech::System) in quasi-velocities with
+//! its start, the constraints, and in which way they [bind](Bound) it. Any consistent units will do.
+//!
 //! ```
 //! use pc_mech::Graph;
 //! use pc_model::{Document, Model, Source};

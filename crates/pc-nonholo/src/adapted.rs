@@ -5,7 +5,12 @@ use pc_mech::{Constraint, Expr, Multipliers, System};
 use crate::constrained::Constrained;
 use crate::error::NonholoError;
 
-/// A system in quasi-velocities of which the last are the left-hand sides of its constraints.
+/// A system in quasi-velocities of which the last are the left-hand sides of its constraints,
+///
+///   η'_s = η_s of the l that stay independent,   η'_α = C_αr η_r + c_α0 (28),   α = l+1..k, r = 1..k,
+///
+/// so that the k − l constraints are η'_α = 0. Its forces and structure coefficients are those of
+/// [`System::in_quasi_velocities`].
 #[derive(Clone, Debug)]
 pub struct Adapted<'g> {
     system: System<'g>,
@@ -40,7 +45,7 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
     }
 
-    /// The system, its free quasi-velocities first.
+    /// The system of all k quasi-velocities, the free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
@@ -50,7 +55,7 @@ impl<'g> Adapted<'g> {
         self.free
     }
 
-    /// The constrained system.
+    /// The system with η_α = 0: its equations (30) and reactions.
     ///
     /// # Errors
     /// [`MechError::DegenerateLagrangian`](pc_mech::MechError::DegenerateLagrangian) if the free quasi-velocities have

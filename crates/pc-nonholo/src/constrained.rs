@@ -16,7 +16,9 @@ impl<'g> Constrained<'g> {
     /// `system` with the quasi-velocities of `vanishing` (symbols) kept at zero; the others stay in their order.
     ///
     /// # Errors
-    /// [`NonholoError`]; a singular mass matrix of the free quasi-velocities among them.
+    /// [`NonholoError::NotAQuasiVelocity`]; [`NonholoError::Twice`];
+    /// [`MechError::DegenerateLagrangian`](pc_mech::MechError::DegenerateLagrangian) if the free quasi-velocities have no
+    /// inertia.
     pub fn new(system: &System<'g>, vanishing: &[Expr<'g>]) -> Result<Constrained<'g>, NonholoError> {
         let all = system.quasi_velocities();
         for (i, eta) in vanishing.iter().enumerate() {
@@ -36,17 +38,17 @@ impl<'g> Constrained<'g> {
         Ok(Constrained { system, equations })
     }
 
-    /// The whole system, its free quasi-velocities first.
+    /// The whole system of k quasi-velocities, the l free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
 
-    /// The quasi-velocities that are kept at zero.
+    /// The symbols of the quasi-velocities that are kept at zero, length k − l.
     pub fn vanishing(&self) -> &[Expr<'g>] {
         &self.system.quasi_velocities()[self.equations.right_hand_side().len()..]
     }
 
-    /// The equations (30) of the free quasi-velocities.
+    /// The equations (30) of the free quasi-velocities, l of them, with ẋ_i = b_is η_s + b_i0 (29), s = 1..l.
     pub fn equations(&self) -> &Equations<'g> {
         &self.equations
     }
@@ -60,11 +62,11 @@ impl<'g> Constrained<'g> {
         Ok(self.system.constrained(self.equations.right_hand_side().len())?)
     }
 
-    /// The reactions λ_α conjugate to the vanishing η_α, in the order of the system: the residuals
+    /// The reactions λ_α conjugate to the vanishing η_α, length k − l, in the order of the system: the residuals
     ///
     ///   λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α
     ///
-    /// of the dropped equations along the motion, functions of (t, x, free η).
+    /// of the dropped equations along the motion, functions of (t, x, free η). They are Lagrange's multipliers.
     pub fn reactions(&self) -> Vec<Expr<'g>> {
         let (system, graph) = (&self.system, self.system.graph());
         let frame = system.frame();

@@ -1,10 +1,54 @@
-//! Nonholonomic constraints in quasi-velocities.
+//! Nonholonomic constraints in quasi-velocities: which constraints are, equations of motion, reactions.
 //!
-//! With the constraints η_α = 0, α = l+1..k, the equations of motion are (30)
+//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
+//! corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities l are free, counted by r, s = 1..l, and k − l
+//! are kept at zero, counted by α = l+1..k; m counts all of them. The library is unit-agnostic: any consistent units will
+//! do.
 //!
-//!   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s,   s, r = 1..l, m = 1..k,
+//! # Which constraints are
 //!
-//! the constraints put in after differentiation, so that all k momenta count.
+//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on velocities some can
+//! be integrated, and some follow from others or contradict them. [`Sorted`] says which: with X'_1..X'_l a basis of the
+//! velocities allowed and X'_0 one of them,
+//!
+//! \[X'_r, X'_s\] = c'_rs^m X'_m + c'_rs^α X'_α, r, s = 0..l,
+//!
+//! and the constraint α is integrable if all c'_rs^α vanish (Frobenius).
+//!
+//! ```
+//! use pc_mech::{Constraint, Graph, System};
+//! use pc_nonholo::{Kind, Sorted};
+//!
+//! let graph = Graph::new();
+//! let particle = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .build()?;
+//! let symbols @ [x, y, _, vx, vy, vz, _] = graph.symbols(["x", "y", "z", "x'", "y'", "z'", "t"]);
+//! let at: Vec<_> = symbols.into_iter().zip([1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0]).collect();
+//!
+//! // ż = y ẋ binds no positions; ż = y ẋ + x ẏ is z = x y + const.
+//! let knife = Constraint::new("knife", vz - y * vx);
+//! let sorted = Sorted::new(&particle, &[knife], &at)?;
+//! assert!(matches!(sorted.kinds(), [Kind::Nonholonomic { .. }]));
+//! let saddle = Constraint::new("saddle", vz - y * vx - x * vy);
+//! let again = Constraint::new("again", 2.0 * vz - 2.0 * y * vx - 2.0 * x * vy);
+//! let sorted = Sorted::new(&particle, &[saddle, again], &at)?;
+//! assert_eq!(sorted.kinds(), [Kind::Integrable]);
+//! assert_eq!(sorted.redundant()[0].follows_from, ["saddle"]);
+//! # Ok::<(), pc_nonholo::NonholoError>(())
+//! ```
+//!
+//! # Equations and reactions
+//!
+//! With the constraints η_α = 0 the equations of motion are
+//!
+//! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s, r, s = 1..l, m = 1..k (30),
+//!
+//! the constraints put in after differentiation, so that all k momenta count. [`Constrained`] derives them, and the
+//! reactions that the dropped equations are off by,
+//!
+//! λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α.
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -12,7 +56,7 @@
 //!
 //! // Chaplygin's sleigh: v along the blade, ω about it, and the lateral velocity u that the blade forbids.
 //! let graph = Graph::new();
-//! let [m, j, a] = graph.symbols(["m", "J", "a"]);
+//! let [m, j, a, v, w] = graph.symbols(["m", "J", "a", "v", "ω"]);
 //! let sleigh = System::builder(&graph)
 //!     .coordinates(["x", "y", "φ"])
 //!     .quasi_velocities(["u", "v", "ω"])
@@ -27,8 +71,105 @@
 //! let constrained = Constrained::new(&sleigh, &[graph.symbol("u")])?;
 //! assert_eq!(constrained.equations().right_hand_side()[0].to_string(), "m*a*ω^2");
 //! assert_eq!(constrained.equations().right_hand_side()[1].to_string(), "-m*a*v*ω");
+//! assert_eq!(constrained.reactions(), [m * v * w * j / (j + m * a.square())]);
 //! # Ok::<(), pc_nonholo::NonholoError>(())
 //! ```
+//!
+//! # Adapted frames
+//!
+//! Constraints C η + c_0 = 0 that are no quasi-velocities are made such: [`Adapted`] takes their left-hand sides for the last
+//! quasi-velocities, beside those that stay independent. From there on all is as above.
+//!
+//! ```
+//! use pc_mech::{Constraint, Graph, System};
+//! use pc_nonholo::Adapted;
+//!
+//! // A disk of unit mass and radius, its mass in the rim, that rolls upright: ψ its direction, φ its turning.
+//! let graph = Graph::new();
+//! let disk = System::builder(&graph)
+//!     .coordinates(["x", "y", "ψ", "φ"])
+//!     .kinetic(|_, _, v| (v[0].square() + v[1].square()) / 2.0 + v[2].square() / 4.0 + v[3].square() / 2.0)
+//!     .force_on_coordinates(|_, _, _| [0, 0, 0, 3].map(Into::into))
+//!     .build()?;
+//! let symbols @ [_, _, psi, _, vx, vy, _, turn, _] =
+//!     graph.symbols(["x", "y", "ψ", "φ", "x'", "y'", "ψ'", "φ'", "t"]);
+//! let along = Constraint::new("along", vx - turn * psi.cos());
+//! let across = Constraint::new("across", vy - turn * psi.sin());
+//! let rolling = disk.with_multipliers(&[along, across])?;
+//!
+//! let at: Vec<_> = symbols.into_iter().map(|symbol| (symbol, 0.3)).collect();
+//! let adapted = Adapted::new(&rolling, &at)?;
+//! assert_eq!(adapted.free(), 2);
+//! // A torque of 3 against the moment of inertia 1 + 1 about the point of contact.
+//! let disk = adapted.constrained()?;
+//! assert_eq!(disk.equations().system().quasi_velocities()[1], turn);
+//! assert_eq!(disk.equations().accelerations(), [0.into(), 1.5.into()]);
+//! # Ok::<(), pc_nonholo::NonholoError>(())
+//! ```
+//!
+//! # The constraints put in
+//!
+//! With θ = T for η_α = 0 the equations (30) are
+//!
+//! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
+//!
+//! Without the second term, as if they had been put into L first, they would be wrong. [`Constrained::free_system`]
+//! counts it among the forces: a [`System`](pc_mech::System) of l quasi-velocities with all that belongs to one, whose
+//! canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
+//!
+//! ```
+//! # use pc_mech::{Graph, System};
+//! # use pc_nonholo::Constrained;
+//! // A particle with ż = y ẋ, the quasi-velocity u = ż − y ẋ being zero.
+//! let graph = Graph::new();
+//! let [y, v, w] = graph.symbols(["y", "v", "w"]);
+//! let particle = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .quasi_velocities(["v", "w", "u"])
+//!     .kinematics(|_, x, eta| [eta[0], eta[1], eta[2] + x[1] * eta[0]])
+//!     .lagrangian_in_velocities(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .build()?;
+//! let free = Constrained::new(&particle, &[graph.symbol("u")])?.free_system()?;
+//! assert_eq!(free.lagrangian(), ((1.0 + y.square()) * v.square() + w.square()) / 2.0);
+//! assert_eq!(free.forces(), [y * v * w, -y * v.square()]); // ẏ and −ẋ times ∂T/∂u = ż
+//! # Ok::<(), pc_nonholo::NonholoError>(())
+//! ```
+//!
+//! # Voronets and Chaplygin
+//!
+//! Constraints solved for velocities, ẋ_r = α_ri ẋ_i + α_r with i ≤ l < r, have the equations
+//!
+//! d/dt ∂θ/∂ẋ_i = ∂(θ+U)/∂x_i + α_ri ∂(θ+U)/∂x_r + (c_ji^r ẋ_j + c_0i^r)(∂T/∂ẋ_r)_0 + Q_i + α_ri Q_r (35)
+//!
+//! of Voronets; Chaplygin's where nothing depends on the x_r, so that those of x_i stand alone. [`Voronets`] takes a
+//! system in velocities, with multipliers.
+//!
+//! ```
+//! use pc_mech::{Constraint, Graph, System};
+//! use pc_nonholo::Voronets;
+//!
+//! let graph = Graph::new();
+//! let particle = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .build()?;
+//! let symbols @ [x, y, z, vx, vy, vz, _] = graph.symbols(["x", "y", "z", "x'", "y'", "z'", "t"]);
+//! let knife = Constraint::new("knife", vz - y * vx);
+//! let at: Vec<_> = symbols.into_iter().zip([0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
+//! let voronets = Voronets::new(&particle.with_multipliers(&[knife])?, &at)?;
+//! assert_eq!((voronets.independent(), voronets.dependent()), (vec![x, y], vec![z]));
+//! assert!(voronets.is_chaplygin());
+//! // (1 + y²) ẍ = −y ẋ ẏ, ÿ = 0
+//! let equations = voronets.system()?.poincare()?;
+//! assert_eq!(equations.right_hand_side(), [-y * vx * vy, 0.into()]);
+//! # Ok::<(), pc_nonholo::NonholoError>(())
+//! ```
+//!
+//! # Or multipliers
+//!
+//! All forms above have singular positions where their choice of velocities has. The equations with
+//! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, have none but those of the constraints, nonholonomic ones
+//! included, and observe the λ: they are what a long motion is integrated in.
 
 mod adapted;
 mod almost_poisson;

@@ -5,7 +5,7 @@ use pc_mech::{Constraint, Expr, Graph, Multipliers, Neighbourhood, System};
 use crate::adapted::Adapted;
 use crate::error::NonholoError;
 
-/// What a constraint does.
+/// What a constraint does, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// It binds positions, f(t, x) = 0.
@@ -28,7 +28,7 @@ pub struct Redundant {
     pub follows_from: Vec<String>,
 }
 
-/// Constraints of a system: those that bind it, each with its kind, and those that follow from them.
+/// Constraints of a system: those that bind it, each with its kind (Frobenius), and those that follow from them.
 #[derive(Clone, Debug)]
 pub struct Sorted<'g> {
     multipliers: Option<Multipliers<'g>>,
@@ -51,7 +51,7 @@ impl<'g> Sorted<'g> {
     ///
     /// # Errors
     /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others; errors of
-    /// [`System::with_multipliers`].
+    /// [`System::with_multipliers`] and [`Adapted::new`].
     pub fn new(
         system: &System<'g>,
         constraints: &[Constraint<'g>],

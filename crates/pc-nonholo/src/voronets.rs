@@ -36,7 +36,7 @@ impl<'g> Voronets<'g> {
     ///
     /// # Errors
     /// [`NonholoError::NotInVelocities`];
-    /// [`MechError::SingularConstraint`] if the constraints are dependent at `at`.
+    /// [`MechError::SingularConstraint`](pc_mech::MechError::SingularConstraint) if the constraints are dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Voronets<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let (graph, x, v) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
@@ -73,12 +73,12 @@ impl<'g> Voronets<'g> {
         self.multipliers.equations().system().frame().coordinates()
     }
 
-    /// The symbols of the independent coordinates x_1..x_l.
+    /// The symbols of the independent coordinates x_i, length l.
     pub fn independent(&self) -> Vec<Expr<'g>> {
         self.independent.iter().map(|&i| self.coordinates()[i]).collect()
     }
 
-    /// The symbols of the dependent coordinates x_r.
+    /// The symbols of the dependent coordinates x_r, length n − l.
     pub fn dependent(&self) -> Vec<Expr<'g>> {
         self.dependent.iter().map(|&r| self.coordinates()[r]).collect()
     }
@@ -106,7 +106,10 @@ impl<'g> Voronets<'g> {
         self.graph().directional(functions, &rates)
     }
 
-    /// c_ji^r, j from 0 (time) and i from 1, one a dependent coordinate.
+    /// c_ji^r of (35), j = 0..l with 0 for time and i = 1..l, for each dependent coordinate: length n − l.
+    ///
+    /// # Panics
+    /// If j or i is larger than l.
     pub fn structure(&self, j: usize, i: usize) -> Vec<Expr<'g>> {
         let column = |i: usize| match i.checked_sub(1) {
             None => self.drift.clone(),
@@ -137,7 +140,7 @@ impl<'g> Voronets<'g> {
         Ok(self.multipliers.eliminated(&self.solved, flat)?.with_added_forces(&lost)?)
     }
 
-    /// Whether they are Chaplygin's: neither L, Q nor the coefficients depend on the dependent coordinates, and the α_r
+    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent coordinates, and the α_r
     /// vanish. Then the equations of the independent coordinates can be integrated alone.
     pub fn is_chaplygin(&self) -> bool {
         let system = self.multipliers.equations().system();

@@ -9,7 +9,7 @@ use crate::error::{MechError, shape};
 
 /// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
 ///
-/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω. That is right if r is the **mass centre** and I is taken about it, and
+/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken about it, and
 /// also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is taken about that
 /// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is
 /// not written here: give the mass centre.

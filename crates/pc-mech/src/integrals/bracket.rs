@@ -171,7 +171,7 @@ impl<'g> PoissonBracket<'g> {
         self.graph
     }
 
-    /// The variables z: (x, y), or (t, x, y_0, y) of the extended bracket.
+    /// The variables z: (x, y), n + k of them, or (t, x, y_0, y) of the extended bracket, n + k + 2.
     pub fn variables(&self) -> &[Expr<'g>] {
         &self.variables
     }
@@ -181,12 +181,12 @@ impl<'g> PoissonBracket<'g> {
         self.time_momentum
     }
 
-    /// The Poisson tensor P_ij = (z_i, z_j), square and skew.
+    /// The Poisson tensor P_ij = (z_i, z_j), skew, with a row and a column for each variable.
     pub fn tensor(&self) -> &Matrix<Expr<'g>> {
         &self.tensor
     }
 
-    /// (f, g)
+    /// (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j (12).
     ///
     /// The bracket of two integrals of the motion that it generates is an integral (Poisson's theorem); see
     /// [`closure`](PoissonBracket::closure).
@@ -194,7 +194,7 @@ impl<'g> PoissonBracket<'g> {
         self.rates(&[f], g)[0]
     }
 
-    /// The rates (f, h) of the functions f along the flow of h, ż_i = (z_i, h).
+    /// The rates (f, h) of the functions f, one each, along the flow of h, ż_i = (z_i, h).
     pub fn rates(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Vec<Expr<'g>> {
         let field = self.variables.iter().copied().zip(self.field(h)).collect::<Vec<_>>();
         self.graph.directional(functions, &field)

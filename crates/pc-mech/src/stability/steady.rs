@@ -71,7 +71,7 @@ impl SteadyOptions {
     }
 }
 
-/// An equilibrium or a steady motion.
+/// An equilibrium or a steady motion (Routh): f_i(t, y) = 0 for all components i but the cyclic coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyMotion {
     /// y, as long as the state; cyclic coordinates have the values of the guess.
