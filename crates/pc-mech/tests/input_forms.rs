@@ -1,5 +1,7 @@
 //! The forms in which energy and forces can be given say the same.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 mod common;
 
 use pc_mech::{Expr, Frame, Graph, Matrix, MechError, Particle, System, SystemBuilder};
