@@ -1,6 +1,6 @@
 //! Frames in which constraints are vanishing quasi-velocities.
 
-use pc_mech::{Constraint, Expr, Multipliers, System};
+use pc_mech::{Constraint, Expr, MechError, Multipliers, System};
 
 use crate::constrained::Constrained;
 use crate::error::NonholoError;
@@ -43,6 +43,19 @@ impl<'g> Adapted<'g> {
             independent.iter().chain(multipliers.velocities()).copied().collect();
         let free = independent.len();
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
+    }
+
+    /// The same with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
+    /// metric: their mass matrix is the unit matrix, l × l.
+    ///
+    /// # Errors
+    /// [`NonholoError::Mech`], those of [`System::in_orthonormal_frame`].
+    pub fn orthonormal<S: AsRef<str>>(&self, names: &[S]) -> Result<Adapted<'g>, NonholoError> {
+        if names.len() != self.free {
+            let (what, found) = ("the list of names", names.len());
+            return Err(MechError::Shape { what, found, expected: self.free }.into());
+        }
+        Ok(Adapted { system: self.system.in_orthonormal_frame(names)?, free: self.free })
     }
 
     /// The system of all k quasi-velocities, the free ones first.

@@ -91,3 +91,43 @@ fn constraints_are_sorted_by_frobenius_test() {
     assert_eq!(error.to_string(), "the constraint `impossible` contradicts itself: no velocity satisfies it");
     assert_eq!(sort(&system, &[Constraint::new("empty", vx - vx)], &at).redundant().len(), 1);
 }
+
+/// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is what it is in independent velocities.
+#[test]
+fn an_orthonormal_frame_tells_the_same_motion() {
+    let graph = Graph::new();
+    let system = sleigh(&graph);
+    let [vx, vy, phi] = graph.symbols(["x'", "y'", "φ"]);
+    let blade = Constraint::new("blade", vy * phi.cos() - vx * phi.sin());
+    let at = [state(&graph, &system), vec![(phi, 0.5)]].concat();
+    let multipliers = system.with_multipliers(&[blade]).unwrap();
+    let plain = Adapted::new(&multipliers, &at).unwrap();
+    let orthonormal = plain.orthonormal(&["ζ1", "ζ2"]).unwrap();
+    let accelerations = |adapted: &Adapted<'_>, eta: &[(&str, f64)]| {
+        let constrained = adapted.constrained().unwrap();
+        let equations = constrained.equations();
+        let system = equations.system();
+        let x = system.frame().coordinates().iter().copied().zip(equations.velocities().iter().copied());
+        let rates = system.quasi_velocities().iter().copied().zip(equations.accelerations());
+        let along: Vec<_> = x.chain(rates).collect();
+        let second = graph.directional(equations.velocities(), &along);
+        let known = eta.iter().map(|&(name, value)| (graph.symbol(name), value));
+        let values: Vec<_> = system.parameters().iter().copied().chain([(phi, 0.7)]).chain(known).collect();
+        let both = [equations.velocities(), &second].concat();
+        graph.evaluate(&both, &values).unwrap()
+    };
+    let constrained = orthonormal.constrained().unwrap();
+    let mass = constrained.equations().mass_matrix();
+    assert_eq!(mass.entries(), [Expr::ONE, Expr::ZERO, Expr::ZERO, Expr::ONE]);
+
+    let (zeta1, zeta2) = (0.4, -0.9);
+    let expected = accelerations(&orthonormal, &[("ζ1", zeta1), ("ζ2", zeta2)]);
+    let found = accelerations(&plain, &[("x'", expected[0]), ("φ'", expected[2])]);
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!((found - expected).abs() < 1e-14, "{found} instead of {expected}"); // rounding
+    }
+    assert_eq!(
+        plain.orthonormal(&["ζ1"]).unwrap_err().to_string(),
+        "the list of names has 1 entries where 2 are needed"
+    );
+}
