@@ -3,11 +3,12 @@
 use pc_mech::{Canonical, Style};
 use serde_json::{Value, json};
 
-use crate::derive::{Operations, aligned, brackets, description, kinematics, sections, strings};
+use crate::binding::{constraint_objects, constraints};
+use crate::derive::{Derived, Operations, aligned, brackets, description, kinematics, sections, strings};
 
-/// The equations as a book prints them: kinematics, brackets, momenta, Hamiltonian, ẏ = …, operations. Where they are
+/// The equations as a book prints them: constraints, kinematics, brackets, momenta, Hamiltonian, ẏ = …, operations. Where they are
 /// not closed, the momenta are equations for η.
-pub fn text(equations: &Canonical<'_>, operations: &Operations) -> String {
+pub fn text(derived: &Derived<'_>, equations: &Canonical<'_>, operations: &Operations) -> String {
     let system = equations.system();
     let lines = |pairs: &[(String, String)]| aligned(pairs.iter().map(|(left, right)| (left, right)));
     let cost = if equations.is_closed() {
@@ -16,6 +17,7 @@ pub fn text(equations: &Canonical<'_>, operations: &Operations) -> String {
         "Operations of one right-hand side, quasi-velocities known"
     };
     sections(&[
+        ("Constraints", constraints(derived)),
         ("Kinematics", kinematics(system, equations.velocities())),
         ("Brackets", brackets(system, &[])),
         ("Momenta", lines(&momenta(equations, Style::Book))),
@@ -33,9 +35,17 @@ pub fn momenta(equations: &Canonical<'_>, style: Style) -> Vec<(String, String)>
 
 /// The equations for programs. Where they are not `closed`, there are no `quasi_velocities_of_momenta`, and the
 /// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
-pub fn object(title: &str, equations: &Canonical<'_>, operations: &Operations) -> Value {
+pub fn object(
+    title: &str,
+    derived: &Derived<'_>,
+    equations: &Canonical<'_>,
+    operations: &Operations,
+) -> Value {
     let mut object = description(title, equations.system(), &[]);
     let solved = equations.is_closed().then(|| strings(equations.quasi_velocities()));
+    if !derived.constraints.is_empty() {
+        object.insert("constraints".to_owned(), constraint_objects(derived));
+    }
     for (key, value) in [
         ("momenta", json!(strings(equations.momenta()))),
         ("closed", json!(equations.is_closed())),

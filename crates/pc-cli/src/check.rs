@@ -6,14 +6,15 @@ mod steady;
 
 use pc_mech::{Equations, Expr, Graph, MechError, Motion, Neighbourhood, VectorField};
 use pc_model::{Assembly, Form, Model, Verdict};
-use pc_nonholo::Kind;
+use pc_nonholo::{Kind, Redundant};
 use serde_json::{Value, json};
 
 use self::frame::FrameFacts;
 use self::integrals::Integral;
 use self::steady::Search;
 use crate::args::{CheckArguments, Format};
-use crate::derive::{Operations, counted, kind_in_words};
+use crate::binding::{dropped, kind_in_words};
+use crate::derive::{Operations, counted};
 use crate::error::CliError;
 use crate::input;
 use crate::text::{assignments, columns, labelled, print, short, small, wrapped};
@@ -45,7 +46,8 @@ struct Report<'g> {
     jacobi_residual: f64,
     algebra: String,
     mass_rank: usize,
-    mass_size: usize,
+    /// The number of its rows.
+    free: usize,
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
@@ -53,6 +55,7 @@ struct Report<'g> {
     /// Each with what it does.
     constraints: Vec<(String, String)>,
     verdicts: Vec<Verdict>,
+    redundant: Vec<Redundant>,
     start_residual: f64,
     integrals: Vec<Integral<'g>>,
     steady: Search,
@@ -94,13 +97,14 @@ impl<'g> Report<'g> {
             jacobi_residual: frame.jacobi_residual(structure, &near),
             algebra: frame::algebra(structure),
             mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
-            mass_size: equations.mass_matrix().rows(),
+            free: equations.mass_matrix().rows(),
             t_start: assembly.t_start,
             start: assembly.start.clone(),
             largest_rate: if evaluated { largest_rate } else { f64::NAN },
             frame: FrameFacts::of(system, &near),
             constraints: constraints(assembly),
             verdicts: assembly.bound.verdicts().to_vec(),
+            redundant: assembly.bound.redundant().to_vec(),
             start_residual: start_residual(assembly, &near),
             steady: steady_motion(assembly, equations, motion, &integrals),
             integrals,
@@ -138,7 +142,7 @@ impl<'g> Report<'g> {
             ("Jacobi identity", vec![residual(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
             ("constraints", self.constraint_lines()),
-            ("mass matrix", vec![format!("symmetric, rank {} of {}", self.mass_rank, self.mass_size)]),
+            ("mass matrix", vec![format!("symmetric, rank {} of {}", self.mass_rank, self.free)]),
             ("start", start),
             (
                 "rates there",
@@ -191,6 +195,7 @@ impl<'g> Report<'g> {
             "holonomic": holonomic,
             "closure_residual": self.closure_residual,
             "constraints": self.verdicts.iter().map(constraint).collect::<Vec<_>>(),
+            "dropped_constraints": self.redundant.iter().map(dropped_object).collect::<Vec<_>>(),
             "jacobi_residual": self.jacobi_residual,
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,
@@ -232,15 +237,8 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
         };
         (verdict.constraint.clone(), words)
     });
-    let redundant = assembly.bound.redundant().iter().map(|redundant| {
-        let of = match redundant.follows_from.as_slice() {
-            [] => "says nothing".to_owned(),
-            names => format!("follows from {}", names.join(", ")),
-        };
-        (redundant.constraint.clone(), format!("{of}; dropped"))
-    });
-    let all: Vec<_> = binding.chain(redundant).collect();
-    all
+    let redundant = dropped(assembly).into_iter().map(|(name, reason)| (name, format!("{reason}; dropped")));
+    binding.chain(redundant).collect()
 }
 
 fn constraint(verdict: &Verdict) -> Value {
@@ -249,6 +247,10 @@ fn constraint(verdict: &Verdict) -> Value {
         Kind::Position | Kind::Integrable => 0.0,
     };
     json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
+}
+
+fn dropped_object(redundant: &Redundant) -> Value {
+    json!({ "name": redundant.constraint, "follows_from": redundant.follows_from })
 }
 
 /// The largest value at the start of what should vanish.

@@ -8,6 +8,7 @@ use pc_nonholo::{Kind, NonholoError, Voronets};
 use serde_json::{Map, Value, json};
 
 use crate::args::{DeriveArguments, Form, Page};
+use crate::binding::{constraint_objects, constraints, say_dropped};
 use crate::canonical;
 use crate::error::CliError;
 use crate::input;
@@ -22,6 +23,7 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
+    say_dropped(&assembly);
     let title = input::title(&model);
     let page = page(arguments, title, &assembly).map_err(|error| model.constraint_error(error))?;
     print(|out| write!(out, "{page}"))
@@ -30,13 +32,14 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
 /// The equations in the form and format that are asked for.
 fn page(arguments: &DeriveArguments, title: &str, assembly: &Assembly<'_>) -> Result<String, NonholoError> {
     if arguments.form == Form::Canonical {
+        let (_, derived) = Derived::new(arguments.form, assembly)?;
         let equations = assembly.free_system()?.canonical()?;
         let operations = Operations::of_canonical(&equations).map_err(MechError::from)?;
         let heading = format!("{title}: canonical equations");
         return Ok(match arguments.format {
-            Page::Text => underlined(&heading) + &canonical::text(&equations, &operations),
-            Page::Latex => latex::canonical_page(&heading, &equations),
-            Page::Json => format!("{:#}\n", canonical::object(title, &equations, &operations)),
+            Page::Text => underlined(&heading) + &canonical::text(&derived, &equations, &operations),
+            Page::Latex => latex::canonical_page(&heading, &derived, &equations),
+            Page::Json => format!("{:#}\n", canonical::object(title, &derived, &equations, &operations)),
         });
     }
     let (name, derived) = Derived::new(arguments.form, assembly)?;
@@ -203,31 +206,13 @@ pub fn text(derived: &Derived<'_>, operations: &Operations) -> String {
     ])
 }
 
-/// What vanishes, a line a constraint.
-fn constraints(derived: &Derived<'_>) -> Vec<String> {
-    let lines = derived.constraints.iter().map(|(constraint, kind)| {
-        let (left, kind) = (derived.vanishing(constraint, Style::Book), kind_in_words(*kind));
-        format!("{}: {left} = 0   ({kind})", constraint.name())
-    });
-    lines.collect()
-}
-
 impl<'g> Derived<'g> {
     /// The left-hand side of a constraint, written out if it is a quasi-velocity.
-    pub fn vanishing(&self, constraint: &Constraint<'g>, style: Style) -> String {
+    pub fn vanishing(&self, constraint: &Constraint<'g>) -> Expr<'g> {
         let expression = constraint.expression();
         let known =
             self.definitions.iter().find(|(eta, _)| *eta == expression && self.vanishing.contains(eta));
-        known.map_or(expression, |&(_, definition)| definition).display(style)
-    }
-}
-
-/// What a constraint does.
-pub fn kind_in_words(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Position => "holonomic",
-        Kind::Integrable => "holonomic in disguise: integrable",
-        Kind::Nonholonomic { .. } => "nonholonomic",
+        known.map_or(expression, |&(_, definition)| definition)
     }
 }
 
@@ -350,8 +335,7 @@ pub fn object(title: &str, derived: &Derived<'_>, operations: &Operations) -> Va
     let equations = &derived.equations;
     let mut object = description(title, equations.system(), &derived.vanishing);
     if !derived.constraints.is_empty() {
-        let constraints: Vec<Value> = derived.constraints.iter().map(constraint_object).collect();
-        object.insert("constraints".to_owned(), json!(constraints));
+        object.insert("constraints".to_owned(), constraint_objects(derived));
         let reactions =
             derived.reactions.iter().map(|(name, value)| (name.to_string(), json!(value.to_string())));
         object.insert("reactions".to_owned(), Value::Object(reactions.collect()));
@@ -361,14 +345,6 @@ pub fn object(title: &str, derived: &Derived<'_>, operations: &Operations) -> Va
     object.insert("energy".to_owned(), json!(equations.energy().to_string()));
     object.insert("operations".to_owned(), operations.object());
     Value::Object(object)
-}
-
-fn constraint_object((constraint, kind): &(Constraint<'_>, Kind)) -> Value {
-    json!({
-        "name": constraint.name(),
-        "expression": constraint.expression().to_string(),
-        "kind": kind_in_words(*kind),
-    })
 }
 
 /// What all forms of the equations have in common.

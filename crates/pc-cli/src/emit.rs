@@ -6,6 +6,7 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Graph, Language};
 
 use crate::args::{EmitArguments, Lang};
+use crate::binding::{choice, say_choice, say_dropped};
 use crate::error::CliError;
 use crate::input;
 use crate::output::atomic;
@@ -25,6 +26,11 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(input::title(&model));
+    say_dropped(&assembly);
+    if let Some(remark) = choice(&assembly, equations.system()) {
+        say_choice(&remark);
+        options = options.remark(remark);
+    }
     if let Some(t_end) = &model.document().simulation.t_end {
         let system = equations.system();
         let state = [system.frame().coordinates(), system.quasi_velocities()].concat();

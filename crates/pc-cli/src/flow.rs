@@ -1,7 +1,8 @@
 //! The vector field that is integrated, and what a table shows of its states.
 
-use pc_mech::{LegendreTransform, Motion};
-use pc_model::{Assembly, Model, ModelError};
+use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use pc_mech::{LegendreTransform, MechError, Motion};
+use pc_model::{Assembly, Form, Model, ModelError};
 
 use crate::args::RunForm;
 
@@ -14,10 +15,13 @@ pub struct Flow {
     pub start: Vec<f64>,
     /// Coordinates and declared quasi-velocities, the columns of a table whatever the form.
     pub names: Vec<String>,
-    /// The component of each of these in the state; none of those that constraints keep at zero.
-    components: Vec<Option<usize>>,
+    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η) with the free η.
+    quasi_velocities: Evaluator,
+    parameters: Vec<f64>,
     /// From momenta to quasi-velocities, where the state has momenta.
     transform: Option<LegendreTransform>,
+    /// What knows the residuals of constraints that the motion does not know.
+    watch: Option<Motion>,
 }
 
 impl Flow {
@@ -28,9 +32,10 @@ impl Flow {
     pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Result<Flow, ModelError> {
         match form {
             RunForm::Poincare => {
-                let (motion, start) = model.compile(assembly)?;
-                let components = motion.names().to_vec();
-                Ok(Flow::of(assembly, &components, (motion, start), None))
+                let compiled = model.compile(assembly)?;
+                let all = assembly.system.quasi_velocities().iter().copied();
+                let free = all.filter(|eta| compiled.0.names().contains(&eta.to_string())).collect();
+                Flow::of(model, assembly, free, compiled, None)
             }
             RunForm::Canonical => {
                 let refused = |error| model.derivation_error(error);
@@ -44,41 +49,83 @@ impl Flow {
                 let mut transform = canonical.legendre_transform().map_err(refused)?;
                 let start = transform.to_momenta(assembly.t_start, &start).map_err(refused)?;
                 let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
-                let components: Vec<String> = state.iter().map(ToString::to_string).collect();
-                Ok(Flow::of(assembly, &components, (motion, start), Some(transform)))
+                let free = system.quasi_velocities().to_vec();
+                let mut flow = Flow::of(model, assembly, free, (motion, start), Some(transform))?;
+                if let Form::Held(_) = assembly.bound.form() {
+                    flow.watch = Some(model.compile(assembly)?.0);
+                }
+                Ok(flow)
             }
         }
     }
 
-    /// The flow of a motion whose state, in quasi-velocities, has these components.
-    fn of(
-        assembly: &Assembly<'_>,
-        components: &[String],
+    /// The flow of a motion whose state has, or whose momenta have, these free quasi-velocities.
+    fn of<'g>(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        free: Vec<Expr<'g>>,
         (motion, start): (Motion, Vec<f64>),
         transform: Option<LegendreTransform>,
-    ) -> Flow {
+    ) -> Result<Flow, ModelError> {
         let system = &assembly.system;
+        let x = system.frame().coordinates();
         let declared = &system.quasi_velocities()[..assembly.declared];
-        let names: Vec<String> =
-            system.frame().coordinates().iter().chain(declared).map(ToString::to_string).collect();
-        let components = names.iter().map(|name| components.iter().position(|c| c == name)).collect();
-        Flow { motion, start, names, components, transform }
+        let all = assembly.quasi_velocities_of(&free).map_err(|error| model.constraint_error(error))?;
+        let inputs = Inputs {
+            time: Some(system.frame().time()),
+            state: x.iter().copied().chain(free).collect(),
+            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+        };
+        let program = Program::new(system.graph(), &inputs, &all)
+            .map_err(|error| model.derivation_error(MechError::from(error)))?;
+        Ok(Flow {
+            motion,
+            start,
+            names: x.iter().chain(declared).map(ToString::to_string).collect(),
+            quasi_velocities: Evaluator::new(program, Backend::Interpreter),
+            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            transform,
+            watch: None,
+        })
     }
 
-    /// Coordinates and quasi-velocities of a state, then the observables. Where momenta have no quasi-velocities,
-    /// these are no numbers, as the observables are none.
-    pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut shown = state.to_vec();
+    /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.
+    fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let n = self.motion.coordinates();
+        let mut free = state.to_vec();
         if let Some(transform) = &mut self.transform {
             match transform.to_quasi_velocities(t, state) {
-                Ok(state) => shown = state,
-                Err(_) => shown[self.motion.coordinates()..].fill(f64::NAN),
+                Ok(state) => free = state,
+                Err(_) => free[n..].fill(f64::NAN),
             }
         }
-        let mut row: Vec<f64> =
-            self.components.iter().map(|component| component.map_or(0.0, |i| shown[i])).collect();
+        let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
+        let (coordinates, quasi_velocities) = all.split_at_mut(n);
+        coordinates.copy_from_slice(&free[..n]);
+        self.quasi_velocities.eval(t, &free, &self.parameters, quasi_velocities);
+        all
+    }
+
+    /// Coordinates and declared quasi-velocities of a state, then the observables.
+    pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let mut row = self.shown(t, state);
+        row.truncate(self.names.len());
         row.extend(self.motion.observe(t, state));
         row
+    }
+
+    /// Names of the constraints held by multipliers, and of those solved for velocities.
+    pub fn constraint_names(&self) -> Vec<String> {
+        self.watch.as_ref().unwrap_or(&self.motion).constraint_names().to_vec()
+    }
+
+    /// What should be zero of each of these.
+    pub fn constraint_residuals(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let shown = self.shown(t, state);
+        match &mut self.watch {
+            Some(watch) => watch.constraint_residuals(t, &shown),
+            None => self.motion.constraint_residuals(t, state),
+        }
     }
 
     /// Number of quasi-velocities.

@@ -13,12 +13,10 @@ pub fn page(heading: &str, derived: &Derived<'_>) -> String {
     let set = |list: &[(Expr<'_>, Expr<'_>)]| -> Vec<(String, String)> {
         list.iter().map(|(left, right)| (left.display(Style::Latex), right.display(Style::Latex))).collect()
     };
-    let constraints = derived.constraints.iter();
-    let constraints = constraints.map(|(c, _)| (derived.vanishing(c, Style::Latex), "0".to_owned()));
     displays(
         heading,
         &[
-            ("Constraints", constraints.collect()),
+            ("Constraints", constraints(derived)),
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &derived.vanishing)),
             ("Equations", equations.balance(Style::Latex)),
@@ -28,11 +26,17 @@ pub fn page(heading: &str, derived: &Derived<'_>) -> String {
     )
 }
 
+fn constraints(derived: &Derived<'_>) -> Vec<(String, String)> {
+    let constraints = derived.constraints.iter();
+    constraints.map(|(c, _)| (derived.vanishing(c).display(Style::Latex), "0".to_owned())).collect()
+}
+
 /// The same of the canonical equations.
-pub fn canonical_page(heading: &str, equations: &Canonical<'_>) -> String {
+pub fn canonical_page(heading: &str, derived: &Derived<'_>, equations: &Canonical<'_>) -> String {
     displays(
         heading,
         &[
+            ("Constraints", constraints(derived)),
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &[])),
             ("Momenta", canonical::momenta(equations, Style::Latex)),

@@ -12,6 +12,7 @@
 //! output, what it says about it to standard error.
 
 pub mod args;
+pub mod binding;
 pub mod canonical;
 pub mod check;
 pub mod derive;

@@ -8,6 +8,7 @@ use pc_model::Model;
 use pc_solve::{SolveError, Statistics, Trajectory, solve_observed};
 
 use crate::args::{RunArguments, RunForm};
+use crate::binding::{choice, dropped, say_choice};
 use crate::error::CliError;
 use crate::flow::Flow;
 use crate::output::Destination;
@@ -32,6 +33,8 @@ pub struct Run {
     pub table: Table,
     /// The constraints that are held, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
+    /// The constraints that were dropped, each with the reason.
+    pub dropped: Vec<(String, String)>,
     /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
     pub keeps_energy: bool,
     /// How it ended.
@@ -100,6 +103,10 @@ pub fn integrate(
     let assembly = model.assemble(&graph)?;
     let mut flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
+    let free = assembly.free_system().map_err(|error| model.constraint_error(error));
+    if let (RunForm::Canonical, Ok(free)) = (form, &free) {
+        choice(&assembly, free).iter().for_each(|choice| say_choice(choice));
+    }
 
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
@@ -113,7 +120,7 @@ pub fn integrate(
     let wall = start.elapsed();
     drop(progress);
 
-    let keeps_energy = assembly.free_system().is_ok_and(|system| system.energy_rate().is_zero());
+    let keeps_energy = free.is_ok_and(|system| system.energy_rate().is_zero());
     let (trajectory, ending) = match solved {
         Ok(trajectory) if trajectory.is_complete() => (trajectory, Ending::Completed),
         Ok(trajectory) => (trajectory, Ending::Interrupted),
@@ -125,6 +132,7 @@ pub fn integrate(
         state: flow.motion.names().to_vec(),
         table: Table::new(&mut flow, &trajectory),
         constraints: residuals(&mut flow, &trajectory),
+        dropped: dropped(&assembly),
         keeps_energy,
         statistics: *trajectory.statistics(),
         plan,
@@ -134,10 +142,9 @@ pub fn integrate(
 }
 
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
-    let mut worst: Vec<(String, f64)> =
-        flow.motion.constraint_names().iter().map(|name| (name.clone(), 0.0)).collect();
+    let mut worst: Vec<(String, f64)> = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
     for (t, y) in trajectory.iter() {
-        for ((_, worst), residual) in worst.iter_mut().zip(flow.motion.constraint_residuals(t, y)) {
+        for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
             // f64::max would lose a NaN
             if residual.abs() > *worst || residual.is_nan() {
                 *worst = residual.abs();

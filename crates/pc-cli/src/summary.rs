@@ -31,6 +31,8 @@ pub fn text(run: &Run) -> String {
     if !run.constraints.is_empty() {
         line("held", &held(run));
     }
+    let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
+    line("dropped", &dropped.collect::<Vec<_>>());
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.quasi_velocities().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
@@ -91,6 +93,8 @@ pub fn json(run: &Run) -> Value {
             (table.columns()[j].clone(), json!({ "absolute": drift.absolute, "relative": drift.relative }))
         })
         .collect();
+    let held: Map<String, Value> =
+        run.constraints.iter().map(|(name, worst)| (name.clone(), json!(worst))).collect();
     json!({
         "ending": run.ending.word(),
         "method": plan.method.to_string().to_lowercase(),
@@ -105,5 +109,6 @@ pub fn json(run: &Run) -> Value {
         "rejected_steps": work.error_test_failures,
         "keeps_energy": run.keeps_energy,
         "drift": drift,
+        "constraints": held,
     })
 }

@@ -19,6 +19,7 @@ pub struct EmitOptions {
     language: Language,
     name: String,
     title: String,
+    remark: String,
     start: Option<Start>,
     fused: bool,
 }
@@ -35,13 +36,20 @@ impl EmitOptions {
     /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
     pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
         let name = name.into();
-        EmitOptions { language, title: name.clone(), name, start: None, fused: false }
+        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false }
     }
 
     /// The title of the system, for the first line; without it the name.
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> EmitOptions {
         self.title = title.into();
+        self
+    }
+
+    /// What a reader has to know of the equations, lines for the comment at the head.
+    #[must_use]
+    pub fn remark(mut self, remark: impl Into<String>) -> EmitOptions {
+        self.remark = remark.into();
         self
     }
 
@@ -342,6 +350,10 @@ impl Source<'_> {
                 env!("CARGO_PKG_VERSION")
             ),
         ];
+        if !self.options.remark.is_empty() {
+            lines.push(String::new());
+            lines.extend(self.options.remark.lines().map(comment));
+        }
         if !self.equations.is_empty() {
             lines.extend([
                 String::new(),

@@ -51,6 +51,24 @@ impl<'g> Constraint<'g> {
         let along: Vec<_> = rates.chain([(frame.time(), Expr::ONE)]).collect();
         graph.directional(&[self.expression], &along)[0]
     }
+
+    /// C_s, length k, and c_0 of what [vanishes of the velocities](Constraint::velocity), C_s η_s + c_0.
+    ///
+    /// # Errors
+    /// [`MechError::ConstraintNotAffine`]
+    pub fn coefficients(&self, system: &System<'g>) -> Result<(Vec<Expr<'g>>, Expr<'g>), MechError> {
+        let (graph, eta) = (system.graph(), &system.quasi_velocities);
+        let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let affine = |value: Expr<'g>| {
+            let row = graph.substitute(&graph.gradient(value, eta), &at_rest);
+            let rest = graph.substitute(&[value], &at_rest)[0];
+            // Derivatives alone do not show |η| and the sign of η.
+            let exact = (value - rest - graph.dot(row.iter().copied(), eta.iter().copied())).is_zero();
+            exact.then_some((row, rest))
+        };
+        let whole = affine(self.expression).and_then(|_| affine(self.velocity(system)));
+        whole.ok_or_else(|| MechError::ConstraintNotAffine { constraint: self.name.clone() })
+    }
 }
 
 /// Poincaré's equations with multipliers (Lagrange's equations of the first kind, in quasi-velocities),
@@ -107,24 +125,20 @@ impl<'g> System<'g> {
     /// [`MechError::DependentConstraint`] for one that follows from those before it, or contradicts them;
     /// [`MechError::DegenerateLagrangian`] if the constraints leave velocities without inertia.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
-        let (graph, eta) = (self.graph(), &self.quasi_velocities);
-        let (k, m) = (eta.len(), constraints.len());
+        let graph = self.graph();
+        let (k, m) = (self.quasi_velocities.len(), constraints.len());
         if m >= k {
             return Err(MechError::TooManyConstraints { constraints: m, quasi_velocities: k });
         }
         let mut velocities = Vec::new();
         let mut rows = Vec::new();
         for constraint in constraints {
-            let velocity = constraint.velocity(self);
-            let row = graph.gradient(velocity, eta);
-            if row.iter().any(|c| eta.iter().any(|&eta| c.depends_on(eta))) {
-                return Err(MechError::ConstraintNotAffine { constraint: constraint.name.clone() });
-            }
+            let (row, _) = constraint.coefficients(self)?;
             rows.push(row);
             if graph.generic_rank(&rows) < rows.len() {
                 return Err(MechError::DependentConstraint { constraint: constraint.name.clone() });
             }
-            velocities.push(velocity);
+            velocities.push(constraint.velocity(self));
         }
         let equations = self.equations(k)?;
         let along: Vec<_> = self

@@ -283,3 +283,122 @@ fn independent_velocities_need_integrable_constraints() {
     let system = system.with_multipliers(&[groove]).unwrap().in_independent_velocities(&at).unwrap();
     assert_eq!(system.quasi_velocities(), [vx, vz]);
 }
+
+/// L = −√(1 − v²) − y of a bead on the unit circle: M = γ (1 + γ² v vᵀ), θ̈ = −cos θ (1 − v²)^(3/2).
+#[test]
+fn the_mass_matrix_may_depend_on_velocities() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let bead = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| -(1.0 - v[0].square() - v[1].square()).sqrt() - x[1])
+        .build()
+        .unwrap();
+    let circle = Constraint::new("circle", x.square() + y.square() - 1.0);
+    let mut motion = bead.with_multipliers(&[circle]).unwrap().compile().unwrap();
+    for (angle, speed) in [(0.3f64, 0.9f64), (-1.4, 0.5), (2.9, -0.99)] {
+        let (s, c) = angle.sin_cos();
+        let mut rates = [0.0; 4];
+        motion.rhs(0.0, &[c, s, -s * speed, c * speed], &mut rates).unwrap();
+        let along = -c * (1.0 - speed * speed).powf(1.5);
+        let expected = [-s * along - c * speed * speed, c * along - s * speed * speed];
+        for (found, expected) in rates[2..].iter().zip(expected) {
+            // Rounding, times γ² which is 50 at most.
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+        // The velocity is projected by the metric of the state: M δη is along the normal.
+        let (u, v) = (-s * speed + 0.05 * c, c * speed + 0.05 * s);
+        let mut projected = [c, s, u, v];
+        motion.project(0.0, &mut projected).unwrap();
+        let (du, dv) = (projected[2] - u, projected[3] - v);
+        let gamma2 = 1.0 / (1.0 - u * u - v * v);
+        let momentum = [du + gamma2 * u * (u * du + v * dv), dv + gamma2 * v * (u * du + v * dv)];
+        assert!((projected[2] * c + projected[3] * s).abs() < 1e-15, "on the circle");
+        assert!((momentum[1] * c - momentum[0] * s).abs() < 1e-13, "{momentum:?}");
+    }
+}
+
+/// Units of masses and constraints, and masses that are zero, change nothing but the multipliers.
+#[test]
+fn units_do_not_matter() {
+    let graph = Graph::new();
+    let [vx, vy, vz, x, y] = graph.symbols(["x'", "y'", "z'", "x", "y"]);
+    let rates = |mass: f64, units: [f64; 2]| {
+        let system = System::builder(&graph)
+            .coordinates(["x", "y", "z"])
+            .lagrangian(|_, x, v| mass * ((v[0].square() + v[1].square()) / 2.0 - x[2]))
+            .build()
+            .unwrap();
+        // z is without mass, and carried by x and by y: k = 1 + m.
+        let constraints = [
+            Constraint::new("a", units[0] * (vz - vx * (1.0 + y.square()))),
+            Constraint::new("b", units[1] * (vz - vy * (1.0 + x.square()))),
+        ];
+        let mut motion = system.with_multipliers(&constraints).unwrap().compile().unwrap();
+        let mut rates = [0.0; 6];
+        motion.rhs(0.0, &[0.3, -0.5, 0.2, 0.7, 1.25 / 1.09 * 0.7, 1.25 * 0.7], &mut rates).unwrap();
+        rates
+    };
+    let expected = rates(1.0, [1.0, 1.0]);
+    for (mass, units) in
+        [(1e30, [1.0, 1.0]), (1e-30, [1.0, 1.0]), (1.0, [1e12, 1e-12]), (1e20, [1e-150, 1e100])]
+    {
+        for (found, expected) in rates(mass, units).iter().zip(&expected) {
+            // The choice may differ: rounding of some dozen operations.
+            assert!((found - expected).abs() < 1e-14, "{mass:e} {units:?}: {found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_number_is_named() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .external_force(["y'"])
+        .build()
+        .unwrap();
+    let curve = Constraint::new("curve", y - x.sqrt());
+    let multipliers = system.with_multipliers(&[curve]).unwrap();
+    let push = |t: f64, _: &[f64], q: &mut [f64]| q[0] = if t > 0.0 { f64::NAN } else { 2.0 };
+    let mut motion = multipliers.compile_forced_for(CompileOptions::default(), push).unwrap();
+    let state = [1.0, 1.0, 2.0, 1.0];
+    let mut rates = [0.0; 4];
+    motion.rhs(0.0, &state, &mut rates).unwrap();
+    // (1, ½) q̈ = −ẋ²/4 · (0, 1) + forces along (1, ½): ẍ (1 + ¼) + ½ (−ẋ²/4) = ½ · 2
+    assert!((rates[2] - (1.0 + 0.5) / 1.25).abs() < 1e-15, "{rates:?}");
+    let failure = motion.rhs(1.0, &state, &mut rates).unwrap_err();
+    assert_eq!(
+        failure.to_string(),
+        "the external force on `y'` is NaN at t = 1, x = 1, y = 1, x' = 2, y' = 1"
+    );
+    assert!(motion.observe(1.0, &state)[0].is_finite(), "the energy has no force in it");
+    motion.project(1.0, &mut [1.1, 1.0, 2.0, 1.0]).unwrap();
+    motion.rhs(0.0, &state, &mut rates).unwrap();
+    // Off the domain of the constraint.
+    let failure = motion.rhs(0.0, &[-1.0, 1.0, 2.0, 1.0], &mut rates).unwrap_err();
+    assert!(failure.to_string().contains("sqrt(x)"), "{failure}");
+    let failure = motion.project(0.0, &mut [-1.0, 1.0, 2.0, 1.0]).unwrap_err();
+    assert!(failure.to_string().contains("sqrt(x)"), "{failure}");
+}
+
+/// |η| and the sign of η have derivatives that show no η.
+#[test]
+fn constraints_are_affine_or_refused() {
+    let graph = Graph::new();
+    let [x, vx, vy] = graph.symbols(["x", "x'", "y'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    for expression in [vx.abs() - vy, vx.sign() - 1.0, vx.sign() * x, vx * vy, (x + vx).sin()] {
+        let error = system.with_multipliers(&[Constraint::new("c", expression)]).unwrap_err();
+        assert_eq!(error, MechError::ConstraintNotAffine { constraint: "c".to_owned() }, "{expression}");
+    }
+    let disguised = Constraint::new("c", ((vx + vy).square() - vy.square()) / (vx + 2.0 * vy) - x * vy - x);
+    let (row, rest) = disguised.coefficients(&system).unwrap();
+    assert_eq!((row, rest), (vec![1.0.into(), -x], -x));
+}

@@ -4,6 +4,7 @@ mod bodies;
 mod brackets;
 mod constraints;
 mod frame;
+mod trial;
 
 use pc_mech::{Expr, Graph, System};
 

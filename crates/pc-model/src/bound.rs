@@ -90,7 +90,7 @@ impl<'g> Bound<'g> {
     pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
         Ok(match &self.form {
             Form::Free => None,
-            Form::Vanishing(constrained) => Some((**constrained).clone()),
+            Form::Vanishing(constrained) => Some(Constrained::clone(constrained)),
             Form::Held(held) if held.holonomic => None,
             Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
         })
@@ -125,6 +125,22 @@ impl<'g> Bound<'g> {
             Some(constrained) => constrained.free_system(),
             None => self.independent(system, at),
         }
+    }
+
+    pub(crate) fn quasi_velocities_of(
+        &self,
+        all: &[Expr<'g>],
+        free: &[Expr<'g>],
+    ) -> Result<Vec<Expr<'g>>, NonholoError> {
+        let dependent: Vec<usize> = (0..all.len()).filter(|&s| !free.contains(&all[s])).collect();
+        let solved = match &self.form {
+            Form::Held(held) if !dependent.is_empty() => held.multipliers.solved_for(&dependent)?,
+            Form::Free | Form::Vanishing(_) | Form::Held(_) => {
+                dependent.iter().map(|&s| (all[s], Expr::ZERO)).collect()
+            }
+        };
+        let value = |eta: &Expr<'g>| solved.iter().find(|(known, _)| known == eta).map_or(*eta, |&(_, x)| x);
+        Ok(all.iter().map(value).collect())
     }
 
     fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {

@@ -1,6 +1,7 @@
 //! What can be wrong with the meaning of a model whose text is well formed.
 
 use pc_expr::parse::nearest;
+use pc_expr::readable;
 
 use crate::error::Category;
 
@@ -110,13 +111,23 @@ pub enum Fault {
         residual: f64,
     },
     /// A start that does not satisfy a constraint.
-    #[error("the start is off the constraint `{constraint}`: {what}it is {residual:.6e}, not 0")]
+    #[error("the start is off the constraint `{constraint}`: {what} {}, not 0", rounded(*residual))]
     OffConstraint {
-        /// Empty, or `the rate of `.
+        /// `it is` or `its rate is`.
         what: &'static str,
         /// Its name.
         constraint: String,
         /// Its value at the start.
+        residual: f64,
+    },
+    /// A constraint that others keep at another value.
+    #[error("the constraint `{constraint}` {}{}, not 0", against(others), rounded(*residual))]
+    Contradictory {
+        /// Its name.
+        constraint: String,
+        /// The constraints that keep it constant; none if it is so by itself.
+        others: Vec<String>,
+        /// Its value.
         residual: f64,
     },
     /// A constraint that cannot be kept.
@@ -124,6 +135,8 @@ pub enum Fault {
     Constraint {
         /// Why.
         message: String,
+        /// What would be right.
+        help: &'static str,
     },
     /// A catalogue name that does not exist.
     #[error("there is no algebra named `{name}`")]
@@ -248,6 +261,20 @@ fn at(state: &[(String, f64)]) -> String {
     if values.is_empty() { String::new() } else { format!(" ({})", values.join(", ")) }
 }
 
+/// Six digits.
+fn rounded(value: f64) -> String {
+    readable(format!("{value:.5e}").parse().unwrap_or(value))
+}
+
+fn against(others: &[String]) -> String {
+    let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
+    match names.as_slice() {
+        [] => "cannot hold: it is always ".to_owned(),
+        [name] => format!("contradicts {name}: where that holds, it is "),
+        _ => format!("contradicts {}: where these hold, it is ", names.join(" and ")),
+    }
+}
+
 fn undetermined_text(names: &[String]) -> String {
     let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
     rates.join(", ") + if rates.len() == 1 { " is" } else { " are" }
@@ -267,6 +294,7 @@ impl Fault {
             | Fault::Degenerate { .. }
             | Fault::NotHolonomic { .. }
             | Fault::OffConstraint { .. }
+            | Fault::Contradictory { .. }
             | Fault::Constraint { .. }
             | Fault::NotFinite { .. }
             | Fault::SingularStart { .. }
@@ -304,7 +332,8 @@ impl Fault {
             Fault::OffConstraint { .. } => {
                 "give a start that satisfies it, or have it moved there by --project-start".into()
             }
-            Fault::Constraint { .. } => "check [constraints] and the start".into(),
+            Fault::Contradictory { .. } => "no motion satisfies it; mend it or leave it out".into(),
+            Fault::Constraint { help, .. } => (*help).into(),
             Fault::UnknownAlgebra { known, .. } => {
                 format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
             }

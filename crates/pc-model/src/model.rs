@@ -8,7 +8,7 @@ use pc_nonholo::NonholoError;
 
 use crate::assembly::assemble;
 use crate::bound::{Bound, Form};
-use crate::document::{AlgebraDefinition, Bracket, Document, Method};
+use crate::document::{self, AlgebraDefinition, Bracket, Document, Method};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
 use crate::source::Place;
@@ -57,6 +57,15 @@ impl<'g> Assembly<'g> {
     /// [`NonholoError`] if it cannot be derived.
     pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
         self.bound.free_system(&self.system, &self.at_start())
+    }
+
+    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` ones, those of a
+    /// [free system](Assembly::free_system) or all.
+    ///
+    /// # Errors
+    /// [`NonholoError`] if these do not determine the others.
+    pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, NonholoError> {
+        self.bound.quasi_velocities_of(self.system.quasi_velocities(), free)
     }
 
     /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
@@ -161,7 +170,10 @@ impl Model {
         let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
         let mut motion = compiled.map_err(|error| refuse(error.to_string()))?;
         let mut rate = vec![0.0; start.len()];
-        motion.rhs(t_start, start, &mut rate).map_err(|failure| refuse(failure.to_string()))?;
+        motion.rhs(t_start, start, &mut rate).map_err(|failure| match MechError::from(failure) {
+            error @ MechError::SingularConstraint { .. } => self.constraint_error(error.into()),
+            error => refuse(error.to_string()),
+        })?;
         Ok(motion)
     }
 
@@ -176,15 +188,53 @@ impl Model {
 
     /// Puts an error of the derivation under constraints at the place in the file that is to blame.
     pub fn constraint_error(&self, error: NonholoError) -> ModelError {
+        let message = error.to_string();
+        let cannot = |name: &str, help| {
+            self.constraint_fault(name, Fault::Constraint { message: message.clone(), help })
+        };
+        let last = self.document.constraints.last().map_or("", |constraint| constraint.name.text.as_str());
         match error {
-            NonholoError::Mech(error) => self.derivation_error(error),
-            other => {
-                let message = other.to_string();
-                let place = self.document.constraints.first();
-                let place = place.map_or_else(|| self.document.end(), |c| c.name.place.clone());
-                self.error(&place, Fault::Constraint { message })
+            NonholoError::Contradictory { constraint, .. } => {
+                cannot(&constraint, "no motion satisfies it; mend it or leave it out")
             }
+            NonholoError::Mech(error) => match error {
+                MechError::ConstraintNotAffine { constraint } => {
+                    let text = self.constraint_text(&constraint).map(|c| c.expression.text.clone());
+                    let fault = Fault::NotAffine { text: text.unwrap_or_default(), variables: "velocities" };
+                    self.constraint_fault(&constraint, fault)
+                }
+                MechError::TooManyConstraints { .. } => cannot(
+                    last,
+                    "there must be fewer independent constraints than velocities, or nothing moves",
+                ),
+                MechError::DependentConstraint { constraint } => {
+                    cannot(&constraint, "leave out what follows from other constraints")
+                }
+                MechError::SingularConstraint { constraint, .. } => {
+                    cannot(&constraint, "start where the constraints are independent of each other")
+                }
+                MechError::NoProjection { constraints, .. } => cannot(
+                    constraints.first().map_or(last, String::as_str),
+                    "start nearer to a state that satisfies them, if there is one",
+                ),
+                other => self.derivation_error(other),
+            },
+            NonholoError::NotAQuasiVelocity { .. }
+            | NonholoError::Twice { .. }
+            | NonholoError::NotInVelocities => cannot(last, "check [constraints]"),
         }
+    }
+
+    /// The text of a constraint.
+    pub(crate) fn constraint_text(&self, name: &str) -> Option<&document::Constraint> {
+        self.document.constraints.iter().find(|constraint| constraint.name.text == name)
+    }
+
+    /// A fault of a constraint, at its expression.
+    pub(crate) fn constraint_fault(&self, name: &str, fault: Fault) -> ModelError {
+        let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
+        let place = expression.map(|expression| expression.place(expression.ast.span));
+        self.error(&place.unwrap_or_else(|| self.document.end()), fault)
     }
 
     /// Puts an error of the derivation at the place in the file that is to blame.

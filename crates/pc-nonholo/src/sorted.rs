@@ -46,6 +46,7 @@ impl<'g> Sorted<'g> {
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
     /// the constraint α is integrable if c'_rs^α = 0.
+    /// Positions come first: a condition on velocities may follow from them, but never the other way round.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
@@ -57,12 +58,14 @@ impl<'g> Sorted<'g> {
         constraints: &[Constraint<'g>],
         at: &[(Expr<'g>, f64)],
     ) -> Result<Sorted<'g>, NonholoError> {
+        let (positions, velocities): (Vec<usize>, Vec<usize>) =
+            (0..constraints.len()).partition(|&a| constraints[a].is_holonomic(system));
         let (mut binding, mut redundant) = (Vec::new(), Vec::new());
         let mut rows = Rows::default();
-        for constraint in constraints {
-            let velocity = constraint.velocity(system);
-            match rows.add(system, constraint.name(), velocity) {
-                Addition::New => binding.push(constraint.clone()),
+        for a in positions.into_iter().chain(velocities) {
+            let constraint = &constraints[a];
+            match rows.add(system, constraint)? {
+                Addition::New => binding.push(a),
                 Addition::Follows(follows_from) => {
                     redundant.push(Redundant { constraint: constraint.name().to_owned(), follows_from });
                 }
@@ -72,6 +75,8 @@ impl<'g> Sorted<'g> {
                 }
             }
         }
+        binding.sort_unstable();
+        let binding: Vec<Constraint<'g>> = binding.into_iter().map(|a| constraints[a].clone()).collect();
         if binding.is_empty() {
             return Ok(Sorted { multipliers: None, kinds: Vec::new(), redundant });
         }
@@ -141,27 +146,25 @@ enum Addition {
 }
 
 impl<'g> Rows<'g> {
-    fn add(&mut self, system: &System<'g>, name: &str, velocity: Expr<'g>) -> Addition {
-        let (graph, eta) = (system.graph(), system.quasi_velocities());
-        let zeros: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        let row = graph.substitute(&graph.gradient(velocity, eta), &zeros);
-        let rest = graph.substitute(&[velocity], &zeros)[0];
+    fn add(&mut self, system: &System<'g>, constraint: &Constraint<'g>) -> Result<Addition, NonholoError> {
+        let graph = system.graph();
+        let (row, rest) = constraint.coefficients(system)?;
         let whole: Vec<Expr<'g>> = row.iter().copied().chain([rest]).collect();
         let rank = |known: &[Vec<Expr<'g>>], more: &[Expr<'g>]| {
             graph.generic_rank(&[known, std::slice::from_ref(&more.to_vec())].concat())
         };
         if rank(&self.rows, &row) > self.rows.len() {
-            self.names.push(name.to_owned());
+            self.names.push(constraint.name().to_owned());
             self.rows.push(row);
             self.whole.push(whole);
-            return Addition::New;
+            return Ok(Addition::New);
         }
         let others = self.depends_on(graph, &row);
-        if rank(&self.whole, &whole) > self.whole.len() {
+        Ok(if rank(&self.whole, &whole) > self.whole.len() {
             Addition::Contradicts(others)
         } else {
             Addition::Follows(others)
-        }
+        })
     }
 
     /// The constraints that `row` is a combination of: without each of them it is not.

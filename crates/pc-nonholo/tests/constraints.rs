@@ -131,3 +131,31 @@ fn an_orthonormal_frame_tells_the_same_motion() {
         "the list of names has 1 entries where 2 are needed"
     );
 }
+
+/// A position that follows from others is dropped, but a velocity never makes a position redundant.
+#[test]
+fn positions_come_first() {
+    let graph = Graph::new();
+    let [x, y, vx] = graph.symbols(["x", "y", "x'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+        .build()
+        .unwrap();
+    let at = state(&graph, &system);
+    let constraints = [
+        Constraint::new("velocity", vx * y.exp()),
+        Constraint::new("position", x - 1.0),
+        Constraint::new("again", (x - 1.0) * (2.0 + x)),
+        Constraint::new("other", y + graph.symbol("z")),
+    ];
+    let sorted = sort(&system, &constraints, &at);
+    let names: Vec<&str> = sorted.multipliers().unwrap().constraints().iter().map(Constraint::name).collect();
+    assert_eq!(names, ["position", "other"], "in the order given");
+    let dropped: Vec<(&str, &[String])> =
+        sorted.redundant().iter().map(|r| (r.constraint.as_str(), r.follows_from.as_slice())).collect();
+    let position = ["position".to_owned()];
+    assert_eq!(dropped, [("again", &position[..]), ("velocity", &position[..])]);
+    let error = Sorted::new(&system, &[Constraint::new("speed", vx.square() - y)], &at).unwrap_err();
+    assert_eq!(error.to_string(), "the constraint `speed` is not affine in the quasi-velocities");
+}

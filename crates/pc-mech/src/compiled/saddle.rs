@@ -95,11 +95,15 @@ impl Saddle {
     }
 
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
-    /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter.
+    /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter; an
+    /// unknown without mass counts as the lightest of the others.
     fn pivot(&mut self) -> Result<(), Fault> {
         let (k, m) = (self.k, self.m);
-        let weight = |mass: f64| if mass > 0.0 { mass.sqrt().recip() } else { 1.0 };
-        let weights: Vec<f64> = (0..k).map(|s| weight(self.mass[s * k + s])).collect();
+        let masses = || (0..k).map(|s| self.mass[s * k + s]);
+        let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
+        let lightest = if lightest.is_finite() { lightest } else { 1.0 };
+        let weight = |mass: f64| (if mass > 0.0 { mass } else { lightest }).sqrt().recip();
+        let weights: Vec<f64> = masses().map(weight).collect();
         let sizes: Vec<f64> = (0..m)
             .map(|a| {
                 (0..k).fold(0.0f64, |size, s| size.max((self.constraints[a * k + s] * weights[s]).abs()))

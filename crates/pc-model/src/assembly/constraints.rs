@@ -1,17 +1,15 @@
 //! The constraints of a model: sorted, checked at the start, and put where they are cheapest to keep.
 
-use pc_mech::{Constraint, Expr, MechError, System, VectorField};
-use pc_nonholo::{Constrained, Kind, NonholoError, Sorted};
+use pc_mech::{Constraint, Expr, System};
+use pc_nonholo::{Constrained, Kind, Sorted};
 
 use super::Assembler;
+use super::trial::Trial;
 use crate::bound::{Bound, Form, Held, Verdict};
 use crate::document::{self, ConstraintKind};
 use crate::error::ModelError;
 use crate::fault::Fault;
 use crate::scope::Stage;
-
-/// A start that misses a constraint by less is rounding of the numbers it is written with.
-const OFF: f64 = 1e-8;
 
 /// A constraint of the text with its expression, x' still symbols.
 pub(super) struct Written<'g> {
@@ -88,19 +86,22 @@ impl<'g> Assembler<'g, '_> {
                 Constraint::new(self.text_of(w).name.text.clone(), w.defines.unwrap_or(value))
             })
             .collect();
-        let sorted = Sorted::new(system, &constraints, at).map_err(|error| self.blame(error))?;
+        let trial = Trial { model: self.model, system, constraints: &constraints, t: t_start };
+        trial.check_finite(start)?;
+        let refused = |error| self.model.constraint_error(error);
+        let sorted = Sorted::new(system, &constraints, at).map_err(refused)?;
         let verdicts = self.verdicts(&sorted)?;
-        if self.model.projects_start()
-            && let Some(multipliers) = sorted.multipliers()
-        {
-            let projected =
-                multipliers.compile().map_err(|error| self.blame(error.into())).and_then(|mut motion| {
-                    let refused = |failure: pc_mech::Failure| self.blame(MechError::from(failure).into());
-                    motion.project(t_start, start).map_err(refused)
-                });
-            projected?;
+        let projects = self.model.projects_start();
+        if projects || !sorted.redundant().is_empty() {
+            let nearest = trial.nearest(&sorted, start);
+            if let Ok(nearest) = &nearest {
+                trial.check_redundant(&sorted, nearest)?;
+            }
+            if projects {
+                *start = nearest?;
+            }
         }
-        self.check_start(system, written, &constraints, t_start, start)?;
+        trial.check(start)?;
 
         let eta = system.quasi_velocities();
         let vanishing: Option<Vec<Expr<'g>>> = sorted.multipliers().and_then(|multipliers| {
@@ -110,9 +111,7 @@ impl<'g> Assembler<'g, '_> {
         let redundant = sorted.redundant().to_vec();
         let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
         let form = match vanishing {
-            Some(eta) => {
-                Form::Vanishing(Box::new(Constrained::new(system, &eta).map_err(|error| self.blame(error))?))
-            }
+            Some(eta) => Form::Vanishing(Box::new(Constrained::new(system, &eta).map_err(refused)?)),
             None => {
                 let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
                 Form::Held(Box::new(held))
@@ -128,13 +127,12 @@ impl<'g> Assembler<'g, '_> {
     /// What each binding constraint does, unless the text says otherwise.
     fn verdicts(&self, sorted: &Sorted<'g>) -> Result<Vec<Verdict>, ModelError> {
         let Some(multipliers) = sorted.multipliers() else { return Ok(Vec::new()) };
-        let named = |name: &str| self.model.document().constraints.iter().find(|c| c.name.text == name);
         multipliers
             .constraints()
             .iter()
             .zip(sorted.kinds())
             .map(|(constraint, &kind)| {
-                let given = named(constraint.name()).and_then(|text| text.kind.as_ref());
+                let given = self.model.constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
                 if let (Some(given), Kind::Nonholonomic { residual }) = (given, kind)
                     && given.value == ConstraintKind::Holonomic
                 {
@@ -144,66 +142,5 @@ impl<'g> Assembler<'g, '_> {
                 Ok(Verdict { constraint: constraint.name().to_owned(), kind })
             })
             .collect()
-    }
-
-    fn check_start(
-        &self,
-        system: &System<'g>,
-        written: &[Written<'g>],
-        constraints: &[Constraint<'g>],
-        t_start: f64,
-        start: &[f64],
-    ) -> Result<(), ModelError> {
-        let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).copied();
-        let mut values: Vec<(Expr<'g>, f64)> = system.parameters().to_vec();
-        values.push((system.frame().time(), t_start));
-        values.extend(state.zip(start.iter().copied()));
-        for (written, constraint) in written.iter().zip(constraints) {
-            let text = self.text_of(written);
-            for (what, value) in
-                [("", constraint.expression()), ("the rate of ", constraint.velocity(system))]
-            {
-                let residual = self.graph.evaluate(&[value], &values).map_or(f64::NAN, |values| values[0]);
-                if residual.abs() <= OFF {
-                    continue;
-                }
-                let constraint = text.name.text.clone();
-                let fault = Fault::OffConstraint { what, constraint, residual };
-                return Err(self.model.error(&text.expression.place(text.expression.ast.span), fault));
-            }
-        }
-        Ok(())
-    }
-
-    /// The error at the constraint that is to blame.
-    fn blame(&self, error: NonholoError) -> ModelError {
-        let named = |name: &String| self.model.document().constraints.iter().find(|c| c.name.text == *name);
-        let name = match &error {
-            NonholoError::Contradictory { constraint, .. }
-            | NonholoError::Mech(
-                MechError::ConstraintNotAffine { constraint }
-                | MechError::DependentConstraint { constraint }
-                | MechError::SingularConstraint { constraint, .. },
-            ) => named(constraint),
-            NonholoError::Mech(MechError::NoProjection { constraints, .. }) => {
-                constraints.first().and_then(named)
-            }
-            NonholoError::Mech(MechError::TooManyConstraints { .. }) => {
-                self.model.document().constraints.last()
-            }
-            _ => None,
-        };
-        match (name, error) {
-            (Some(text), error) => {
-                let message = error.to_string();
-                self.model
-                    .error(&text.expression.place(text.expression.ast.span), Fault::Constraint { message })
-            }
-            (None, NonholoError::Mech(error)) => self.model.derivation_error(error),
-            (None, other) => {
-                let message = other.to_string();
-                self.model.error(&self.model.document().end(), Fault::Constraint { message })
-            }
-        }
     }
 }

@@ -1,0 +1,127 @@
+//! Whether a state satisfies the constraints.
+
+use pc_mech::{CompileOptions, Constraint, Expr, MechError, System, VectorField};
+use pc_nonholo::Sorted;
+
+use crate::error::ModelError;
+use crate::fault::Fault;
+use crate::model::Model;
+
+/// A start that misses a constraint by less than this displacement of a coordinate or velocity, absolute or relative
+/// whichever is larger, is rounding of the numbers it is written with.
+const OFF: f64 = 1e-8;
+
+/// The constraints of a model, to be tried at states of time `t`.
+pub(super) struct Trial<'a, 'g> {
+    pub(super) model: &'a Model,
+    pub(super) system: &'a System<'g>,
+    pub(super) constraints: &'a [Constraint<'g>],
+    pub(super) t: f64,
+}
+
+impl<'g> Trial<'_, 'g> {
+    /// The nearest state that satisfies the constraints that bind.
+    ///
+    /// # Errors
+    /// [`ModelError`] if none is found.
+    pub(super) fn nearest(&self, sorted: &Sorted<'g>, state: &[f64]) -> Result<Vec<f64>, ModelError> {
+        let mut nearest = state.to_vec();
+        let refused = |error: MechError| self.model.constraint_error(error.into());
+        if let Some(multipliers) = sorted.multipliers() {
+            let options = CompileOptions::default().jacobian(false);
+            let mut motion = multipliers.compile_for(options).map_err(refused)?;
+            motion.project(self.t, &mut nearest).map_err(|failure| refused(failure.into()))?;
+        }
+        Ok(nearest)
+    }
+
+    /// That the constraints and their rates have values.
+    ///
+    /// # Errors
+    /// [`Fault::NotFinite`] at the first that has none.
+    pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
+        for constraint in self.constraints {
+            let value = self.value(constraint.velocity(self.system), state);
+            let Some(text) = self.model.constraint_text(constraint.name()).filter(|_| !value.is_finite())
+            else {
+                continue;
+            };
+            let whole = &text.expression.text;
+            let text_of_rate =
+                if constraint.is_holonomic(self.system) { format!("d({whole})") } else { whole.clone() };
+            let names = self.state_symbols().map(|x| x.to_string()).zip(state.iter().copied());
+            let fault = Fault::NotFinite { text: text_of_rate, value, state: names.collect() };
+            return Err(self.model.error(&text.expression.place(text.expression.ast.span), fault));
+        }
+        Ok(())
+    }
+
+    /// That what was dropped vanishes where the constraints that bind do: a position that follows from others may do
+    /// so up to a constant.
+    ///
+    /// # Errors
+    /// [`Fault::Contradictory`]
+    pub(super) fn check_redundant(&self, sorted: &Sorted<'g>, on: &[f64]) -> Result<(), ModelError> {
+        for redundant in sorted.redundant() {
+            let written = self.constraints.iter().find(|c| c.name() == redundant.constraint);
+            if let Some((constraint, (_, residual))) = written.and_then(|c| Some((c, self.off(c, on)?))) {
+                let others = redundant.follows_from.clone();
+                let fault =
+                    Fault::Contradictory { constraint: constraint.name().to_owned(), others, residual };
+                return Err(self.model.constraint_fault(constraint.name(), fault));
+            }
+        }
+        Ok(())
+    }
+
+    /// That all constraints are satisfied.
+    ///
+    /// # Errors
+    /// [`Fault::OffConstraint`] at the first that is not.
+    pub(super) fn check(&self, state: &[f64]) -> Result<(), ModelError> {
+        let off =
+            |constraint: &Constraint<'g>| Some((constraint.name().to_owned(), self.off(constraint, state)?));
+        match self.constraints.iter().find_map(off) {
+            None => Ok(()),
+            Some((constraint, (what, residual))) => {
+                let fault = Fault::OffConstraint { what, constraint: constraint.clone(), residual };
+                Err(self.model.constraint_fault(&constraint, fault))
+            }
+        }
+    }
+
+    /// Whether a constraint or its rate does not vanish, in words, and its value.
+    fn off(&self, constraint: &Constraint<'g>, state: &[f64]) -> Option<(&'static str, f64)> {
+        let x = self.system.frame().coordinates();
+        let eta = self.system.quasi_velocities();
+        let rate = (constraint.velocity(self.system), eta);
+        if !constraint.is_holonomic(self.system) {
+            return self.misses(rate, state).map(|residual| ("it is", residual));
+        }
+        let position = self.misses((constraint.expression(), x), state).map(|residual| ("it is", residual));
+        position.or_else(|| self.misses(rate, state).map(|residual| ("its rate is", residual)))
+    }
+
+    /// What should vanish, if none of the `movable` changed by [`OFF`] would make it so.
+    fn misses(&self, (value, movable): (Expr<'g>, &[Expr<'g>]), state: &[f64]) -> Option<f64> {
+        let graph = self.system.graph();
+        let gradient = graph.gradient(value, movable).into_iter().map(|slope| self.value(slope, state));
+        let sizes = movable.iter().map(|&x| self.value(x, state).abs().max(1.0));
+        let reach = gradient.zip(sizes).map(|(slope, size)| slope.abs() * size).fold(0.0, f64::max);
+        let residual = self.value(value, state);
+        // Where nothing moves it, it is taken as it stands.
+        let within = residual.abs() <= OFF * if reach > 0.0 { reach } else { 1.0 };
+        (!within).then_some(residual)
+    }
+
+    fn state_symbols(&self) -> impl Iterator<Item = Expr<'g>> {
+        self.system.frame().coordinates().iter().chain(self.system.quasi_velocities()).copied()
+    }
+
+    fn value(&self, expression: Expr<'g>, state: &[f64]) -> f64 {
+        let mut values: Vec<(Expr<'g>, f64)> = self.system.parameters().to_vec();
+        values.push((self.system.frame().time(), self.t));
+        values.extend(self.state_symbols().zip(state.iter().copied()));
+        self.system.graph().evaluate(&[expression], &values).map_or(f64::NAN, |values| values[0])
+    }
+}
