@@ -11,18 +11,49 @@ use crate::error::MechError;
 use crate::poincare::Equations;
 use crate::system::System;
 
-/// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities, affine in η.
+/// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities.
 #[derive(Clone, Debug)]
 pub struct Constraint<'g> {
     name: String,
     expression: Expr<'g>,
+    /// Whether g need not be affine in η.
+    nonlinear: bool,
 }
 
 impl<'g> Constraint<'g> {
-    /// The condition that `expression` vanishes: on velocities if a quasi-velocity stands in it, on positions
-    /// otherwise. The name is for messages and reactions.
+    /// The condition that `expression` vanishes: on velocities, affine in η, if a quasi-velocity stands in it, on
+    /// positions otherwise. The name is for messages and reactions.
     pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
-        Constraint { name: name.into(), expression }
+        Constraint { name: name.into(), expression, nonlinear: false }
+    }
+
+    /// The condition g(t, x, η) = 0 that need not be affine in η. Virtual displacements are those of Chetaev's condition,
+    /// (∂g/∂η_s) δπ_s = 0, so that the reactions are λ ∂g/∂η_s [N. G. Chetaev, Izv. Kazan fiz.-mat. obshch. 6 (1932)].
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System, VectorField};
+    ///
+    /// // A particle that keeps its speed under gravity: only its direction turns, v θ̇ = −g cos θ.
+    /// let graph = Graph::new();
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
+    ///     .build()?;
+    /// let [vx, vy] = graph.symbols(["x'", "y'"]);
+    /// let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 25.0);
+    /// let mut motion = particle.with_multipliers(&[speed])?.compile()?;
+    /// let mut rates = [0.0; 4];
+    /// motion.rhs(0.0, &[0.0, 0.0, 3.0, 4.0], &mut rates)?; // cos θ = 3/5, θ̇ = −6/5
+    /// assert!((rates[2] - 4.8).abs() < 1e-14 && (rates[3] + 3.6).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn nonlinear(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
+        Constraint { name: name.into(), expression, nonlinear: true }
+    }
+
+    /// Whether it was said to be [nonlinear](Constraint::nonlinear).
+    pub fn is_nonlinear(&self) -> bool {
+        self.nonlinear
     }
 
     /// Its name.
@@ -77,7 +108,8 @@ impl<'g> Constraint<'g> {
 ///
 /// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
 /// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction conjugate
-/// to the condition, with the power −λ_α c_α0.
+/// to the condition, with the power −λ_α c_α0. Of [nonlinear](Constraint::nonlinear) conditions g(t, x, η) = 0, C is ∂g/∂η
+/// and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
 /// All k quasi-velocities are components of the state. At each evaluation those are taken for independent that
 /// determine the others best, so that no position is singular but those of the constraints themselves; the rates do not
@@ -105,9 +137,9 @@ impl<'g> Constraint<'g> {
 pub struct Multipliers<'g> {
     equations: Equations<'g>,
     constraints: Vec<Constraint<'g>>,
-    /// g = C η + c_0
+    /// g, which is C η + c_0 where it is affine.
     velocities: Vec<Expr<'g>>,
-    /// C, m × k.
+    /// C = ∂g/∂η, m × k.
     coefficients: Matrix<Expr<'g>>,
     /// −(dC/dt) η − dc_0/dt, length m.
     right: Vec<Expr<'g>>,
@@ -121,7 +153,8 @@ impl<'g> System<'g> {
     /// The equations of motion under constraints, with multipliers.
     ///
     /// # Errors
-    /// [`MechError::ConstraintNotAffine`]; [`MechError::TooManyConstraints`] if no velocity is left free;
+    /// [`MechError::ConstraintNotAffine`] unless it was said to be [nonlinear](Constraint::nonlinear);
+    /// [`MechError::TooManyConstraints`] if no velocity is left free;
     /// [`MechError::DependentConstraint`] for one that follows from those before it, or contradicts them;
     /// [`MechError::DegenerateLagrangian`] if the constraints leave velocities without inertia.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
@@ -133,12 +166,15 @@ impl<'g> System<'g> {
         let mut velocities = Vec::new();
         let mut rows = Vec::new();
         for constraint in constraints {
-            let (row, _) = constraint.coefficients(self)?;
-            rows.push(row);
+            let velocity = constraint.velocity(self);
+            rows.push(match constraint.nonlinear {
+                true => graph.gradient(velocity, &self.quasi_velocities),
+                false => constraint.coefficients(self)?.0,
+            });
             if graph.generic_rank(&rows) < rows.len() {
                 return Err(MechError::DependentConstraint { constraint: constraint.name.clone() });
             }
-            velocities.push(constraint.velocity(self));
+            velocities.push(velocity);
         }
         let equations = self.equations(k)?;
         let along: Vec<_> = self
@@ -182,12 +218,12 @@ impl<'g> Multipliers<'g> {
         &self.constraints
     }
 
-    /// C η + c_0 of each constraint, length m.
+    /// C η + c_0 of each constraint, or g where it is nonlinear, length m.
     pub fn velocities(&self) -> &[Expr<'g>] {
         &self.velocities
     }
 
-    /// C, m × k.
+    /// C, m × k, of (t, x), and of η where a constraint is nonlinear.
     pub fn coefficients(&self) -> &Matrix<Expr<'g>> {
         &self.coefficients
     }
@@ -216,8 +252,8 @@ impl<'g> Multipliers<'g> {
         let definitions: Vec<(Expr<'g>, Expr<'g>)> =
             system.quasi_velocities.iter().enumerate().map(|(s, &eta)| (eta, definition(s))).collect();
         let put = |constraint: &Constraint<'g>| Constraint {
-            name: constraint.name.clone(),
             expression: graph.substitute(&[constraint.expression], &definitions)[0],
+            ..constraint.clone()
         };
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }

@@ -402,3 +402,59 @@ fn constraints_are_affine_or_refused() {
     let (row, rest) = disguised.coefficients(&system).unwrap();
     assert_eq!((row, rest), (vec![1.0.into(), -x], -x));
 }
+
+/// A particle in space that keeps its speed under gravity, by Chetaev's condition: with θ the angle of its velocity with
+/// the vertical θ̇ = (g/v) sin θ, so that tan(θ/2) grows as e^(g t/v), and the horizontal direction stays.
+#[test]
+fn a_nonlinear_constraint_turns_the_velocity_only() {
+    let (gravity, speed) = (10.0, 5.0);
+    let graph = Graph::new();
+    let particle = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, x, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0 - gravity * x[2])
+        .build()
+        .unwrap();
+    let v: Vec<Expr<'_>> = particle.quasi_velocities().to_vec();
+    let square = v[0].square() + v[1].square() + v[2].square();
+    let kept = square - speed * speed;
+    let error = particle.with_multipliers(&[Constraint::new("speed", kept)]).map(|_| ()).unwrap_err();
+    assert_eq!(error.to_string(), "the constraint `speed` is not affine in the quasi-velocities");
+    let constraint = Constraint::nonlinear("speed", kept);
+    let mut motion = particle.with_multipliers(&[constraint]).unwrap().compile().unwrap();
+
+    // From far off, Newton's method brings the velocity to the sphere along its own direction.
+    let mut y = [0.0, 0.0, 0.0, 0.6, 0.8, 0.1];
+    motion.project(0.0, &mut y).unwrap();
+    let length = y[3..].iter().map(|v| v * v).sum::<f64>().sqrt();
+    assert!((length - speed).abs() < 1e-14 && (y[3] * 0.8 - y[4] * 0.6).abs() < 1e-14, "{y:?}");
+
+    let tangent = |y: &[f64]| {
+        let cosine = y[5] / speed;
+        ((1.0 - cosine) / (1.0 + cosine)).sqrt()
+    };
+    let start = tangent(&y);
+    let (step, steps) = (1e-3, 1000);
+    for i in 0..steps {
+        // Runge and Kutta's method of order 4, projected.
+        let t = step * f64::from(i);
+        let mut rate = |t: f64, y: &[f64]| {
+            let mut rate = [0.0; 6];
+            motion.rhs(t, y, &mut rate).unwrap();
+            rate
+        };
+        let moved =
+            |y: &[f64; 6], k: &[f64; 6], h: f64| -> [f64; 6] { std::array::from_fn(|i| y[i] + h * k[i]) };
+        let k1 = rate(t, &y);
+        let k2 = rate(t, &moved(&y, &k1, step / 2.0));
+        let k3 = rate(t, &moved(&y, &k2, step / 2.0));
+        let k4 = rate(t, &moved(&y, &k3, step));
+        for i in 0..6 {
+            y[i] += step / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+        }
+        motion.project(t + step, &mut y).unwrap();
+    }
+    let expected = start * (gravity / speed).exp();
+    // step⁴ times (g/v)⁵ of a method of order 4
+    assert!((tangent(&y) / expected - 1.0).abs() < 1e-11, "{} instead of {expected}", tangent(&y));
+    assert!((y[3] * 0.8 - y[4] * 0.6).abs() < 1e-13, "the horizontal direction stays");
+}

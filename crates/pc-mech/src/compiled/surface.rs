@@ -18,7 +18,7 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) positions: &'a [Expr<'g>],
     /// The index of the constraint of each of these.
     pub(crate) places: Vec<usize>,
-    /// g(t, x, η), affine in η, one a constraint; Ḟ = g for those with a position.
+    /// g(t, x, η), one a constraint; ḟ = g for those with a position.
     pub(crate) velocities: &'a [Expr<'g>],
     /// b η
     pub(crate) displacements: &'a [Expr<'g>],
@@ -148,20 +148,32 @@ impl Surface {
         Err(Fault::NoProjection { unknowns: self.k })
     }
 
-    /// g is affine in η: the second time takes away the rounding of the first.
+    /// Newton's method for g(t, x, η) = 0, which comes to its end at once where g is affine in η.
     fn project_velocity(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        for _ in 0..2 {
+        let n = self.coordinates;
+        let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..MOST_STEPS {
             self.velocities.eval(t, y, p, &mut self.residual);
             check_finite(&self.residual, &self.velocities, (t, y, p))?;
             self.change[..self.k].fill(0.0);
-            for (change, residual) in self.change[self.k..].iter_mut().zip(&self.residual) {
-                *change = *residual;
-            }
+            self.change[self.k..].copy_from_slice(&self.residual);
             self.solver.solve(&mut self.change);
-            for (eta, change) in y[self.coordinates..].iter_mut().zip(&self.change) {
+            let along = self.change[self.k..].iter().zip(&self.residual);
+            let length = along.map(|(mu, g)| mu * g).sum::<f64>().abs().sqrt();
+            if length >= before / 2.0 || length == 0.0 {
+                let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+                let (change, size) = (largest(&self.change[..self.k]), largest(&y[n..]));
+                // Where nothing moves, what is left of g is the rounding of numbers that cancel.
+                let small = change <= ROUNDING * size || length <= ROUNDING * first || size == 0.0;
+                return if small { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
+            }
+            for (eta, change) in y[n..].iter_mut().zip(&self.change) {
                 *eta += change;
             }
+            self.factorise(t, y, p)?;
+            first = first.min(length);
+            before = length;
         }
-        Ok(())
+        Err(Fault::NoProjection { unknowns: self.k })
     }
 }
