@@ -1,9 +1,10 @@
 //! Equations of motion as the textbooks print them, for comparison with the derived ones.
 //!
 //! Every function writes ẏ for y = (coordinates, quasi-velocities), in the order of the columns of the built-in
-//! model. [`classical`] binds them to the parameters of the models; [`sample`] draws states at which to compare.
+//! model, without quasi-velocities that constraints say vanish. [`classical`] binds them to the parameters of the models; [`sample`] draws states at which to compare.
 
 mod chains;
+pub(crate) mod nonholonomic;
 mod orbit;
 mod particles;
 mod pendulums;
@@ -15,6 +16,10 @@ mod tests;
 mod tops;
 
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
+pub use nonholonomic::{
+    ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle, snakeboard,
+    stiff_sleigh, suslov, suslov_in_gravity, tilted_disk, vertical_disk, vertical_disk_driven, voronets,
+};
 pub use orbit::Satellite;
 pub use particles::{
     charged_particle, damped_acceleration, damped_oscillator, damped_oscillator_in_scaled_frame,
@@ -41,6 +46,9 @@ const SATELLITE: Satellite = Satellite { inertia: [0.1, 0.2, 0.25], mass: 1.0 };
 
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
+    "ball-in-cylinder",
+    "carriage",
+    "chaplygin-sleigh",
     "charged-particle",
     "charged-particle-induction",
     "damped-oscillator",
@@ -55,22 +63,38 @@ pub const MODELS: &[&str] = &[
     "heavy-top-kovalevskaya",
     "heavy-top-lagrange",
     "heavy-top-quaternion",
+    "nonholonomic-particle",
     "pendulum-chain",
     "pendulum-chain-cartesian",
     "relativistic-constant-force",
     "relativistic-particle",
     "rigid-body-spring",
     "rotating-oscillator",
+    "snakeboard",
+    "snakeboard-driven",
     "spherical-pendulum-cartesian",
     "spherical-pendulum-meridian",
+    "stiff-sleigh",
+    "suslov",
+    "suslov-in-gravity",
+    "tilted-disk",
     "toda-chain",
     "turning-hoop",
     "turning-wire",
+    "turntable",
+    "turntable-accelerated",
+    "vertical-disk",
+    "vertical-disk-driven",
+    "voronets",
+    "voronets-rheonomic",
 ];
 
 /// The classical equations of a built-in model with its parameters, or `None` for a name not in [`MODELS`].
 pub fn classical(model: &str) -> Option<Rhs> {
     Some(match model {
+        "ball-in-cylinder" => |_, y, dy| ball_in_cylinder(y, dy),
+        "carriage" => |_, y, dy| carriage(y, dy),
+        "chaplygin-sleigh" => |_, y, dy| chaplygin_sleigh(y, dy),
         "charged-particle" => |_, y, dy| charged_particle(2.0, 0.0, y, dy),
         "charged-particle-induction" => {
             |t, y, dy| charged_particle(1.0 + t.sin() / 2.0, t.cos() / 2.0, y, dy)
@@ -87,17 +111,30 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "heavy-top-kovalevskaya" => |_, y, dy| KOVALEVSKAYA.in_poisson_variables(y, dy),
         "heavy-top-lagrange" => |_, y, dy| LAGRANGE.in_poisson_variables(y, dy),
         "heavy-top-quaternion" => |_, y, dy| TRIAXIAL.in_quaternion(y, dy),
+        "nonholonomic-particle" => |_, y, dy| nonholonomic_particle(y, dy),
         "pendulum-chain" => |_, y, dy| pendulum_chain(y, dy),
         "pendulum-chain-cartesian" => |_, y, dy| pendulum_chain_in_the_plane(y, dy),
         "relativistic-constant-force" => |_, y, dy| relativistic_constant_force(2.0, 3.0, y, dy),
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
         "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
         "rotating-oscillator" => |_, y, dy| rotating_oscillator(y, dy),
+        "snakeboard" => |_, y, dy| snakeboard([0.0, 0.0], y, dy),
+        "snakeboard-driven" => |t, y, dy| snakeboard([(2.0 * t).sin() / 2.0, (3.0 * t).cos() / 5.0], y, dy),
         "spherical-pendulum-cartesian" => |_, y, dy| spherical_pendulum(y, dy),
         "spherical-pendulum-meridian" => |_, y, dy| spherical_pendulum_on_meridians(y, dy),
+        "stiff-sleigh" => stiff_sleigh,
+        "suslov" => |_, y, dy| suslov(y, dy),
+        "suslov-in-gravity" => |_, y, dy| suslov_in_gravity(y, dy),
+        "tilted-disk" => |_, y, dy| tilted_disk(y, dy),
         "toda-chain" => |_, y, dy| toda_chain(y, dy),
         "turning-hoop" => turning_hoop,
         "turning-wire" => turning_wire,
+        "turntable" => |_, y, dy| ball_on_turntable(2.0, 0.0, y, dy),
+        "turntable-accelerated" => |t, y, dy| ball_on_turntable(1.0 + t / 4.0, 0.25, y, dy),
+        "vertical-disk" => |_, y, dy| vertical_disk(y, dy),
+        "vertical-disk-driven" => |_, y, dy| vertical_disk_driven(0.3, y, dy),
+        "voronets" => |_, y, dy| voronets(None, y, dy),
+        "voronets-rheonomic" => |t, y, dy| voronets(Some([t.cos() / 2.0, -t.sin() / 2.0]), y, dy),
         _ => return None,
     })
 }
@@ -108,9 +145,21 @@ pub fn classical(model: &str) -> Option<Rhs> {
 /// Kept away from the poles of Euler's angles (θ between 0.4 and 2.6), from the centre of polar coordinates
 /// (ρ between 0.5 and 2) and from the velocity of light (speed at most 0.9 c), from horizontal links and the equator
 /// and the poles of the sphere where the frame ends there. Verticals, links and the quaternion of the heavy top are
-/// not normalised: the equations hold off the unit sphere too. Those of the satellite, as printed, do not.
+/// not normalised: the equations hold off the unit sphere too. Those of the satellite, as printed, do not. Where the
+/// velocities of coordinates are columns they satisfy the constraints, and the heading φ is below 1.2, where the
+/// equations in ẋ and φ̇ alone are regular too.
 pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
     Some(match model {
+        "ball-in-cylinder" | "turntable" => (0.0, rng.normals(9)),
+        "carriage" => {
+            let mut y = rng.normals(10);
+            y[2] = rng.uniform(-1.2, 1.2);
+            let [v, turn] = [y[5], y[7]];
+            (y[5], y[6]) = (v * y[2].cos(), v * y[2].sin());
+            (y[8], y[9]) = ((v - 0.4 * turn) / 0.2, (v + 0.4 * turn) / 0.2);
+            (0.0, y)
+        }
+        "chaplygin-sleigh" | "nonholonomic-particle" | "voronets" => (0.0, rng.normals(5)),
         "charged-particle" | "charged-particle-induction" => {
             let t = rng.uniform(0.0, 3.0);
             let mut y = vec![rng.uniform(0.5, 2.0)];
@@ -166,6 +215,14 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             y.extend(rng.normals(2));
             (0.0, y)
         }
+        "snakeboard" | "snakeboard-driven" => (rng.uniform(0.0, 3.0), rng.normals(8)),
+        "stiff-sleigh" | "voronets-rheonomic" => (rng.uniform(0.0, 3.0), rng.normals(5)),
+        "suslov" | "suslov-in-gravity" | "vertical-disk-driven" => (0.0, rng.normals(6)),
+        "tilted-disk" => {
+            let mut y = rng.normals(8);
+            y[3] = rng.uniform(0.4, 2.6);
+            (0.0, y)
+        }
         "toda-chain" => (0.0, rng.normals(12)),
         "turning-hoop" => {
             let (t, radius, angle) = (rng.uniform(0.0, 3.0), rng.uniform(0.5, 2.0), rng.uniform(-3.0, 3.0));
@@ -176,6 +233,13 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
         "turning-wire" => {
             let (t, distance) = (rng.uniform(0.0, 3.0), rng.normal());
             (t, vec![distance * t.cos(), distance * t.sin(), rng.normal()])
+        }
+        "turntable-accelerated" => (rng.uniform(0.0, 3.0), rng.normals(9)),
+        "vertical-disk" => {
+            let mut y = rng.normals(8);
+            y[2] = rng.uniform(-1.2, 1.2);
+            (y[4], y[5]) = (0.5 * y[7] * y[2].cos(), 0.5 * y[7] * y[2].sin());
+            (0.0, y)
         }
         _ => return None,
     })

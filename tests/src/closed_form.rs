@@ -2,6 +2,13 @@
 //!
 //! Where a function takes no parameters, they and the start are those of the built-in model of the same name.
 
+mod nonholonomic;
+
+pub use nonholonomic::{
+    ball_in_cylinder, carriage_turn, chaplygin_sleigh, nonholonomic_particle, suslov, turntable_centre,
+    vertical_disk,
+};
+
 /// Jacobi's elliptic functions (sn, cn, dn) of the argument `u` and the parameter m = k², 0 ≤ m < 1, by the
 /// arithmetic-geometric mean [Abramowitz and Stegun 1964, 16.4].
 pub fn jacobi(u: f64, m: f64) -> (f64, f64, f64) {

@@ -6,7 +6,7 @@
 //! ([`malformed`]). The unit tests hold the first three against each other, so that a disagreement with the
 //! library is a fault of the library.
 //!
-//! The rest serves several tests: systems that no model file can describe ([`nonholonomic`]), the definition
+//! The rest serves several tests: nonholonomic systems described by closures ([`nonholonomic`]), the definition
 //! of the equations in numbers, which has the library evaluate expressions and nothing else ([`definition`],
 //! over the numbers of [`dual`]), a measure for what rounding may do to a program ([`magnitude`]) and a
 //! workbench for emitted source ([`emitted`]).

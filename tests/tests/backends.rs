@@ -10,11 +10,10 @@ use std::sync::Arc;
 use pc_expr::{Expr, Inputs, Interpreter, Jit, JitOptions, Kernel, Program};
 use pc_mech::{EmitOptions, Equations, Graph};
 use pc_model::{BUILTIN, Model};
-use pc_nonholo::Constrained;
 use pc_tests::classical::{SplitMix64, sample};
 use pc_tests::emitted::{self, Emitted, Routine, fresh_directory};
 use pc_tests::magnitude::terms;
-use pc_tests::nonholonomic::{DISK, SLEIGH};
+use pc_tests::reference::reference;
 
 /// States tried for each model.
 const STATES: usize = 10_000;
@@ -142,23 +141,24 @@ fn scatter(y: &mut [f64], angles: &[bool], fastest: f64, random: &mut SplitMix64
     }
 }
 
-/// All built-in models, the sleigh and the disk.
+/// All built-in models.
 fn subjects() -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
     for builtin in BUILTIN {
         let graph = Graph::new();
         let assembly =
             Model::new(builtin.document().unwrap()).assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
+        let equations = assembly.equations().unwrap();
+        let system = equations.system();
+        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+        let columns = reference(builtin.name).unwrap();
         // No faster than light.
         let fastest = if builtin.name.starts_with("relativistic") { 0.0 } else { 3.0 };
-        let draw = |random: &mut SplitMix64| sample(builtin.name, random).unwrap();
-        subjects.push(Subject::new(builtin.name, &assembly.system.poincare().unwrap(), draw, fastest));
-    }
-    for described in [SLEIGH, DISK] {
-        let graph = Graph::new();
-        let system = (described.system)(&graph).unwrap();
-        let constrained = Constrained::new(&system, &described.constraints(&graph)).unwrap();
-        subjects.push(Subject::new(described.name, constrained.equations(), described.sample, 3.0));
+        let draw = |random: &mut SplitMix64| {
+            let (t, y) = sample(builtin.name, random).unwrap();
+            (t, columns.pick(&state, &y))
+        };
+        subjects.push(Subject::new(builtin.name, &equations, draw, fastest));
     }
     subjects
 }

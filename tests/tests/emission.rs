@@ -12,7 +12,7 @@ use pc_mech::{Backend, EmitOptions, Equations, Expr, Graph, Language, System, Ve
 use pc_model::{Builtin, Model};
 use pc_tests::classical::{MODELS, SplitMix64, sample};
 use pc_tests::emitted::{self, Emitted, Routine, execute, fresh_directory, rustc, write_files};
-use pc_tests::reference::{Reference, reference};
+use pc_tests::reference::reference;
 
 /// States tried for each model.
 const STATES: usize = 200;
@@ -114,18 +114,21 @@ impl Case {
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
-        let equations = assembly.system.poincare().unwrap();
-        let t_end = reference(name).map_or(1.0, |reference: &Reference| reference.t_end);
+        let equations = assembly.equations().unwrap();
+        let system = equations.system();
+        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+        let (start, columns) = (assembly.start_of(&state), reference(name).unwrap());
         let title = model.document().model.name.as_ref().map_or(name, |title| &title.value).to_owned();
         let options = |language| {
-            EmitOptions::new(language, called).title(&title).start(assembly.t_start, &assembly.start, t_end)
+            let options = EmitOptions::new(language, called).title(&title);
+            options.start(assembly.t_start, &start, columns.t_end)
         };
         let mut random = SplitMix64::new(11);
         let states = (0..states).map(|_| {
             let (t, y) = sample(name, &mut random).unwrap();
             // within what keeps the samples regular, so that parameters are seen to be arguments
             let p = model.parameters().map(|(_, value)| value * (1.0 + random.uniform(0.0, 0.05))).collect();
-            (t, y, p)
+            (t, columns.pick(&state, &y), p)
         });
         Case::new(&equations, options, fused, states)
     }
@@ -321,16 +324,29 @@ fn last_line(program: &Path) -> Vec<f64> {
 fn compare_end(name: &str, end: &[f64]) {
     let reference = reference(name).unwrap();
     assert!((end[0] - reference.t_end).abs() < 1e-9, "{name} ends at {}", end[0]);
-    for (i, expected) in reference.state.iter().enumerate() {
-        let error = (end[i + 1] - expected).abs();
-        assert!(error <= MAIN_TOLERANCE, "{name}: component {i} ends at {}, not {expected}", end[i + 1]);
+    let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+    let graph = Graph::new();
+    let equations = model.assemble(&graph).unwrap().equations().unwrap();
+    let system = equations.system();
+    let components = system.frame().coordinates().iter().chain(system.quasi_velocities()).zip(&end[1..]);
+    for (column, expected) in reference.columns.iter().zip(reference.state) {
+        let component = components.clone().find(|(symbol, _)| symbol.to_string() == *column);
+        let Some((_, found)) = component else { continue };
+        assert!(
+            (found - expected).abs() <= MAIN_TOLERANCE,
+            "{name}: {column} ends at {found}, not {expected}"
+        );
     }
 }
+
+/// A stiff model, which an explicit method does not reach the end of, and one whose independent velocities are not
+/// determined by the others where cos φ = 0.
+const OUT_OF_REACH: [&str; 2] = ["stiff-sleigh", "vertical-disk"];
 
 #[test]
 fn main_of_emitted_c_arrives() {
     let path = directory("main_c");
-    for &name in MODELS.iter().filter(|name| reference(name).is_some()) {
+    for &name in MODELS.iter().filter(|name| !OUT_OF_REACH.contains(name)) {
         let source = Case::builtin(name, 0).emitted;
         write_files(&path, std::slice::from_ref(&source));
         let main = format!("-D{}_MAIN", source.name.to_uppercase());

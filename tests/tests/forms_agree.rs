@@ -15,32 +15,32 @@ const SPREAD: f64 = 0.1;
 const ROUNDING: f64 = 1e-11;
 
 /// The states of a system near the start of a model, and what moves along Poincaré's equations.
-struct Along<'a, 'g> {
-    system: &'a System<'g>,
+struct Along<'g> {
+    system: System<'g>,
     motion: Motion,
     /// t, x, η and the parameters
     symbols: Vec<Expr<'g>>,
     random: SplitMix64,
-    start: (f64, &'a [f64]),
+    start: (f64, Vec<f64>),
 }
 
-impl<'a, 'g> Along<'a, 'g> {
-    fn new(assembly: &'a Assembly<'g>) -> Along<'a, 'g> {
-        let system = &assembly.system;
-        let frame = system.frame();
-        let moving = [frame.time()].into_iter().chain(frame.coordinates().iter().copied());
+impl<'g> Along<'g> {
+    fn new(assembly: &Assembly<'g>) -> Along<'g> {
+        let equations = assembly.equations().unwrap();
+        let system = equations.system().clone();
+        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
         let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
         Along {
-            system,
-            motion: system.poincare().unwrap().compile().unwrap(),
-            symbols: moving.chain(system.quasi_velocities().iter().copied()).chain(parameters).collect(),
+            motion: equations.compile().unwrap(),
+            symbols: [system.frame().time()].into_iter().chain(state.clone()).chain(parameters).collect(),
             random: SplitMix64::new(23),
-            start: (assembly.t_start, &assembly.start),
+            start: (assembly.t_start, assembly.start_of(&state)),
+            system,
         }
     }
 
     fn state(&mut self) -> (f64, Vec<f64>) {
-        let (t, start) = self.start;
+        let (t, start) = &self.start;
         let random = &mut self.random;
         (t + random.uniform(0.0, SPREAD), start.iter().map(|y| y + random.uniform(-SPREAD, SPREAD)).collect())
     }
@@ -82,14 +82,15 @@ fn left_out(compare: impl for<'g> Fn(&str, &Assembly<'g>) -> Option<()>) -> Vec<
     left_out
 }
 
-/// d/dt ∂L/∂η_s along (9) is ẏ_s of (10), ẋ is that of (11), and η comes back from y.
+/// d/dt ∂L/∂η_s along (9) or (30) is ẏ_s of (10) or (34), ẋ is that of (11), and η comes back from y.
 #[test]
 fn canonical_equations_are_poincares() {
     let without = left_out(|name, assembly| {
-        let canonical = assembly.system.canonical().unwrap();
+        let system = assembly.free_system().unwrap();
+        let canonical = system.canonical().unwrap();
         let mut transform = canonical.legendre_transform().unwrap();
         let mut motion = canonical.compile_for(pc_mech::Backend::Fastest).unwrap();
-        let functions = [assembly.system.frame().coordinates(), &assembly.system.momenta()].concat();
+        let functions = [system.frame().coordinates(), &system.momenta()].concat();
         let mut along = Along::new(assembly);
         for _ in 0..STATES {
             let (t, state) = along.state();
@@ -105,14 +106,17 @@ fn canonical_equations_are_poincares() {
     assert_eq!(without, [""; 0], "all have a canonical form");
 }
 
-/// ẋ = b η + b_0, differentiated along (9), is ẍ of Lagrange's equations.
+/// ẋ = b η + b_0, differentiated along (9) or (30), is ẍ of Lagrange's equations, with multipliers where there are
+/// constraints.
 #[test]
 fn lagranges_equations_are_poincares() {
     let without = left_out(|name, assembly| {
-        let mut motion = assembly.system.in_velocities().ok()?.poincare().unwrap().compile().unwrap();
-        let frame = assembly.system.frame();
-        let velocities = frame.velocities(assembly.system.quasi_velocities());
-        let functions = [frame.coordinates(), &velocities].concat();
+        let mut motion = match assembly.bound.multipliers() {
+            Some(multipliers) => multipliers.in_velocities().ok()?.compile().unwrap(),
+            None => assembly.system.in_velocities().ok()?.poincare().unwrap().compile().unwrap(),
+        };
+        let equations = assembly.equations().unwrap();
+        let functions = [equations.system().frame().coordinates(), equations.velocities()].concat();
         let mut along = Along::new(assembly);
         for _ in 0..STATES {
             let (t, state) = along.state();
@@ -141,6 +145,11 @@ fn lagranges_equations_are_poincares() {
             "turning-wire",
             "turning-hoop",
             "pendulum-chain-cartesian",
+            "suslov",
+            "suslov-in-gravity",
+            "turntable",
+            "turntable-accelerated",
+            "ball-in-cylinder",
         ]
     );
 }

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use pc_mech::{Equations, Expr, Graph};
+use pc_model::{Builtin, Model};
 use pc_solve::{Options, solve};
 use pc_tests::definition::assert_derived;
 use pc_tests::nonholonomic::{SYSTEMS, ball_on_turntable, disk, sleigh, voronets};
@@ -168,4 +169,19 @@ fn the_equations_are_those_of_the_definition() {
             assert_derived(described.name, |graph| build(graph).unwrap(), vanishing, 300, described.sample);
         println!("{}: {worst:.1e} of the largest term", described.name);
     }
+}
+
+/// Constants in disguise of quaternion and angle: the brackets of the ball in the cylinder, in a and R alone.
+#[test]
+fn brackets_forget_the_place() {
+    let model = Model::new(Builtin::named("ball-in-cylinder").unwrap().document().unwrap());
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let [a, radius] = graph.symbols(["a", "R"]);
+    let structure = assembly.system.structure();
+    for (.., c) in structure.nonzero() {
+        assert!(graph.symbols_of(&[c]).iter().all(|symbol| [a, radius].contains(symbol)), "{c}");
+    }
+    // [ω_r, ω_z] turns with φ̇ = −a ω_z/(R − a), beside the angular velocity of the axes
+    assert!((structure.get(1, 3, 2) - (1.0 + a / (radius - a))).is_zero(), "{}", structure.get(1, 3, 2));
 }

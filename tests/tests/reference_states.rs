@@ -2,25 +2,57 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::{AlgebraError, Graph, MechError, VectorField};
-use pc_model::{BUILTIN, Builtin, Model};
+use pc_mech::{AlgebraError, Expr, Graph, MechError, Motion, VectorField};
+use pc_model::{Assembly, BUILTIN, Builtin, Model};
 use pc_solve::{Method, Options, solve};
-use pc_tests::reference::REFERENCES;
+use pc_tests::reference::{Reference, references};
 
 /// What is asked of an integration at rtol = 1e-12, atol = 1e-14: the references have 16 digits, and the motions
 /// magnify an error of the start by at most a few hundred over their time.
 const TOLERANCE: f64 = 1e-8;
 
+/// A model with a spread of rates of 10⁷: for BDF alone, and to 1e-6, which the friction, steep in v, leaves of rtol = 1e-12.
+const STIFF: &str = "stiff-sleigh";
+
+/// What is asked of a model by a method, if it is one for the model.
+fn tolerance(model: &str, method: Method) -> Option<f64> {
+    match (model == STIFF, method) {
+        (false, _) => Some(TOLERANCE),
+        (true, Method::Bdf) => Some(1e-6),
+        (true, Method::Adams) => None,
+    }
+}
+
 #[test]
 fn every_model_has_a_reference() {
     let mut models: Vec<&str> = BUILTIN.iter().map(|model| model.name).collect();
+    let mut known: Vec<&str> = references().map(|reference| reference.model).collect();
     models.sort_unstable();
-    assert_eq!(models, REFERENCES.iter().map(|reference| reference.model).collect::<Vec<_>>());
+    known.sort_unstable();
+    assert_eq!(models, known);
+}
+
+/// The columns of these names have arrived.
+fn assert_arrived(reference: &Reference, by: &str, names: &[String], end: &[f64], tolerance: f64) {
+    let mut compared = 0;
+    for (column, expected) in reference.columns.iter().zip(reference.state) {
+        let Some(i) = names.iter().position(|name| name == column) else { continue };
+        compared += 1;
+        let (model, found) = (reference.model, end[i]);
+        let error = (found - expected).abs();
+        assert!(error <= tolerance, "{model} by {by}: {column} is {found}, not {expected}");
+    }
+    assert_eq!(compared, names.len().min(reference.state.len()), "{}: {names:?}", reference.model);
+}
+
+fn names(symbols: &[&[Expr<'_>]]) -> Vec<String> {
+    symbols.concat().iter().map(Expr::to_string).collect()
 }
 
 fn run(method: Method) {
-    for reference in REFERENCES {
+    for reference in references() {
         let name = reference.model;
+        let Some(tolerance) = tolerance(name, method) else { continue };
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
@@ -32,10 +64,7 @@ fn run(method: Method) {
         let trajectory = solve(&mut motion, assembly.t_start, &start, &times, &options).unwrap();
 
         let (_, end) = trajectory.last().unwrap();
-        for (i, expected) in reference.state.iter().enumerate() {
-            let error = (end[i] - expected).abs();
-            assert!(error <= TOLERANCE, "{name} by {method}: component {i} is {}, not {expected}", end[i]);
-        }
+        assert_arrived(reference, &method.to_string(), watch.names(), end, tolerance);
         let start = watch.observe(assembly.t_start, &start);
         let names = watch.observable_names().to_vec();
         for (t, y) in trajectory.iter() {
@@ -43,8 +72,10 @@ fn run(method: Method) {
             for conserved in reference.conserved {
                 let i = names.iter().position(|name| name == conserved).unwrap();
                 let drift = (now[i] - start[i]).abs() / (1.0 + start[i].abs());
-                assert!(drift <= TOLERANCE, "{name} by {method}: {conserved} drifts by {drift:e} at t = {t}");
+                assert!(drift <= tolerance, "{name} by {method}: {conserved} drifts by {drift:e} at t = {t}");
             }
+            let slips = watch.constraint_residuals(t, y);
+            assert!(slips.iter().all(|slip| slip.abs() <= tolerance), "{name} by {method}: {slips:?}");
         }
     }
 }
@@ -59,52 +90,60 @@ fn bdf_reaches_the_references() {
     run(Method::Bdf);
 }
 
+/// Where the velocities that its constraints determine best at the start, Ẏ and θ̇ of Ẋ and φ̇, are no longer determined
+/// on the way: at cos φ = 0.
+const OUT_OF_ITS_CHART: &str = "vertical-disk";
+
 /// The same end states through momenta.
 #[test]
 fn the_canonical_equations_reach_the_references() {
     let mut implicit = Vec::new();
-    for reference in REFERENCES {
+    for reference in references().filter(|reference| reference.model != OUT_OF_ITS_CHART) {
         let name = reference.model;
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
-        let canonical = assembly.system.canonical().unwrap();
+        let system = assembly.free_system().unwrap();
+        let canonical = system.canonical().unwrap();
         if !canonical.is_closed() {
             implicit.push(name);
         }
         let mut transform = canonical.legendre_transform().unwrap();
-        let start = transform.to_momenta(assembly.t_start, &assembly.start).unwrap();
+        let state = [system.frame().coordinates(), system.quasi_velocities()];
+        let start = transform.to_momenta(assembly.t_start, &assembly.start_of(&state.concat())).unwrap();
         for method in [Method::Adams, Method::Bdf] {
+            let Some(tolerance) = tolerance(name, method) else { continue };
             let mut motion = model.compile_canonical(&canonical, assembly.t_start, &start).unwrap();
             let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
             let trajectory =
                 solve(&mut motion, assembly.t_start, &start, &[reference.t_end], &options).unwrap();
             let (t, end) = trajectory.last().unwrap();
             let end = transform.to_quasi_velocities(t, end).unwrap();
-            for (i, expected) in reference.state.iter().enumerate() {
-                let error = (end[i] - expected).abs();
-                assert!(
-                    error <= TOLERANCE,
-                    "{name} by {method}: component {i} is {}, not {expected}",
-                    end[i]
-                );
-            }
+            assert_arrived(reference, &method.to_string(), &names(&state), &end, tolerance);
         }
     }
     assert_eq!(implicit, ["relativistic-constant-force", "relativistic-particle"]);
+}
+
+/// Lagrange's equations of a model, with multipliers where it has constraints.
+fn in_velocities(assembly: &Assembly<'_>) -> Result<Motion, MechError> {
+    match assembly.bound.multipliers() {
+        Some(multipliers) => multipliers.in_velocities()?.compile(),
+        None => assembly.system.in_velocities()?.poincare()?.compile(),
+    }
 }
 
 /// The same end states by Lagrange's equations, of all models whose frame is a change of coordinate velocities.
 #[test]
 fn lagranges_equations_reach_the_references() {
     let (mut redundant, mut dependent) = (Vec::new(), Vec::new());
-    for reference in REFERENCES {
+    for reference in references() {
         let name = reference.model;
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
-        let lagrange = match assembly.system.in_velocities() {
-            Ok(lagrange) => lagrange,
+        let mut motion = match in_velocities(&assembly) {
+            Ok(motion) => motion,
             Err(MechError::Redundant { .. }) => {
                 redundant.push(name);
                 continue;
@@ -118,20 +157,23 @@ fn lagranges_equations_reach_the_references() {
             }
         };
         // ẋ = b η + b_0 at the start and, where η is known there, at the end
-        let n = assembly.system.frame().coordinates().len();
-        let mut framed = assembly.system.poincare().unwrap().compile().unwrap();
-        let mut in_velocities = |t: f64, y: &[f64]| {
+        let equations = assembly.equations().unwrap();
+        let (x, eta) = (equations.system().frame().coordinates(), equations.system().quasi_velocities());
+        let mut framed = equations.compile().unwrap();
+        let mut with_velocities = |t: f64, y: &[f64]| {
             let mut rates = vec![f64::NAN; y.len()];
             framed.rhs(t, y, &mut rates).unwrap();
-            [&y[..n], &rates[..n]].concat()
+            [&y[..x.len()], &rates[..x.len()]].concat()
         };
-        let start = in_velocities(assembly.t_start, &assembly.start);
+        let start = with_velocities(assembly.t_start, &assembly.start_of(&[x, eta].concat()));
         let end = match reference.state {
-            state if state.len() == 2 * n => in_velocities(reference.t_end, state),
+            state if state.len() == reference.columns.len() => {
+                with_velocities(reference.t_end, &reference.pick([x, eta].concat(), state))
+            }
             coordinates => coordinates.to_vec(),
         };
-        let mut motion = lagrange.poincare().unwrap().compile().unwrap();
         for method in [Method::Adams, Method::Bdf] {
+            let Some(tolerance) = tolerance(name, method) else { continue };
             let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
             let trajectory =
                 solve(&mut motion, assembly.t_start, &start, &[reference.t_end], &options).unwrap();
@@ -139,7 +181,7 @@ fn lagranges_equations_reach_the_references() {
             for (i, expected) in end.iter().enumerate() {
                 let error = (found[i] - expected).abs();
                 assert!(
-                    error <= TOLERANCE,
+                    error <= tolerance,
                     "{name} by {method}: component {i} is {}, not {expected}",
                     found[i]
                 );
@@ -160,6 +202,11 @@ fn lagranges_equations_reach_the_references() {
             "spherical-pendulum-meridian",
             "turning-hoop",
             "turning-wire",
+            "ball-in-cylinder",
+            "suslov",
+            "suslov-in-gravity",
+            "turntable",
+            "turntable-accelerated",
         ]
     );
     // γ moves on a sphere, so that γ̇ does not tell ω.

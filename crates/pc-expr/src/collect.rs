@@ -125,17 +125,21 @@ impl Graph {
         short
     }
 
-    /// e with sin z and cos z at the first point of the circle that does not change its value, and z = 0 too if `whole`;
-    /// e itself if there is none.
+    /// e with sin z and cos z at the first point of the circle that does not change its value, and with z a number too if
+    /// `whole`; e itself if there is none.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool) -> Expr<'g> {
         // A form with a vanishing denominator or another value is not taken: try the next point.
-        let points = [(0, 1), (1, 0)].map(|(s, c)| (Number::integer(s), Number::integer(c)));
-        points
-            .into_iter()
-            .chain([(Number::ratio(3, 5), Number::ratio(4, 5))])
-            .map(|(sin, cos)| self.at_point(e, z, whole, sin, cos))
-            .find(|&candidate| self.is_same_value(candidate, e))
-            .unwrap_or(e)
+        let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
+        [
+            (Number::ZERO, [Number::ZERO, Number::ONE]),
+            (Number::ZERO, [Number::ONE, Number::ZERO]),
+            (Number::ZERO, oblique),
+            (Number::ONE, oblique),
+        ]
+        .into_iter()
+        .map(|(value, circle)| self.at_point(e, z, whole.then_some(value), circle))
+        .find(|&candidate| self.is_same_value(candidate, e))
+        .unwrap_or(e)
     }
 
     /// The angles that are no symbols, of which e contains both sine and cosine: Ω t in sin Ω t and cos Ω t.
@@ -182,12 +186,19 @@ impl Graph {
         repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// e with sin z and cos z as given, and z = 0 if `whole`.
-    fn at_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool, sin: Number, cos: Number) -> Expr<'g> {
+    /// e with sin z and cos z as given, and z itself if there is a `value`.
+    fn at_point<'g>(
+        &'g self,
+        e: Expr<'g>,
+        z: Expr<'g>,
+        value: Option<Number>,
+        [sin, cos]: [Number; 2],
+    ) -> Expr<'g> {
         let (Atom::Node(angle), output) = (z.atom_in(self), e.atom_in(self)) else { return e };
         self.build(|dag| {
             let divisions = dag.zero_divisions().len();
-            let mut replacements = if whole { vec![(angle, Atom::ZERO)] } else { Vec::new() };
+            let mut replacements: Vec<(NodeId, Atom)> =
+                value.map(|value| (angle, Atom::Constant(value))).into_iter().collect();
             for (function, value) in [(Function::Sin, sin), (Function::Cos, cos)] {
                 if let Some(node) = call_node(dag, function, angle) {
                     replacements.push((node, Atom::Constant(value)));

@@ -46,6 +46,22 @@ pub const BUILTIN: &[Builtin] = models![
     "pendulum-chain",
     "pendulum-chain-cartesian",
     "toda-chain",
+    "chaplygin-sleigh",
+    "vertical-disk",
+    "vertical-disk-driven",
+    "tilted-disk",
+    "nonholonomic-particle",
+    "suslov",
+    "suslov-in-gravity",
+    "turntable",
+    "turntable-accelerated",
+    "ball-in-cylinder",
+    "snakeboard",
+    "snakeboard-driven",
+    "carriage",
+    "voronets",
+    "voronets-rheonomic",
+    "stiff-sleigh",
 ];
 
 impl Builtin {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use pc_mech::{CompileOptions, Graph, System, VectorField};
+use pc_mech::{CompileOptions, Equations, Graph, VectorField};
 use pc_model::{BUILTIN, Builtin, Model};
 
 use crate::error::Error;
@@ -66,7 +66,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         let system = systems::pendulum(&graph, PENDULUM)?;
         let assemble = clock.lap();
         let start: Vec<f64> = (0..2 * PENDULUM).map(|i| 0.1 * i as f64).collect();
-        derive(&system, [0.0, assemble], 0.0, &start, clock)
+        let equations = system.poincare()?;
+        let poincare = clock.lap();
+        derive(&equations, [0.0, assemble, poincare], 0.0, &start, clock)
     }));
     for _ in 0..RUNS {
         for derivation in &mut derivations {
@@ -124,24 +126,26 @@ fn derive_model(builtin: &Builtin) -> Result<Run, Error> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
     let assemble = clock.lap();
-    derive(&assembly.system, [parse, assemble], assembly.t_start, &assembly.start, clock)
+    let equations = assembly.equations()?;
+    let poincare = clock.lap();
+    let system = equations.system();
+    let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    derive(&equations, [parse, assemble, poincare], assembly.t_start, &assembly.start_of(&state), clock)
 }
 
 fn derive(
-    system: &System<'_>,
-    [parse, assemble]: [f64; 2],
+    equations: &Equations<'_>,
+    [parse, assemble, poincare]: [f64; 3],
     t: f64,
     start: &[f64],
     mut clock: Clock,
 ) -> Result<Run, Error> {
-    let equations = system.poincare()?;
-    let poincare = clock.lap();
     let mut motion = equations.compile_for(CompileOptions::default().jacobian(false))?;
     let compile = clock.lap();
     let mut rates = vec![0.0; start.len()];
     motion.rhs(t, start, &mut rates)?;
     let first_call = clock.lap();
-    let nodes = system.graph().len();
+    let nodes = equations.system().graph().len();
     let mut motion = equations.compile()?;
     let mut jacobian = vec![0.0; start.len() * start.len()];
     motion.jacobian(t, start, &mut jacobian)?;
