@@ -157,7 +157,7 @@ fn gyroscopic_forces_do_no_work() {
     );
     assert_eq!(
         refused((1, 1)).to_string(),
-        "gyroscopic forces have an antisymmetric matrix; its entries for `ω2` and `ω2` do not add up to zero"
+        "the matrix of gyroscopic forces is antisymmetric; its entries for `ω2` and `ω2` do not add up to zero"
     );
 }
 

@@ -85,9 +85,12 @@ impl<'g> Constrained<'g> {
         rates.extend(all.iter().copied().zip(self.equations.accelerations()));
         rates.push((frame.time(), Expr::ONE));
         let transport = graph.directional(&momenta[free..], &rates);
-        (free..all.len())
+        let reactions: Vec<Expr<'g>> = (free..all.len())
             .map(|a| graph.sum([transport[a - free], -gyroscopic[a], -potential[a], -forces[a]]))
-            .collect()
+            .collect();
+        let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
+        let order: Vec<Expr<'g>> = all[..free].iter().copied().chain(parameters).collect();
+        graph.shorten(&reactions, &order)
     }
 }
 

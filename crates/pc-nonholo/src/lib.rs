@@ -175,6 +175,7 @@ mod adapted;
 mod almost_poisson;
 mod constrained;
 mod error;
+mod involutive;
 mod measure;
 mod sorted;
 mod voronets;

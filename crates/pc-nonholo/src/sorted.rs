@@ -4,6 +4,7 @@ use pc_mech::{Constraint, Expr, Graph, Multipliers, Neighbourhood, System};
 
 use crate::adapted::Adapted;
 use crate::error::NonholoError;
+use crate::involutive::{ROUNDING, involutive_closure};
 
 /// What a constraint does, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,16 +37,14 @@ pub struct Sorted<'g> {
     redundant: Vec<Redundant>,
 }
 
-/// Components of commutators below this are rounding: one that does not vanish is of order one.
-const ROUNDING: f64 = 1e-9;
-
 impl<'g> Sorted<'g> {
     /// Sorts the constraints of a system: by rank into binding and redundant ones, and by Frobenius' test into
     /// holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the velocities that all constraints allow,
     ///
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
-    /// the constraint α is integrable if c'_rs^α = 0.
+    /// the constraint α is integrable if neither these brackets, c'_rs^α = 0, nor brackets of brackets have a component
+    /// along it: then it vanishes on the least involutive family of fields that contains X'_0..X'_l.
     /// Positions come first: a condition on velocities may follow from them, but never the other way round.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
@@ -115,16 +114,13 @@ fn kinds<'g>(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Ve
     let (system, l) = (adapted.system(), adapted.free());
     let mut near = Neighbourhood { centre: at.to_vec() };
     near.centre.extend(system.parameters().iter().copied());
+    let reached = involutive_closure(system, l, &near);
     Ok((0..m)
         .map(|a| {
             if multipliers.is_holonomic(a) {
                 return Kind::Position;
             }
-            let pairs = (0..=l).flat_map(|r| (r + 1..=l).map(move |s| (r, s)));
-            let components: Vec<Expr<'g>> = pairs
-                .map(|(r, s)| system.structure().get(r, s, l + a + 1))
-                .filter(|c| !c.is_zero())
-                .collect();
+            let components: Vec<Expr<'g>> = reached.iter().map(|field| field[l + a + 1]).collect();
             let residual = near.largest(system.graph(), &components);
             if residual <= ROUNDING { Kind::Integrable } else { Kind::Nonholonomic { residual } }
         })

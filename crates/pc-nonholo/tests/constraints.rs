@@ -159,3 +159,28 @@ fn positions_come_first() {
     let error = Sorted::new(&system, &[Constraint::new("speed", vx.square() - y)], &at).unwrap_err();
     assert_eq!(error.to_string(), "the constraint `speed` is not affine in the quasi-velocities");
 }
+
+/// The disk that rolls without tilt: [X_φ, X_θ] has a component along `along` only where the disk is not along an axis,
+/// brackets of brackets have one along both.
+#[test]
+fn brackets_of_brackets_count() {
+    let graph = Graph::new();
+    let [theta, heading] = graph.symbols(["θ'", "φ"]);
+    let [vx, vy] = graph.symbols(["x'", "y'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "φ", "θ"])
+        .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+        .build()
+        .unwrap();
+    let at = state(&graph, &system);
+    // Across and along the heading: only one of the two is met by the first bracket.
+    let (s, c) = (heading.sin(), heading.cos());
+    let across = Constraint::new("across", c * vy - s * vx);
+    let rolling = Constraint::new("rolling", c * vx + s * vy - theta);
+    let sorted = sort(&system, &[across, rolling], &at);
+    assert!(
+        sorted.kinds().iter().all(|kind| matches!(kind, Kind::Nonholonomic { .. })),
+        "{:?}",
+        sorted.kinds()
+    );
+}
