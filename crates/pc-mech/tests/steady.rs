@@ -334,3 +334,22 @@ fn what_cannot_be_found_is_named() {
         "`spin` is not a first integral free of time, so that it proves no stability"
     );
 }
+
+/// A free particle in polar coordinates moves along a ray; integrals leave one deviation, along which nothing has a
+/// second variation: no extremum, strict or not, is seen in the rounding.
+#[test]
+fn a_form_that_vanishes_is_not_definite() {
+    let graph = Graph::new();
+    let plane = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .integral("ẋ", |_, _, v| v[0])
+        .integral("ẏ", |_, _, v| v[1])
+        .integral("moment", |_, x, v| x[0] * v[1] - x[1] * v[0])
+        .build()
+        .unwrap();
+    let equations = plane.poincare().unwrap();
+    for state in [[0.1, 0.7, 0.3, 0.6], [1.0 / 3.0, 0.0, 0.9, -0.1], [-1.0, 0.0, 0.964147, 0.0]] {
+        assert_eq!(equations.second_variation(&state).unwrap().verdict, Verdict::Undecided, "{state:?}");
+    }
+}

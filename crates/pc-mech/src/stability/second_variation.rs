@@ -174,7 +174,9 @@ fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
     let rounding = critical.rounding;
     let hessians: Vec<Matrix<f64>> =
         expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();
-    let largest = hessians.iter().map(|form| norm(form.entries())).fold(0.0, f64::max);
+    // Against the whole forms: what they leave on the kernel may be rounding alone.
+    let whole = expansions.iter().map(|expansion| norm(expansion.hessian.entries()));
+    let largest = whole.fold(0.0, f64::max);
 
     // The form of λ, and those by which the free multipliers change it.
     let mut forms = vec![combination(&hessians, &with_energy(1.0, &critical.lambda))];
