@@ -80,7 +80,8 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
         };
         sum += &match size {
             "1" => element,
-            _ if is_sum(size) => format!("({size}) {element}"),
+            // What follows a quotient would be read into its divisor.
+            _ if is_sum(size) || is_quotient(size) => format!("({size}) {element}"),
             _ => format!("{size} {element}"),
         };
     }
@@ -89,6 +90,11 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
 
 fn is_sum(text: &str) -> bool {
     text.contains(" + ") || text.contains(" - ")
+}
+
+/// Whether it is a quotient of more than numbers.
+fn is_quotient(text: &str) -> bool {
+    text.contains('/') && text.chars().any(char::is_alphabetic)
 }
 
 /// Number of characters, each one column wide.
@@ -126,6 +132,8 @@ mod tests {
         assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
         assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
         assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
+        let quotient = [("-cos(θ)/sin(θ)", "X1"), ("a/b", "X2")].map(|(c, x)| (c.to_owned(), x.to_owned()));
+        assert_eq!(combination(quotient), "-(cos(θ)/sin(θ)) X1 + (a/b) X2");
     }
 
     #[test]
