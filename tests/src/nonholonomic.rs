@@ -123,7 +123,7 @@ pub fn sleigh<'g>(graph: &'g Graph, lateral: fn(Expr<'g>) -> Expr<'g>) -> Result
     on_a_blade(graph, lateral).build()
 }
 
-/// The [sleigh](sleigh) under a stiff spring, a damper, a drive, and friction along the blade.
+/// The [sleigh] under a stiff spring, a damper, a drive, and friction along the blade.
 ///
 /// # Errors
 /// [`MechError`], of which none is to be expected.

@@ -108,6 +108,9 @@ pub struct RunArguments {
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
+    /// More columns: the reactions of the constraints, as λ_NAME
+    #[arg(long, value_name = "OUTPUTS")]
+    pub outputs: Option<Outputs>,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -178,6 +181,13 @@ pub enum Form {
     Lagrange,
     /// Equations for independent velocities.
     Voronets,
+}
+
+/// More columns of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Outputs {
+    /// The reactions of the constraints.
+    Reactions,
 }
 
 /// Form of the equations that are integrated.

@@ -113,13 +113,13 @@ impl<'g> Derived<'g> {
                 let name = "Poincaré's equations";
                 match (reduced, multipliers) {
                     (Some(constrained), Some(multipliers)) => {
-                        let reactions = multipliers.reactions().iter().copied().zip(constrained.reactions());
+                        let reactions = bound.reactions(&assembly.at_start())?;
                         let vanishing = constrained.vanishing().to_vec();
                         let in_velocities = multipliers.in_velocities().ok();
                         let velocities = in_velocities.iter().flat_map(|held| held.velocities().to_vec());
                         let definitions = multipliers.constraints().iter().map(Constraint::expression);
                         let definitions = definitions.zip(velocities).collect();
-                        (name, Derived { vanishing, reactions: reactions.collect(), definitions, ..plain })
+                        (name, Derived { vanishing, reactions, definitions, ..plain })
                     }
                     _ => (name, plain),
                 }

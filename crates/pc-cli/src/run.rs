@@ -7,7 +7,7 @@ use pc_mech::Graph;
 use pc_model::Model;
 use pc_solve::{SolveError, Statistics, Trajectory, solve_observed};
 
-use crate::args::{RunArguments, RunForm};
+use crate::args::{Outputs, RunArguments, RunForm};
 use crate::binding::{choice, dropped, say_choice};
 use crate::error::CliError;
 use crate::flow::Flow;
@@ -74,7 +74,8 @@ impl Ending {
 pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
     let picture = Destination::plot(arguments.plot.as_deref())?;
-    let model = input::open(&arguments.model)?;
+    let mut model = input::open(&arguments.model)?;
+    model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
     let form = Plan::form(&model, arguments);
     let run = integrate(&model, form, || Plan::new(&model, arguments))?;
 

@@ -170,6 +170,17 @@ fn the_canonical_form_has_the_same_columns() {
     assert!(!stderr(&pc(SLIP, &["run", "-", "--form", "canonical"])).contains("note:"));
 }
 
+/// λ = v ω (m − m² a²/(m a² + J)) of the blade along the motion.
+#[test]
+fn reactions_are_columns_where_this_is_asked_for() {
+    let (names, rows) = run(SLEIGH, &["--outputs", "reactions"]);
+    assert_eq!(names, ["t", "x", "y", "phi", "v", "omega", "energy", "λ_blade"]);
+    let share = 1.0 - 0.09 / (0.09 + 0.5);
+    for row in rows {
+        assert!((row[7] - row[4] * row[5] * share).abs() < 1e-14, "{row:?}");
+    }
+}
+
 #[test]
 fn a_start_is_moved_where_this_is_asked_for() {
     let off = SPHERE.replace("x = 0.6", "x = 0.7");

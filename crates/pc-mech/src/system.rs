@@ -147,6 +147,16 @@ impl<'g> System<'g> {
         }
     }
 
+    /// The same system with symbols in its integrals and outputs replaced, such as those of reactions.
+    #[must_use]
+    pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {
+        let put = |list: &[(String, Expr<'g>)]| {
+            let value = |f: Expr<'g>| self.graph().substitute(&[f], known)[0];
+            list.iter().map(|(name, f)| (name.clone(), value(*f))).collect()
+        };
+        System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }
+    }
+
     /// The same system with more generalised forces, one a quasi-velocity.
     ///
     /// # Errors

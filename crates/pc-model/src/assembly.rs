@@ -58,7 +58,11 @@ impl<'g> Assembler<'g, '_> {
         let dissipation = self.dissipation(&x_dot)?;
         let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
         let integrals = self.observed(&document.integrals, &x_dot)?;
-        let outputs = self.observed(&document.outputs, &x_dot)?;
+        let mut outputs = self.observed(&document.outputs, &x_dot)?;
+        if self.model.observes_reactions() {
+            let names = document.constraints.iter().map(|constraint| format!("λ_{}", constraint.name.text));
+            outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
+        }
 
         let state: Vec<Expr<'g>> = frame.coordinates().iter().chain(&eta).copied().collect();
         let mut values = parameters.clone();

@@ -1,6 +1,6 @@
 //! How constraints bind a system, and its equations of motion under them.
 
-use pc_mech::{Equations, Expr, Multipliers, System};
+use pc_mech::{Constraint, Equations, Expr, Multipliers, System};
 use pc_nonholo::{Adapted, Constrained, Kind, NonholoError, Redundant};
 
 /// What a constraint does.
@@ -94,6 +94,24 @@ impl<'g> Bound<'g> {
             Form::Held(held) if held.holonomic => None,
             Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
         })
+    }
+
+    /// The symbols λ of the reactions with what they are in the frame of [`constrained`](Bound::constrained), functions of
+    /// time, coordinates and free quasi-velocities; none where there is no such frame.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn reactions(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, NonholoError> {
+        let (Some(constrained), Some(multipliers)) = (self.constrained(at)?, &self.multipliers) else {
+            return Ok(Vec::new());
+        };
+        let values = constrained.reactions();
+        // Constraints that are quasi-velocities stand in the order of these, others in their own.
+        let place = |(a, constraint): (usize, &Constraint<'g>)| {
+            constrained.vanishing().iter().position(|&eta| eta == constraint.expression()).unwrap_or(a)
+        };
+        let places = multipliers.constraints().iter().enumerate().map(place);
+        Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by

@@ -19,6 +19,7 @@ pub struct Model {
     document: Document,
     parameters: Vec<f64>,
     projects_start: bool,
+    observes_reactions: bool,
 }
 
 /// The system of a model, with the state its motion starts from.
@@ -91,7 +92,7 @@ impl Model {
     /// The model of a document.
     pub fn new(document: Document) -> Model {
         let parameters = document.parameters.iter().map(|p| p.value.value).collect();
-        Model { document, parameters, projects_start: false }
+        Model { document, parameters, projects_start: false, observes_reactions: false }
     }
 
     /// The document it was made from.
@@ -180,6 +181,15 @@ impl Model {
     /// Says that the start is to be moved to where the constraints are satisfied.
     pub fn project_start(&mut self, yes: bool) {
         self.projects_start = yes;
+    }
+
+    /// Says that the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.
+    pub fn observe_reactions(&mut self, yes: bool) {
+        self.observes_reactions = yes;
+    }
+
+    pub(crate) fn observes_reactions(&self) -> bool {
+        self.observes_reactions
     }
 
     pub(crate) fn projects_start(&self) -> bool {

@@ -219,11 +219,18 @@ impl<'g, 'd> Scope<'g, 'd> {
             Stage::Definition | Stage::Position if is_quasi_velocity => refuse(self),
             _ if name == "t" => Ok(self.time),
             _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
+            Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             _ => {
                 let fault = |_| Fault::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
             }
         }
+    }
+
+    /// `λ_` before the name of a constraint.
+    fn is_reaction(&self, name: &str) -> bool {
+        let constraint = name.strip_prefix("λ_");
+        constraint.is_some_and(|name| self.document.constraints.iter().any(|c| c.name.text == name))
     }
 
     fn definition(&mut self, index: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {

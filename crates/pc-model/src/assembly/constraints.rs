@@ -1,7 +1,7 @@
 //! The constraints of a model: sorted, checked at the start, and put where they are cheapest to keep.
 
 use pc_mech::{Constraint, Expr, System};
-use pc_nonholo::{Constrained, Kind, Sorted};
+use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
 
 use super::Assembler;
 use super::trial::Trial;
@@ -110,14 +110,27 @@ impl<'g> Assembler<'g, '_> {
         });
         let redundant = sorted.redundant().to_vec();
         let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
-        let form = match vanishing {
-            Some(eta) => Form::Vanishing(Box::new(Constrained::new(system, &eta).map_err(refused)?)),
-            None => {
-                let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
-                Form::Held(Box::new(held))
-            }
+        // What is dropped has no reaction.
+        let none =
+            |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
+        let system = system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
+        let multipliers =
+            system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
+        let Some(vanishing) = vanishing else {
+            let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
+            return Ok(Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant));
         };
-        Ok(Bound::new(form, multipliers.clone(), verdicts, redundant))
+        let constrained = |system: &System<'g>| Constrained::new(system, &vanishing).map_err(refused);
+        let form = Form::Vanishing(Box::new(constrained(&system)?));
+        let bound = Bound::new(form, multipliers.clone(), verdicts.clone(), redundant.clone());
+        let observed = system.integrals().iter().chain(system.outputs());
+        let reactions = multipliers.reactions();
+        if !observed.into_iter().any(|(_, f)| reactions.iter().any(|&reaction| f.depends_on(reaction))) {
+            return Ok(bound);
+        }
+        let known = bound.reactions(at).map_err(refused)?;
+        let form = Form::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
+        Ok(Bound::new(form, multipliers, verdicts, redundant))
     }
 
     fn text_of(&self, written: &Written<'g>) -> &document::Constraint {

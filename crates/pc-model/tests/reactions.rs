@@ -1,0 +1,93 @@
+//! Reactions as outputs of a model.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_mech::Graph;
+use pc_model::{Document, Model, Source};
+
+/// The observables at the start, by name.
+fn observed(text: &str, all: bool) -> Vec<(String, f64)> {
+    let mut model = Model::new(Document::parse(Source::new("model.toml", text)).unwrap());
+    model.observe_reactions(all);
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let (mut motion, start) = model.compile(&assembly).unwrap();
+    let values = motion.observe(assembly.t_start, &start);
+    motion.observable_names().iter().cloned().zip(values).collect()
+}
+
+fn value(observed: &[(String, f64)], name: &str) -> f64 {
+    observed.iter().find(|(known, _)| known == name).unwrap().1
+}
+
+/// A particle held against the force (2, 3, 0): the reactions are −2 and −3, whatever the order of the constraints.
+const HELD: &str = r#"
+[coordinates]
+x = 0.0
+y = 0.0
+z = 0.0
+[quasi_velocities]
+u = 0.0
+s = 0.0
+w = 1.0
+[kinematics]
+x = "u"
+y = "s"
+z = "w"
+[constraints]
+second = "s"
+first = "u"
+[lagrangian]
+kinetic = "(u^2 + s^2 + w^2)/2"
+potential = "-2*x - 3*y"
+[outputs]
+both = "λ_first - 10*λ_second"
+"#;
+
+#[test]
+fn reactions_bear_the_names_of_their_constraints() {
+    let found = observed(HELD, true);
+    assert_eq!(
+        found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        ["energy", "both", "λ_second", "λ_first"]
+    );
+    assert_eq!(value(&found, "λ_first"), -2.0);
+    assert_eq!(value(&found, "λ_second"), -3.0);
+    assert_eq!(value(&found, "both"), 28.0);
+    assert!(observed(HELD, false).iter().all(|(name, _)| !name.starts_with('λ')));
+}
+
+/// The rod of a spherical pendulum pulls with 2λ r, λ = (g z − |ṙ|²)/(2|r|²); what follows from it has no reaction.
+#[test]
+fn multipliers_are_outputs_and_what_is_dropped_is_zero() {
+    let sphere = r#"
+[coordinates]
+x = 0.6
+y = 0.0
+z = -0.8
+[quasi_velocities]
+"y'" = 1.5
+[constraints]
+length = "x^2 + y^2 + z^2 - 1"
+again = "x*x' + y*y' + z*z'"
+[lagrangian]
+kinetic = "(x'^2 + y'^2 + z'^2)/2"
+potential = "10*z"
+"#;
+    let found = observed(sphere, true);
+    assert!((value(&found, "λ_length") - (-8.0 - 2.25) / 2.0).abs() < 1e-14);
+    assert_eq!(value(&found, "λ_again"), 0.0);
+}
+
+#[test]
+fn a_reaction_of_nothing_is_no_name() {
+    let wrong = HELD.replace("λ_first - 10*λ_second", "λ_third");
+    let model = Model::new(Document::parse(Source::new("model.toml", &wrong)).unwrap());
+    let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("the name `λ_third` is not declared"), "{error}");
+    // … and a reaction is none of the things that determine the motion.
+    let circular = HELD.replace("-2*x - 3*y", "-2*x - 3*y + λ_first");
+    let model = Model::new(Document::parse(Source::new("model.toml", &circular)).unwrap());
+    let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("the name `λ_first` is not declared"), "{error}");
+}
