@@ -119,7 +119,7 @@ impl<'g> Derived<'g> {
                         let velocities = in_velocities.iter().flat_map(|held| held.velocities().to_vec());
                         let definitions = multipliers.constraints().iter().map(Constraint::expression);
                         let definitions = definitions.zip(velocities).collect();
-                        (name, Derived { vanishing, reactions, definitions, ..plain })
+                        (name, Derived { vanishing, definitions, reactions, ..plain })
                     }
                     _ => (name, plain),
                 }
