@@ -263,8 +263,16 @@ pub fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<String> {
             lines.push(format!("[{}, {}] = {sum}", name[r], name[s]));
         }
     }
+    let pairs = (0..=free.len()).flat_map(|r| (r + 1..=free.len()).map(move |s| (r, s)));
+    let frame = system.frame();
+    let commute = || pairs.into_iter().all(|(r, s)| frame.commutator(r, s).iter().all(|c| c.is_zero()));
     if lines.is_empty() {
-        lines.push("all operators commute".to_owned());
+        let words = if commute() {
+            "all operators commute"
+        } else {
+            "none within the frame, which is not closed: the constraints are not integrable"
+        };
+        lines.push(words.to_owned());
     } else if let Some(known) = recognised(structure).filter(|_| vanishing.is_empty()) {
         lines.push(format!("the algebra {known}"));
     }

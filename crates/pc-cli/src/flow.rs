@@ -20,7 +20,8 @@ pub struct Flow {
     parameters: Vec<f64>,
     /// From momenta to quasi-velocities, where the state has momenta.
     transform: Option<LegendreTransform>,
-    /// What knows the residuals of constraints that the motion does not know.
+    /// The motion with multipliers, where another is integrated: it knows the residuals of the constraints, the reactions,
+    /// and the energy of all velocities, which is not that of independent ones.
     watch: Option<Motion>,
 }
 
@@ -40,6 +41,8 @@ impl Flow {
             RunForm::Canonical => {
                 let refused = |error| model.derivation_error(error);
                 let system = assembly.free_system().map_err(|error| model.constraint_error(error))?;
+                let held = matches!(assembly.bound.form(), Form::Held(_));
+                let system = if held { system.without_observed() } else { system };
                 let x = system.frame().coordinates();
                 let state = [x, system.quasi_velocities()].concat();
                 let start = assembly.start_of(&state);
@@ -51,7 +54,7 @@ impl Flow {
                 let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
                 let free = system.quasi_velocities().to_vec();
                 let mut flow = Flow::of(model, assembly, free, (motion, start), Some(transform))?;
-                if let Form::Held(_) = assembly.bound.form() {
+                if held {
                     flow.watch = Some(model.compile(assembly)?.0);
                 }
                 Ok(flow)
@@ -109,14 +112,24 @@ impl Flow {
     /// Coordinates and declared quasi-velocities of a state, then the observables.
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut row = self.shown(t, state);
-        row.truncate(self.names.len());
-        row.extend(self.motion.observe(t, state));
+        row.extend(match &mut self.watch {
+            Some(watch) => watch.observe(t, &row),
+            None => self.motion.observe(t, state),
+        });
+        row.drain(
+            self.names.len()..self.motion.coordinates() + self.quasi_velocities.program().outputs_len(),
+        );
         row
+    }
+
+    /// The motion that the observables are those of.
+    pub fn observed(&self) -> &Motion {
+        self.watch.as_ref().unwrap_or(&self.motion)
     }
 
     /// Names of the constraints held by multipliers, and of those solved for velocities.
     pub fn constraint_names(&self) -> Vec<String> {
-        self.watch.as_ref().unwrap_or(&self.motion).constraint_names().to_vec()
+        self.observed().constraint_names().to_vec()
     }
 
     /// What should be zero of each of these.

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use pc_mech::Graph;
-use pc_model::Model;
+use pc_mech::{Expr, Graph};
+use pc_model::{Assembly, Form, Model};
 use pc_solve::{SolveError, Statistics, Trajectory, solve_observed};
 
 use crate::args::{Outputs, RunArguments, RunForm};
@@ -76,6 +76,9 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let picture = Destination::plot(arguments.plot.as_deref())?;
     let mut model = input::open(&arguments.model)?;
     model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
+    if arguments.outputs.is_some() && model.document().constraints.is_empty() {
+        text::say(format_args!("note: there are no constraints, and so no reactions\n"));
+    }
     let form = Plan::form(&model, arguments);
     let run = integrate(&model, form, || Plan::new(&model, arguments))?;
 
@@ -121,7 +124,6 @@ pub fn integrate(
     let wall = start.elapsed();
     drop(progress);
 
-    let keeps_energy = free.is_ok_and(|system| system.energy_rate().is_zero());
     let (trajectory, ending) = match solved {
         Ok(trajectory) if trajectory.is_complete() => (trajectory, Ending::Completed),
         Ok(trajectory) => (trajectory, Ending::Interrupted),
@@ -134,12 +136,29 @@ pub fn integrate(
         table: Table::new(&mut flow, &trajectory),
         constraints: residuals(&mut flow, &trajectory),
         dropped: dropped(&assembly),
-        keeps_energy,
+        keeps_energy: keeps_energy(&assembly),
         statistics: *trajectory.statistics(),
         plan,
         ending,
         wall,
     })
+}
+
+/// Whether nothing changes the energy of the table: of all velocities where multipliers hold constraints, which must be
+/// homogeneous then, else of the free ones.
+fn keeps_energy(assembly: &Assembly<'_>) -> bool {
+    let system = &assembly.system;
+    match assembly.bound.form() {
+        Form::Held(held) => {
+            let homogeneous = |(_, drift): (Vec<Expr<'_>>, Expr<'_>)| drift.is_zero();
+            let mut constraints = held.multipliers.constraints().iter();
+            system.energy_rate().is_zero()
+                && constraints.all(|constraint| constraint.coefficients(system).is_ok_and(homogeneous))
+        }
+        Form::Free | Form::Vanishing(_) => {
+            assembly.free_system().is_ok_and(|system| system.energy_rate().is_zero())
+        }
+    }
 }
 
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {

@@ -170,6 +170,24 @@ fn the_canonical_form_has_the_same_columns() {
     assert!(!stderr(&pc(SLIP, &["run", "-", "--form", "canonical"])).contains("note:"));
 }
 
+/// On a belt that moves, ẏ = V + x, the energy of all velocities grows by the work of the belt; it is the same column
+/// whatever is integrated, ½ (1 + (V + x)²) with x = t.
+#[test]
+fn the_energy_is_that_of_all_velocities_in_every_form() {
+    let belt = "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n\"y'\" = 2.0\n[constraints]\n\
+                belt = \"y' - 2 - x\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[simulation]\nt_end = 1.0\nsamples = 3\n";
+    for form in ["poincare", "canonical"] {
+        let (names, rows) = run(belt, &["--form", form]);
+        assert_eq!(names, ["t", "x", "y", "x'", "y'", "energy"]);
+        for row in rows {
+            let expected = (1.0 + (2.0 + row[0]).powi(2)) / 2.0;
+            assert!((row[5] - expected).abs() < 1e-8, "{form}: {row:?}"); // the tolerance of the run is 1e-9
+        }
+    }
+    let derived = stdout(&pc(SLEIGH, &["derive", "-", "--form", "canonical"]));
+    assert!(derived.contains("none within the frame, which is not closed"), "{derived}");
+}
+
 /// λ = v ω (m − m² a²/(m a² + J)) of the blade along the motion.
 #[test]
 fn reactions_are_columns_where_this_is_asked_for() {

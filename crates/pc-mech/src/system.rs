@@ -147,6 +147,12 @@ impl<'g> System<'g> {
         }
     }
 
+    /// The same system without integrals and outputs.
+    #[must_use]
+    pub fn without_observed(&self) -> System<'g> {
+        System { integrals: Vec::new(), outputs: Vec::new(), ..self.clone() }
+    }
+
     /// The same system with symbols in its integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {

@@ -475,3 +475,41 @@ fn what_is_refused() {
     );
     assert!(matches!(System::builder(&graph).coordinates(["x"]).build(), Err(MechError::NoLagrangian)));
 }
+
+/// One sign wrong in a rotation about an axis, a column too long, a reflection.
+#[test]
+fn a_matrix_that_is_no_rotation_is_refused() {
+    let refused = |entries: fn(Expr<'static>) -> [[Expr<'static>; 3]; 3]| {
+        let graph: &'static Graph = Box::leak(Box::new(Graph::new()));
+        let rotation = entries(graph.symbol("φ"));
+        let rotation = Matrix::from_fn(3, 3, |i, j| rotation[i][j]);
+        let body = RigidBody::rotating(1.0, [Expr::ZERO; 3], [0.1, 0.2, 0.3], rotation);
+        let system = System::builder(graph).coordinates(["φ"]).rigid_body(|_, _, _| body).build();
+        system.map(|_| ()).unwrap_err().to_string()
+    };
+    assert_eq!(
+        refused(|phi| [
+            [phi.cos(), Expr::ZERO, phi.sin()],
+            [Expr::ZERO, Expr::ONE, Expr::ZERO],
+            [phi.sin(), Expr::ZERO, phi.cos()]
+        ]),
+        "the rotation of a body is none: its columns 1 and 3 are not orthogonal and of one length; they miss it by \
+         `2*cos(φ)*sin(φ)`"
+    );
+    assert_eq!(
+        refused(|phi| [
+            [phi.cos(), -phi.sin(), Expr::ZERO],
+            [phi.sin(), phi.cos(), Expr::ZERO],
+            [Expr::ZERO, Expr::ZERO, 2.into()]
+        ]),
+        "the rotation of a body is none: its columns 1 and 3 are not orthogonal and of one length; they miss it by `-3`"
+    );
+    assert_eq!(
+        refused(|phi| [
+            [phi.cos(), phi.sin(), Expr::ZERO],
+            [phi.sin(), -phi.cos(), Expr::ZERO],
+            [Expr::ZERO, Expr::ZERO, Expr::ONE]
+        ]),
+        "the rotation of a body is a reflection: its determinant is -1"
+    );
+}

@@ -113,7 +113,10 @@ fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(Strin
         .filter(|(_, rate)| !cyclic.iter().any(|&x| rate.depends_on(x)))
         .map(|(x, _)| x.to_string())
         .collect();
-    found.rates.iter().filter(|(name, _)| constant.contains(name)).cloned().collect()
+    // A velocity that is a component of the state is known already.
+    let is_component = |name: &str| found.components.iter().any(|known| *known == format!("{name}'"));
+    let rates = found.rates.iter().filter(|(name, _)| constant.contains(name) && !is_component(name));
+    rates.cloned().collect()
 }
 
 /// The largest size of an entry.

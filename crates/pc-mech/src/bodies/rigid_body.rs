@@ -1,6 +1,6 @@
 //! Rigid bodies.
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, determinant};
 use pc_expr::Expr;
 
 use crate::bodies::particle::Particle;
@@ -162,6 +162,7 @@ fn angular_velocities<'g>(
     let entries = rotation.entries().iter().copied();
     let size = graph.dot(entries.clone(), entries) / 3.0;
     let rates = moving.operators("the rotation", rotation.entries())?;
+    check_rotation(rotation, moving)?;
     let component = |rate: &[Expr<'g>], i: usize, j: usize| {
         graph.dot(rotation.column(i), (0..3).map(|row| rate[3 * row + j]))
     };
@@ -170,6 +171,26 @@ fn angular_velocities<'g>(
         vec![about(2, 1), about(0, 2), about(1, 0)]
     };
     Ok(rates.into_iter().map(angular).collect())
+}
+
+/// Whether RᵀR is a multiple of the unit matrix and R no reflection. Where n > k that may be so on the surface of the
+/// motion only, which is not known here.
+fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> Result<(), MechError> {
+    if moving.frame.coordinates().len() > moving.frame.operators() {
+        return Ok(());
+    }
+    let graph = moving.frame.graph();
+    let product = |i: usize, j: usize| graph.dot(rotation.column(i), rotation.column(j));
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        let wrong = [product(i, j), product(i, i) - product(j, j)].into_iter().find(|x| !x.is_zero());
+        if let Some(wrong) = wrong {
+            return Err(MechError::NotARotation { columns: (i + 1, j + 1), defect: wrong.to_string() });
+        }
+    }
+    match determinant(graph, rotation).and_then(|value| value.constant()) {
+        Some(value) if value.is_negative() => Err(MechError::Reflection { determinant: value.to_f64() }),
+        _ => Ok(()),
+    }
 }
 
 /// ω_0..ω_k with ω = ω_0 + η_s ω_s.
