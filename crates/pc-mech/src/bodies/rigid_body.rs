@@ -187,7 +187,7 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
             return Err(MechError::NotARotation { columns: (i + 1, j + 1), defect: wrong.to_string() });
         }
     }
-    match determinant(graph, rotation).and_then(|value| value.constant()) {
+    match determinant(graph, rotation).and_then(Expr::constant) {
         Some(value) if value.is_negative() => Err(MechError::Reflection { determinant: value.to_f64() }),
         _ => Ok(()),
     }
