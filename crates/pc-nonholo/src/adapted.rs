@@ -26,7 +26,7 @@ impl<'g> Adapted<'g> {
     /// singular where these are not determined.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`], of which [`MechError::SingularConstraint`](pc_mech::MechError::SingularConstraint) says
+    /// [`NonholoError::Mech`], of which [`MechError::SingularConstraint`] says
     /// that the constraints are dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
         let system = multipliers.equations().system();
@@ -71,7 +71,7 @@ impl<'g> Adapted<'g> {
     /// The system with η_α = 0: its equations (30) and reactions.
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`](pc_mech::MechError::DegenerateLagrangian) if the free quasi-velocities have
+    /// [`MechError::DegenerateLagrangian`] if the free quasi-velocities have
     /// no inertia.
     pub fn constrained(&self) -> Result<Constrained<'g>, NonholoError> {
         Constrained::new(&self.system, &self.system.quasi_velocities()[self.free..])
