@@ -63,15 +63,6 @@ impl<'g> StructureCoefficients<'g> {
         }
     }
 
-    /// The Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js, which is c_rs^m. Authors differ in its sign
-    /// and in the order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is this one.
-    ///
-    /// # Panics
-    /// If an index is out of range.
-    pub fn boltzmann_hamel(&self, r: usize, s: usize, m: usize) -> Expr<'g> {
-        self.get(r, s, m)
-    }
-
     /// The coefficients passed through `f`.
     #[must_use]
     pub fn map(&self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
@@ -87,6 +78,9 @@ impl<'g> StructureCoefficients<'g> {
     }
 
     /// c_rs^m with r, s in 0..=k and m in 1..=k.
+    ///
+    /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its sign and in the
+    /// order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is this one.
     ///
     /// # Panics
     /// If an index is out of range.
