@@ -173,16 +173,20 @@
 
 mod adapted;
 mod almost_poisson;
+mod chaplygin;
 mod constrained;
 mod error;
 mod involutive;
 mod measure;
+mod n_trailer;
 mod sorted;
 mod voronets;
 
 pub use adapted::Adapted;
+pub use chaplygin::ReducingMultiplier;
 pub use constrained::Constrained;
 pub use error::NonholoError;
 pub use measure::InvariantMeasure;
+pub use n_trailer::{NTrailer, Wagon};
 pub use sorted::{Kind, Redundant, Sorted};
 pub use voronets::Voronets;

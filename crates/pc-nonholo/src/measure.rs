@@ -1,6 +1,6 @@
-//! Phase volume: invariant measures and Chaplygin's reducing multiplier.
+//! Phase volume: its growth, and the measures that are invariant.
 
-use pc_mech::{Expr, Number, determinant};
+use pc_mech::{Expr, MechError, Number, System, determinant};
 
 use crate::constrained::Constrained;
 use crate::error::NonholoError;
@@ -34,24 +34,12 @@ impl<'g> Constrained<'g> {
     /// # Errors
     /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
     pub fn divergence(&self) -> Result<Expr<'g>, NonholoError> {
-        let (system, graph) = (self.free_system()?, self.system().graph());
-        let canonical = system.canonical()?;
-        canonical.closed_quasi_velocities()?;
-        let along = |variables: &[Expr<'g>], rates: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            variables.iter().zip(rates).map(|(&z, &rate)| graph.gradient(rate, &[z])[0]).collect()
-        };
-        let x = along(system.frame().coordinates(), canonical.velocities());
-        let y = along(canonical.momenta(), canonical.right_hand_side());
-        let order: Vec<Expr<'g>> = canonical.momenta().to_vec();
-        Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y))], &order)[0])
+        Ok(divergence(&self.free_system()?)?)
     }
 
     /// The invariant measure whose density is a product of powers of `factors`, functions of the coordinates that are
     /// positive, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved. Without `factors` the
     /// entries of the mass matrix and its determinant are tried.
-    ///
-    /// A Chaplygin system of two degrees of freedom with such a measure in its independent coordinates and momenta is
-    /// Hamiltonian in the time τ, dt = N dτ: N is its reducing multiplier [Chaplygin 1911].
     ///
     /// # Errors
     /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
@@ -77,43 +65,59 @@ impl<'g> Constrained<'g> {
         &self,
         factors: &[Expr<'g>],
     ) -> Result<Option<InvariantMeasure<'g>>, NonholoError> {
-        let (system, graph) = (self.free_system()?, self.system().graph());
-        let canonical = system.canonical()?;
-        let divergence = self.divergence()?;
-        if divergence.is_zero() {
-            return Ok(Some(InvariantMeasure { factors: Vec::new() }));
-        }
-        let factors = if factors.is_empty() { self.inertias() } else { factors.to_vec() };
-        let along: Vec<_> = system
-            .frame()
-            .coordinates()
-            .iter()
-            .copied()
-            .zip(canonical.velocities().iter().copied())
-            .chain([(system.frame().time(), Expr::ONE)])
-            .collect();
-        let rates = graph.directional(&factors, &along);
-        let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
-        let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();
-        // The last column is the divergence: a relation in which it stands gives the powers.
-        let relation = graph.linear_relations(&columns).into_iter().find(|c| !c[factors.len()].is_zero());
-        Ok(relation.map(|c| {
-            let scale = c[factors.len()].recip();
-            let powers = factors.into_iter().zip(c.into_iter().map(|c| c * scale));
-            InvariantMeasure { factors: powers.filter(|(_, power)| !power.is_zero()).collect() }
-        }))
+        Ok(invariant_measure(&self.free_system()?, factors)?)
     }
+}
 
-    /// The entries of the mass matrix of the free quasi-velocities, and its determinant, as far as they are not constant.
-    fn inertias(&self) -> Vec<Expr<'g>> {
-        let mass = self.equations().mass_matrix();
-        let diagonal = (0..mass.rows()).map(|s| mass[(s, s)]);
-        let mut inertias: Vec<Expr<'g>> = Vec::new();
-        for inertia in diagonal.chain(determinant(self.system().graph(), mass)) {
-            if inertia.constant().is_none() && !inertias.contains(&inertia) {
-                inertias.push(inertia);
-            }
-        }
-        inertias
+/// [`Constrained::divergence`] of the system of the free quasi-velocities.
+fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, MechError> {
+    let graph = free.graph();
+    let canonical = free.canonical()?;
+    canonical.closed_quasi_velocities()?;
+    let along = |variables: &[Expr<'g>], rates: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        variables.iter().zip(rates).map(|(&z, &rate)| graph.gradient(rate, &[z])[0]).collect()
+    };
+    let x = along(free.frame().coordinates(), canonical.velocities());
+    let y = along(canonical.momenta(), canonical.right_hand_side());
+    Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y))], canonical.momenta())[0])
+}
+
+/// [`Constrained::invariant_measure`] of the system of the free quasi-velocities.
+pub(crate) fn invariant_measure<'g>(
+    free: &System<'g>,
+    factors: &[Expr<'g>],
+) -> Result<Option<InvariantMeasure<'g>>, MechError> {
+    let (graph, canonical) = (free.graph(), free.canonical()?);
+    let divergence = divergence(free)?;
+    if divergence.is_zero() {
+        return Ok(Some(InvariantMeasure { factors: Vec::new() }));
     }
+    let factors = if factors.is_empty() { inertias(free)? } else { factors.to_vec() };
+    let x = free.frame().coordinates().iter().copied();
+    let along: Vec<_> =
+        x.zip(canonical.velocities().iter().copied()).chain([(free.frame().time(), Expr::ONE)]).collect();
+    let rates = graph.directional(&factors, &along);
+    let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
+    let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();
+    // The last column is the divergence: a relation in which it stands gives the powers.
+    let relation = graph.linear_relations(&columns).into_iter().find(|c| !c[factors.len()].is_zero());
+    Ok(relation.map(|c| {
+        let scale = c[factors.len()].recip();
+        let powers = factors.into_iter().zip(c.into_iter().map(|c| c * scale));
+        InvariantMeasure { factors: powers.filter(|(_, power)| !power.is_zero()).collect() }
+    }))
+}
+
+/// The entries of the mass matrix of the free quasi-velocities, and its determinant, as far as they are not constant.
+fn inertias<'g>(free: &System<'g>) -> Result<Vec<Expr<'g>>, MechError> {
+    let equations = free.poincare()?;
+    let mass = equations.mass_matrix();
+    let diagonal = (0..mass.rows()).map(|s| mass[(s, s)]);
+    let mut inertias: Vec<Expr<'g>> = Vec::new();
+    for inertia in diagonal.chain(determinant(free.graph(), mass)) {
+        if inertia.constant().is_none() && !inertias.contains(&inertia) {
+            inertias.push(inertia);
+        }
+    }
+    Ok(inertias)
 }

@@ -61,16 +61,21 @@ impl<'g> Voronets<'g> {
         })
     }
 
+    /// The system whose constraints are solved, of all n velocities.
+    pub(crate) fn held(&self) -> &System<'g> {
+        self.multipliers.equations().system()
+    }
+
     fn graph(&self) -> &'g Graph {
-        self.multipliers.equations().system().graph()
+        self.held().graph()
     }
 
     fn time(&self) -> Expr<'g> {
-        self.multipliers.equations().system().frame().time()
+        self.held().frame().time()
     }
 
     fn coordinates(&self) -> &[Expr<'g>] {
-        self.multipliers.equations().system().frame().coordinates()
+        self.held().frame().coordinates()
     }
 
     /// The symbols of the independent coordinates x_i, length l.
@@ -126,7 +131,7 @@ impl<'g> Voronets<'g> {
     /// # Errors
     /// [`NonholoError::Mech`] if the parts do not fit together, which they do.
     pub fn system(&self) -> Result<System<'g>, NonholoError> {
-        let (system, graph) = (self.multipliers.equations().system(), self.graph());
+        let (system, graph) = (self.held(), self.graph());
         let v = system.quasi_velocities();
         let free: Vec<Expr<'g>> = self.independent.iter().map(|&i| v[i]).collect();
         let dropped: Vec<Expr<'g>> = self.dependent.iter().map(|&r| v[r]).collect();
@@ -143,7 +148,7 @@ impl<'g> Voronets<'g> {
     /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent coordinates, and the α_r
     /// vanish. Then the equations of the independent coordinates can be integrated alone.
     pub fn is_chaplygin(&self) -> bool {
-        let system = self.multipliers.equations().system();
+        let system = self.held();
         let parts: Vec<Expr<'g>> = std::iter::once(system.lagrangian())
             .chain(system.forces().iter().copied())
             .chain(self.coefficients.entries().iter().copied())

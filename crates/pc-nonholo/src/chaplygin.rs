@@ -1,0 +1,96 @@
+//! Chaplygin's reducing multiplier.
+
+use pc_mech::{Expr, System};
+
+use crate::error::NonholoError;
+use crate::measure::invariant_measure;
+use crate::voronets::Voronets;
+
+/// A time in which a Chaplygin system is a Lagrangian one.
+#[derive(Clone, Debug)]
+pub struct ReducingMultiplier<'g> {
+    /// N of the new time τ, dτ = N dt: a positive function of the independent coordinates.
+    pub multiplier: Expr<'g>,
+    /// The system in that time: the independent coordinates with their rates x_i' by τ as velocities, and
+    /// L* = (θ + U)(x, N x').
+    pub system: System<'g>,
+}
+
+impl<'g> Voronets<'g> {
+    /// The reducing multiplier of a Chaplygin system without forces other than potential ones, if one is found: with
+    /// dτ = N dt the equations (35) become
+    ///
+    ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
+    ///
+    /// those of Lagrange, without a term of the constraints. With two degrees of freedom there is one exactly if N dx dp is
+    /// an invariant measure [Chaplygin 1911]; with more the equations are compared, and one is given only where they are
+    /// proved to be the same.
+    ///
+    /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
+    ///
+    /// # Errors
+    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System};
+    /// use pc_nonholo::Voronets;
+    ///
+    /// // The particle with ż = y ẋ.
+    /// let graph = Graph::new();
+    /// let [y, vx, vy, vz] = graph.symbols(["y", "x'", "y'", "z'"]);
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x", "y", "z"])
+    ///     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+    ///     .build()?;
+    /// let held = particle.with_multipliers(&[Constraint::new("knife", vz - y * vx)])?;
+    /// let at: Vec<_> = ["x", "y", "z", "x'", "y'", "z'", "t"].map(|name| (graph.symbol(name), 0.5)).into();
+    /// let reduced = Voronets::new(&held, &at)?.reducing_multiplier()?.unwrap();
+    /// assert_eq!(reduced.multiplier, 1.0 / (1.0 + y.square()).sqrt());
+    /// assert_eq!(reduced.system.lagrangian(), vx.square() / 2.0 + vy.square() / (2.0 + 2.0 * y.square()));
+    /// # Ok::<(), pc_nonholo::NonholoError>(())
+    /// ```
+    pub fn reducing_multiplier(&self) -> Result<Option<ReducingMultiplier<'g>>, NonholoError> {
+        if !self.is_chaplygin() || self.depends_on_time() || self.has_forces() {
+            return Ok(None);
+        }
+        let in_time = self.system()?;
+        let (graph, v) = (in_time.graph(), in_time.quasi_velocities());
+        let Some(measure) = invariant_measure(&in_time, &[])? else { return Ok(None) };
+        let multiplier = measure.density();
+        let scaled: Vec<_> = v.iter().map(|&v| (v, multiplier * v)).collect();
+        let lagrangian = graph.substitute(&[in_time.lagrangian()], &scaled)[0];
+        let names: Vec<String> = self.independent().iter().map(ToString::to_string).collect();
+        let builder = System::builder(graph).coordinates(names).lagrangian(|_, _, _| lagrangian);
+        let parameters = in_time.parameters().iter();
+        let system = parameters.fold(builder, |builder, &(p, value)| builder.parameter(p, value)).build()?;
+        let reduced = ReducingMultiplier { multiplier, system };
+        let proved = v.len() <= 2 || reduced.has_the_motions_of(&in_time)?;
+        Ok(proved.then_some(reduced))
+    }
+
+    fn has_forces(&self) -> bool {
+        self.held().forces().iter().any(|force| !force.is_zero())
+    }
+
+    fn depends_on_time(&self) -> bool {
+        let held = self.held();
+        let coefficients = self.coefficients().entries().iter().copied();
+        let parts: Vec<Expr<'g>> = coefficients.chain([held.lagrangian()]).collect();
+        held.graph().directional(&parts, &[(held.frame().time(), Expr::ONE)]).iter().any(|d| !d.is_zero())
+    }
+}
+
+impl<'g> ReducingMultiplier<'g> {
+    /// Whether x'' of the new system is (ẍ/N − (x'·∂N/∂x) x')/N with ẋ = N x', identically.
+    fn has_the_motions_of(&self, in_time: &System<'g>) -> Result<bool, NonholoError> {
+        let (graph, n) = (self.system.graph(), self.multiplier);
+        let (x, v) = (self.system.frame().coordinates(), self.system.quasi_velocities());
+        let rates: Vec<_> = x.iter().copied().zip(v.iter().copied()).collect();
+        let growth = graph.directional(&[n], &rates)[0];
+        let scaled: Vec<_> = v.iter().map(|&v| (v, n * v)).collect();
+        let accelerations = graph.substitute(&in_time.poincare()?.accelerations(), &scaled);
+        let expected = accelerations.into_iter().zip(v).map(|(a, &v)| (a / n - growth * v) / n);
+        let found = self.system.poincare()?.accelerations();
+        Ok(found.into_iter().zip(expected).all(|(found, expected)| (found - expected).is_zero()))
+    }
+}
