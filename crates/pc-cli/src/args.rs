@@ -108,6 +108,9 @@ pub struct RunArguments {
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
+    /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
+    #[arg(long, value_name = "NAME")]
+    pub project: Vec<String>,
     /// More columns: the reactions of the constraints, as λ_NAME
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
-use pc_model::{ModelError, UnknownParameter};
+use pc_model::{ModelError, UnknownIntegral, UnknownParameter};
 use pc_solve::SolveError;
 
 use crate::plot::PlotError;
@@ -36,6 +36,9 @@ pub enum CliError {
     /// `--set` of something that is not a parameter.
     #[error("--set: {0}")]
     UnknownParameter(#[from] UnknownParameter),
+    /// `--project` of something that is not an integral.
+    #[error("--project: {0}")]
+    UnknownIntegral(UnknownIntegral),
     /// `--set` to something that is not a number.
     #[error("--set {name}={value}: `{value}` is not a finite number; {}", known_parameters(known))]
     BadValue {
@@ -114,6 +117,7 @@ impl CliError {
             CliError::NoSuchModel { .. }
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
+            | CliError::UnknownIntegral(_)
             | CliError::BadValue { .. }
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }

@@ -79,6 +79,9 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     if arguments.outputs.is_some() && model.document().constraints.is_empty() {
         text::say(format_args!("note: there are no constraints, and so no reactions\n"));
     }
+    for name in &arguments.project {
+        model.keep(name).map_err(CliError::UnknownIntegral)?;
+    }
     let form = Plan::form(&model, arguments);
     let run = integrate(&model, form, || Plan::new(&model, arguments))?;
 

@@ -103,6 +103,10 @@ pub trait VectorField {
         Ok(())
     }
 
+    /// Says that the states go on from `y` at time t, a state that the motion did not come to by itself, such as one after
+    /// an impact: what was to be kept before may have another value.
+    fn restart(&mut self, _t: f64, _y: &[f64]) {}
+
     /// Name of component `i` of y, for messages.
     fn component_name(&self, i: usize) -> String {
         format!("y[{i}]")
@@ -148,6 +152,9 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         (**self).project(t, y)
+    }
+    fn restart(&mut self, t: f64, y: &[f64]) {
+        (**self).restart(t, y);
     }
     fn component_name(&self, i: usize) -> String {
         (**self).component_name(i)

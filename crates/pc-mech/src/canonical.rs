@@ -210,12 +210,13 @@ impl<'g> Canonical<'g> {
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        let equations = FirstOrder {
-            observables: self.observables()?,
-            conserved: self.system.integrals.len() + 1,
-            ..self.first_order()
-        };
-        equations.compile(&options.into(), LONGEST_ELIMINATION)
+        self.observed_first_order()?.compile(&options.into(), LONGEST_ELIMINATION)
+    }
+
+    /// The [first-order](Canonical::first_order) system with what is observed along it.
+    pub(crate) fn observed_first_order(&self) -> Result<FirstOrder<'g>, MechError> {
+        let (observables, conserved) = (self.observables()?, self.system.integrals.len() + 1);
+        Ok(FirstOrder { observables, conserved, ..self.first_order() })
     }
 
     /// The equations with w = η, M η = y − p_0 or ∂L/∂η = y: H need not be formed, since X_s H = −X_s L at fixed

@@ -4,7 +4,7 @@
 //! matrix is eliminated in expressions ([`unrolled`], by [`ldl`]) or in numbers ([`staged`], by [`dense_ldl`]), as
 //! [`elimination`] finds cheaper. Where the equations of w are not linear, they are solved in numbers by Newton's
 //! method ([`implicit`]). Under constraints w has multipliers, the matrix is [`saddle`]-shaped, and the states lie on a
-//! [`surface`].
+//! [`surface`]; first integrals may be [`kept`].
 
 pub(crate) mod columns;
 pub(crate) mod dense_ldl;
@@ -12,6 +12,7 @@ pub(crate) mod elimination;
 pub(crate) mod fault;
 pub(crate) mod first_order;
 pub(crate) mod implicit;
+pub(crate) mod kept;
 pub(crate) mod ldl;
 pub(crate) mod motion;
 pub(crate) mod options;

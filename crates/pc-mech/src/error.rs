@@ -131,6 +131,30 @@ pub enum MechError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Newton's method found no state with the values of the [kept](crate::Motion::keep) integrals.
+    #[error("no state with the values of the integrals is found near t = {t}, {}", listed(state))]
+    NotKept {
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// An integral to be kept that the system does not have.
+    #[error("`{name}` is not an integral of the system; there are {}", quoted(known))]
+    UnknownIntegral {
+        /// The name asked for.
+        name: String,
+        /// Those there are.
+        known: Vec<String>,
+    },
+    /// An integral to be kept that is none.
+    #[error("`{name}` cannot be kept: it changes along the motion, at the start at the rate {rate}")]
+    NotAnIntegral {
+        /// The integral.
+        name: String,
+        /// Its rate of change.
+        rate: f64,
+    },
     /// A derivative was asked for that was not [compiled](crate::CompileOptions).
     #[error("the motion was compiled without its {what}")]
     NotCompiled {

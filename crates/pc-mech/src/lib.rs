@@ -341,6 +341,7 @@ pub use bodies::particle::Particle;
 pub use bodies::rigid_body::{Inertia, RigidBody};
 pub use builder::SystemBuilder;
 pub use canonical::Canonical;
+pub use compiled::kept::KeptIntegrals;
 pub use compiled::motion::Motion;
 pub use compiled::options::CompileOptions;
 pub use emit::{EmitOptions, EmittedFile};

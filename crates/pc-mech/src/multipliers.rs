@@ -291,6 +291,12 @@ impl<'g> Multipliers<'g> {
         Ok(motion.on_surface(names, self.surface(&first_order)?))
     }
 
+    /// f(t, x) of the constraints that have a position, then g(t, x, η) of all.
+    pub(crate) fn conditions(&self) -> Vec<Expr<'g>> {
+        let positions = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a));
+        positions.map(|a| self.constraints[a].expression).chain(self.velocities.iter().copied()).collect()
+    }
+
     fn surface(&self, first_order: &FirstOrder<'g>) -> Result<Surface, MechError> {
         let system = &self.equations.system;
         let (graph, eta) = (system.graph(), &system.quasi_velocities);

@@ -301,6 +301,8 @@ pub struct Simulation {
     pub method: Option<Located<Method>>,
     /// Form of the equations.
     pub form: Option<Located<Form>>,
+    /// Integrals, or `energy`, to whose values at the start the motion is projected.
+    pub project: Vec<Located<String>>,
 }
 
 /// Integration methods.

@@ -248,6 +248,22 @@ pub enum Fault {
         /// Why.
         cause: String,
     },
+    /// An integral to be kept that the model does not have.
+    #[error("`{name}` is not an integral")]
+    UnknownIntegral {
+        /// The name.
+        name: String,
+        /// The integrals there are.
+        known: Vec<String>,
+    },
+    /// An integral to be kept that is none.
+    #[error("`{name}` cannot be kept: it changes along the motion, at the start at the rate {}", rounded(*rate))]
+    NotAnIntegral {
+        /// The integral.
+        name: String,
+        /// Its rate of change.
+        rate: f64,
+    },
     /// Anything else that the derivation refuses.
     #[error("{message}")]
     Derivation {
@@ -298,6 +314,7 @@ impl Fault {
             | Fault::Constraint { .. }
             | Fault::NotFinite { .. }
             | Fault::SingularStart { .. }
+            | Fault::NotAnIntegral { .. }
             | Fault::Derivation { .. } => Category::Inconsistent,
             _ => Category::Text,
         }
@@ -307,6 +324,12 @@ impl Fault {
     pub fn help(&self) -> String {
         match self {
             Fault::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
+            Fault::UnknownIntegral { name, known } => {
+                suggest(name, known, &format!("the integrals are {}", listed(known)))
+            }
+            Fault::NotAnIntegral { .. } => {
+                "leave it out of `project`; `pc check` says what the motion keeps".into()
+            }
             Fault::UsedBeforeDefined { .. } => "definitions are evaluated in order; move it up".into(),
             Fault::NotACoordinate { name, coordinates } => {
                 suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))

@@ -38,5 +38,5 @@ pub use builtin::{BUILTIN, Builtin};
 pub use document::Document;
 pub use error::{Category, Diagnostic, ErrorKind, ModelError};
 pub use fault::Fault;
-pub use model::{Assembly, Model, UnknownParameter};
+pub use model::{Assembly, Model, UnknownIntegral, UnknownParameter};
 pub use source::Source;

@@ -2,7 +2,8 @@
 
 use pc_expr::Graph;
 use pc_mech::{
-    AlgebraError, Canonical, CompileOptions, Equations, Expr, MechError, Motion, System, VectorField,
+    AlgebraError, Canonical, CompileOptions, Equations, Expr, KeptIntegrals, MechError, Motion, System,
+    VectorField,
 };
 use pc_nonholo::NonholoError;
 
@@ -20,6 +21,8 @@ pub struct Model {
     parameters: Vec<f64>,
     projects_start: bool,
     observes_reactions: bool,
+    /// The names of the integrals to be kept.
+    kept: Vec<String>,
 }
 
 /// The system of a model, with the state its motion starts from.
@@ -88,11 +91,22 @@ pub struct UnknownParameter {
     pub known: Vec<String>,
 }
 
+/// A name that is not an integral of the model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is not an integral of this model; there are {}", known.join(", "))]
+pub struct UnknownIntegral {
+    /// The name asked for.
+    pub name: String,
+    /// The integrals there are.
+    pub known: Vec<String>,
+}
+
 impl Model {
     /// The model of a document.
     pub fn new(document: Document) -> Model {
         let parameters = document.parameters.iter().map(|p| p.value.value).collect();
-        Model { document, parameters, projects_start: false, observes_reactions: false }
+        let kept = document.simulation.project.iter().map(|name| name.value.clone()).collect();
+        Model { document, parameters, projects_start: false, observes_reactions: false, kept }
     }
 
     /// The document it was made from.
@@ -135,17 +149,19 @@ impl Model {
     /// [`ModelError`] if it cannot be evaluated there.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
         let refused = |error| self.constraint_error(error);
-        let (compiled, start) = match assembly.bound.form() {
-            Form::Held(held) => (held.multipliers.compile(), assembly.start.clone()),
+        match assembly.bound.form() {
+            Form::Held(held) => {
+                let (compiled, start) = (held.multipliers.compile(), assembly.start.clone());
+                self.started(compiled, || held.multipliers.kept(&self.kept), assembly.t_start, start)
+            }
             Form::Free | Form::Vanishing(_) => {
                 let equations = assembly.equations().map_err(refused)?;
                 let system = equations.system();
                 let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
-                (equations.compile(), assembly.start_of(&state))
+                let (compiled, start) = (equations.compile(), assembly.start_of(&state));
+                self.started(compiled, || equations.kept(&self.kept), assembly.t_start, start)
             }
-        };
-        let motion = self.started(compiled, assembly.t_start, &start)?;
-        Ok((motion, start))
+        }
     }
 
     /// Compiles canonical equations of this model and tries them at the start (x, y).
@@ -158,24 +174,48 @@ impl Model {
         t_start: f64,
         start: &[f64],
     ) -> Result<Motion, ModelError> {
-        self.started(equations.compile_for(CompileOptions::default()), t_start, start)
+        let compiled = equations.compile_for(CompileOptions::default());
+        let (motion, _) = self.started(compiled, || equations.kept(&self.kept), t_start, start.to_vec())?;
+        Ok(motion)
     }
 
-    /// What was compiled, if it can be evaluated at the start.
+    /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,
+        kept: impl FnOnce() -> Result<KeptIntegrals, MechError>,
         t_start: f64,
-        start: &[f64],
-    ) -> Result<Motion, ModelError> {
+        start: Vec<f64>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
         let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
         let mut motion = compiled.map_err(|error| refuse(error.to_string()))?;
         let mut rate = vec![0.0; start.len()];
-        motion.rhs(t_start, start, &mut rate).map_err(|failure| match MechError::from(failure) {
+        motion.rhs(t_start, &start, &mut rate).map_err(|failure| match MechError::from(failure) {
             error @ MechError::SingularConstraint { .. } => self.constraint_error(error.into()),
             error => refuse(error.to_string()),
         })?;
-        Ok(motion)
+        if !self.kept.is_empty() {
+            let kept = kept().map_err(|error| self.derivation_error(error))?;
+            motion = motion.keep(kept, t_start, &start).map_err(|error| self.derivation_error(error))?;
+        }
+        Ok((motion, start))
+    }
+
+    /// Says that the motion is to be projected to the value that an integral, or `energy`, has at the start.
+    ///
+    /// # Errors
+    /// [`UnknownIntegral`] with the integrals there are.
+    pub fn keep(&mut self, name: &str) -> Result<(), UnknownIntegral> {
+        let integrals = self.document.integrals.iter().map(|integral| integral.name.text.as_str());
+        let known: Vec<&str> = integrals.chain(["energy"]).collect();
+        if !known.contains(&name) {
+            let known = known.into_iter().map(str::to_owned).collect();
+            return Err(UnknownIntegral { name: name.to_owned(), known });
+        }
+        if !self.kept.iter().any(|kept| kept == name) {
+            self.kept.push(name.to_owned());
+        }
+        Ok(())
     }
 
     /// Says that the start is to be moved to where the constraints are satisfied.
@@ -254,12 +294,26 @@ impl Model {
                 self.error(&self.energy_place(), Fault::Degenerate { rank, size, undetermined })
             }
             MechError::Algebra(error) => self.algebra_error(error),
+            MechError::UnknownIntegral { name, known } => {
+                self.error(&self.kept_place(&name), Fault::UnknownIntegral { name, known })
+            }
+            MechError::NotAnIntegral { name, rate } => {
+                self.error(&self.kept_place(&name), Fault::NotAnIntegral { name, rate })
+            }
             other => self.error(&self.energy_place(), Fault::Derivation { message: other.to_string() }),
         }
     }
 
     pub(crate) fn error(&self, place: &Place, kind: impl Into<ErrorKind>) -> ModelError {
         self.document.source.error(place, kind)
+    }
+
+    /// Where it is said that an integral is to be kept; its definition if it is said elsewhere.
+    fn kept_place(&self, name: &str) -> Place {
+        let written = self.document.simulation.project.iter().find(|written| written.value == name);
+        let integral = || self.document.integrals.iter().find(|integral| integral.name.text == name);
+        let defined = || integral().map(|integral| integral.name.place.clone());
+        written.map(|name| name.place.clone()).or_else(defined).unwrap_or_else(|| self.energy_place())
     }
 
     fn energy_place(&self) -> Place {

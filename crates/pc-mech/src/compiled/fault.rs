@@ -15,6 +15,8 @@ pub(crate) enum Fault {
     NoProjection { unknowns: usize },
     /// Newton's method ended with |F| = `residual`.
     NotSolved { residual: f64, iterations: usize },
+    /// The state is not near those with the values of the integrals.
+    NotKept,
     /// A part that the motion was compiled without.
     NotCompiled { what: &'static str },
     /// A value is not finite.
@@ -39,6 +41,7 @@ impl Fault {
             Fault::NotSolved { residual, iterations } => {
                 MechError::LegendreNotSolved { residual, iterations, t, state: state() }
             }
+            Fault::NotKept => MechError::NotKept { t, state: state() },
             Fault::NotCompiled { what } => MechError::NotCompiled { what },
             Fault::Expr(error) => error.into(),
         }

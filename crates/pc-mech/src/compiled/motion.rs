@@ -6,6 +6,7 @@ use crate::compiled::columns::Layout;
 use crate::compiled::elimination;
 use crate::compiled::fault::Fault;
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::kept::KeptIntegrals;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::staged::Staged;
 use crate::compiled::surface::Surface;
@@ -33,6 +34,7 @@ pub struct Motion {
     /// The constraints by their names, and where they are satisfied.
     constraints: Vec<String>,
     surface: Option<Box<Surface>>,
+    kept: Option<Box<KeptIntegrals>>,
 }
 
 /// How f is computed.
@@ -115,6 +117,7 @@ impl FirstOrder<'_> {
             conserved: self.conserved,
             constraints: Vec::new(),
             surface: None,
+            kept: None,
         })
     }
 }
@@ -173,6 +176,11 @@ impl Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
+    /// Projects to the values of these integrals from now on.
+    pub(crate) fn set_kept(&mut self, integrals: KeptIntegrals) {
+        self.kept = Some(Box::new(integrals));
+    }
+
     /// Names of the constraints.
     pub fn constraint_names(&self) -> &[String] {
         &self.constraints
@@ -202,6 +210,17 @@ impl Motion {
     #[cfg(test)]
     pub(crate) fn is_staged(&self) -> bool {
         matches!(self.form, Form::Staged(_))
+    }
+
+    /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
+    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), Fault> {
+        if let Some(surface) = &mut self.surface {
+            surface.project(t, y, &self.parameters)?;
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.project(t, y, &self.parameters)?;
+        }
+        Ok(())
     }
 
     #[cold]
@@ -291,12 +310,17 @@ impl VectorField for Motion {
     }
 
     fn has_projection(&self) -> bool {
-        self.surface.is_some()
+        self.surface.is_some() || self.kept.is_some()
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        let Some(surface) = &mut self.surface else { return Ok(()) };
-        surface.project(t, y, &self.parameters).map_err(|fault| self.failure(fault, t, y))
+        self.project_in_turn(t, y).map_err(|fault| self.failure(fault, t, y))
+    }
+
+    fn restart(&mut self, t: f64, y: &[f64]) {
+        if let Some(kept) = &mut self.kept {
+            kept.set_levels((t, y, &self.parameters));
+        }
     }
 
     fn component_name(&self, i: usize) -> String {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use pc_expr::parse::{Ast, AstKind, FUNCTIONS, Span, is_name, nearest, parse};
 use toml::Spanned;
-use toml::de::{DeInteger, DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
 
 use super::text_map::TextMap;
 use super::{Expression, Located, Name, NamedExpression};
@@ -294,11 +294,26 @@ impl<'a> Item<'a> {
         if !lengths.contains(&array.len()) {
             return Err(self.error(ErrorKind::WrongLength { expected, found: array.len(), example }));
         }
-        let elements = array.iter().map(|element| {
+        self.elements(array).map(|element| element.expression()).collect()
+    }
+
+    fn elements(&self, array: &'a DeArray<'a>) -> impl Iterator<Item = Item<'a>> {
+        array.iter().map(|element| {
             let place = Place { entry: self.place.entry.clone(), span: element.span() };
             Item { key_span: 0..0, place, value: element.get_ref(), ..self.clone() }
-        });
-        elements.map(|element| element.expression()).collect()
+        })
+    }
+
+    /// The value as a list of texts of any length.
+    pub(super) fn texts(
+        &self,
+        expected: &'static str,
+        example: &'static str,
+    ) -> Result<Vec<Located<String>>, ModelError> {
+        match self.value {
+            DeValue::Array(array) => self.elements(array).map(|element| element.text()).collect(),
+            _ => Err(self.wrong_type(expected, example)),
+        }
     }
 
     /// The value as a list of `N` expressions.

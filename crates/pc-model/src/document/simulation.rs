@@ -29,8 +29,10 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
                 result.form =
                     Some(item.choice(&[("poincare", Form::Poincare), ("canonical", Form::Canonical)])?);
             }
+            "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {
-                return Err(item.unknown(&["t_start", "t_end", "samples", "rtol", "atol", "method", "form"]));
+                return Err(item
+                    .unknown(&["t_start", "t_end", "samples", "rtol", "atol", "method", "form", "project"]));
             }
         }
     }

@@ -1,0 +1,224 @@
+//! First integrals that a motion is brought back to.
+
+use pc_expr::{Backend, Evaluator, Expr, Program, VectorField};
+
+use crate::canonical::Canonical;
+use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::motion::Motion;
+use crate::error::MechError;
+use crate::multipliers::Multipliers;
+use crate::poincare::Equations;
+
+/// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
+const MOST_STEPS: usize = 50;
+
+/// After a step so short against the state the next one would be rounding.
+const SHORT: f64 = 1e-8;
+
+/// A gradient of which less than this is left beside those before it adds nothing to them.
+const DEPENDENT: f64 = 1e-10;
+
+/// A rate of change that is larger than rounding of its terms by this is one.
+const RATE: f64 = 1e-9;
+
+/// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep it at their values: see
+/// [`Motion::keep`].
+#[derive(Clone, Debug)]
+pub struct KeptIntegrals {
+    /// Of the integrals.
+    names: Vec<String>,
+    /// The constraints, if there are any, which are not to be left on the way, then the integrals.
+    values: Evaluator,
+    /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one after the other.
+    gradients: Evaluator,
+    /// Zeros of the constraints, then the values of the integrals at the start.
+    levels: Vec<f64>,
+}
+
+impl<'g> Equations<'g> {
+    /// The integrals of these names, or `energy`, to be [kept](Motion::keep).
+    ///
+    /// # Errors
+    /// [`MechError::UnknownIntegral`].
+    pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
+        self.first_order().kept(names, &[])
+    }
+}
+
+impl<'g> Canonical<'g> {
+    /// The integrals of these names, or `energy`, as functions of (t, x, y), to be [kept](Motion::keep).
+    ///
+    /// # Errors
+    /// [`MechError::UnknownIntegral`]; [`MechError::NotQuadratic`] where η is no expression in the momenta.
+    pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
+        let mut equations = self.observed_first_order()?;
+        let closed = self.closed_quasi_velocities()?.iter().copied();
+        let solved: Vec<_> = equations.unknowns.iter().copied().zip(closed).collect();
+        for (_, observable) in &mut equations.observables {
+            *observable = equations.graph.substitute(&[*observable], &solved)[0];
+        }
+        equations.kept(names, &[])
+    }
+}
+
+impl<'g> Multipliers<'g> {
+    /// The integrals of these names, or `energy`, to be [kept](Motion::keep) beside the constraints.
+    ///
+    /// # Errors
+    /// [`MechError::UnknownIntegral`].
+    pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
+        self.first_order().kept(names, &self.conditions())
+    }
+}
+
+impl<'g> FirstOrder<'g> {
+    /// The integrals of these names, kept where `held` vanish.
+    fn kept<S: AsRef<str>>(&self, names: &[S], held: &[Expr<'g>]) -> Result<KeptIntegrals, MechError> {
+        let known = &self.observables[..self.conserved];
+        let mut functions = held.to_vec();
+        for name in names.iter().map(AsRef::as_ref) {
+            let Some((_, integral)) = known.iter().find(|(known, _)| known == name) else {
+                let known = known.iter().map(|(name, _)| name.clone()).collect();
+                return Err(MechError::UnknownIntegral { name: name.to_owned(), known });
+            };
+            functions.push(*integral);
+        }
+        let variables: Vec<Expr<'g>> = [self.time].iter().chain(&self.state).copied().collect();
+        let gradients: Vec<Expr<'g>> =
+            functions.iter().flat_map(|&function| self.graph.gradient(function, &variables)).collect();
+        let compiled = |outputs: &[Expr<'g>]| -> Result<Evaluator, MechError> {
+            Ok(Evaluator::new(Program::new(self.graph, &self.inputs(&[]), outputs)?, Backend::Fastest))
+        };
+        Ok(KeptIntegrals {
+            names: names.iter().map(|name| name.as_ref().to_owned()).collect(),
+            values: compiled(&functions)?,
+            gradients: compiled(&gradients)?,
+            levels: vec![0.0; functions.len()],
+        })
+    }
+}
+
+impl Motion {
+    /// The same motion with a [projection](VectorField::project) to the values that these integrals have at (t, y), beside
+    /// that to its constraints: the shortest way in the components of the state as they are. Asked for after each
+    /// step, it changes the state by no more than the error of the step.
+    ///
+    /// An integral whose gradient depends on those before it, such as the energy at rest, is left to itself there.
+    ///
+    /// # Errors
+    /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y); what the equations of motion
+    /// report there.
+    ///
+    /// ```
+    /// use pc_mech::{Graph, System, VectorField};
+    ///
+    /// // A point that circles with ω; |x| keeps its value.
+    /// let graph = Graph::new();
+    /// let equations = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .quasi_velocities(["ω"])
+    ///     .kinematics(|_, x, eta| [-x[1] * eta[0], x[0] * eta[0]])
+    ///     .lagrangian(|_, _, eta| eta[0].square() / 2.0)
+    ///     .integral("norm", |_, x, _| x[0].square() + x[1].square())
+    ///     .build()?
+    ///     .poincare()?;
+    /// let kept = equations.kept(&["norm"])?;
+    /// let mut motion = equations.compile()?.keep(kept, 0.0, &[1.0, 0.0, 2.0])?;
+    /// let mut state = [0.6003, 0.8004, 2.0];
+    /// motion.project(1.0, &mut state)?;
+    /// assert!((state[0] - 0.6).abs() < 1e-15 && (state[1] - 0.8).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn keep(mut self, mut integrals: KeptIntegrals, t: f64, y: &[f64]) -> Result<Motion, MechError> {
+        let mut rates = vec![0.0; self.dim()];
+        self.rhs(t, y, &mut rates).map_err(MechError::from)?;
+        let gradients = integrals.gradients_at((t, y, self.parameters()));
+        for (name, gradient) in integrals.names.iter().zip(&gradients[integrals.held()..]) {
+            let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(&rates)).map(|(g, rate)| g * rate);
+            let (rate, size): (f64, f64) = (terms().sum(), terms().map(f64::abs).sum());
+            if rate.is_nan() || rate.abs() > RATE * size {
+                return Err(MechError::NotAnIntegral { name: name.clone(), rate });
+            }
+        }
+        integrals.set_levels((t, y, self.parameters()));
+        self.set_kept(integrals);
+        Ok(self)
+    }
+}
+
+impl KeptIntegrals {
+    /// Takes the values at (t, y) for those to be kept.
+    pub(crate) fn set_levels(&mut self, (t, y, p): (f64, &[f64], &[f64])) {
+        self.values.eval(t, y, p, &mut self.levels);
+        let held = self.held();
+        self.levels[..held].fill(0.0);
+    }
+
+    /// The number of constraints.
+    fn held(&self) -> usize {
+        self.levels.len() - self.names.len()
+    }
+
+    /// (∂I_j/∂t, ∂I_j/∂y), one row for each.
+    fn gradients_at(&mut self, (t, y, p): (f64, &[f64], &[f64])) -> Vec<Vec<f64>> {
+        let mut entries = vec![0.0; self.levels.len() * (y.len() + 1)];
+        self.gradients.eval(t, y, p, &mut entries);
+        entries.chunks_exact(y.len() + 1).map(<[f64]>::to_vec).collect()
+    }
+
+    /// Newton's method for I(t, y) = I_0, each step the shortest.
+    ///
+    /// # Errors
+    /// [`Fault::NotKept`] if the way leads nowhere, [`Fault::Expr`] for values that are not finite.
+    pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+        let mut before = f64::INFINITY;
+        let mut residuals = vec![0.0; self.levels.len()];
+        for _ in 0..MOST_STEPS {
+            self.values.eval(t, y, p, &mut residuals);
+            check_finite(&residuals, &self.values, (t, y, p))?;
+            residuals.iter_mut().zip(&self.levels).for_each(|(value, level)| *value -= level);
+            let change = self.shortest((t, y, p), &residuals)?;
+            let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+            let length = largest(&change);
+            if length >= before / 2.0 {
+                return Ok(());
+            }
+            y.iter_mut().zip(&change).for_each(|(y, change)| *y -= change);
+            if length <= SHORT * largest(y) {
+                return Ok(());
+            }
+            before = length;
+        }
+        Err(Fault::NotKept)
+    }
+
+    /// The shortest δ with ∂I_j/∂y · δ = `residuals`\[j\], by orthogonalising the gradients one after the other.
+    fn shortest(&mut self, at: (f64, &[f64], &[f64]), residuals: &[f64]) -> Result<Vec<f64>, Fault> {
+        let gradients = self.gradients_at(at);
+        let mut change = vec![0.0; at.1.len()];
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for (row, residual) in gradients.iter().zip(residuals) {
+            check_finite(row, &self.gradients, at)?;
+            let gradient = &row[1..];
+            let mut direction = gradient.to_vec();
+            for known in &basis {
+                let along = dot(known, &direction);
+                direction.iter_mut().zip(known).for_each(|(d, known)| *d -= along * known);
+            }
+            let (left, size) = (dot(&direction, &direction).sqrt(), dot(gradient, gradient).sqrt());
+            if left <= DEPENDENT * size {
+                continue;
+            }
+            direction.iter_mut().for_each(|d| *d /= left);
+            let missing = (residual - dot(gradient, &change)) / left;
+            change.iter_mut().zip(&direction).for_each(|(change, d)| *change += missing * d);
+            basis.push(direction);
+        }
+        Ok(change)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,142 @@
+//! Projection to first integrals, alone and beside constraints.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_mech::{Constraint, Graph, LieAlgebra, MechError, System, VectorField};
+
+/// A heavy top in (γ, ω) with the integrals |γ|² and the area.
+fn top(graph: &Graph) -> System<'_> {
+    System::builder(graph)
+        .coordinates(["γ1", "γ2", "γ3"])
+        .quasi_velocities(["ω1", "ω2", "ω3"])
+        .kinematics(|_, g, w| {
+            [g[1] * w[2] - g[2] * w[1], g[2] * w[0] - g[0] * w[2], g[0] * w[1] - g[1] * w[0]]
+        })
+        .algebra(&LieAlgebra::so3())
+        .lagrangian(|_, g, w| {
+            w[0].square() + 1.5 * w[1].square() + 2.0 * w[2].square() - g[0] - 2.0 * g[1] - 3.0 * g[2]
+        })
+        .integral("norm", |_, g, _| g[0].square() + g[1].square() + g[2].square())
+        .integral("area", |_, g, w| 2.0 * w[0] * g[0] + 3.0 * w[1] * g[1] + 4.0 * w[2] * g[2])
+        .integral("spin", |_, _, w| w[2])
+        .build()
+        .unwrap()
+}
+
+const START: [f64; 6] = [0.36, 0.48, 0.8, 0.2, -0.3, 1.5];
+
+fn disturbed(state: &[f64], by: f64) -> Vec<f64> {
+    (1..).zip(state).map(|(i, y)| y + by * f64::from(i).sin()).collect()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn integrals_are_brought_back_in_both_forms() {
+    let graph = Graph::new();
+    let system = top(&graph);
+    let names = ["norm", "area", "energy"];
+    let (equations, canonical) = (system.poincare().unwrap(), system.canonical().unwrap());
+    let momenta: Vec<f64> = START[..3].iter().copied().chain([0.4, -0.9, 6.0]).collect();
+    let plain = [
+        (equations.compile().unwrap(), equations.kept(&names).unwrap(), START.to_vec()),
+        (
+            canonical.compile_for(pc_mech::CompileOptions::default()).unwrap(),
+            canonical.kept(&names).unwrap(),
+            momenta,
+        ),
+    ];
+    for (motion, kept, start) in plain {
+        assert!(!motion.has_projection());
+        let mut motion = motion.keep(kept, 0.0, &start).unwrap();
+        assert!(motion.has_projection());
+        let expected = motion.observe(0.0, &start);
+        let away = disturbed(&start, 1e-4);
+        let mut state = away.clone();
+        motion.project(3.0, &mut state).unwrap();
+        let found = motion.observe(3.0, &state);
+        for j in [0, 1, 3] {
+            let (found, expected) = (found[j], expected[j]);
+            assert!((found - expected).abs() < 1e-14 * (1.0 + expected.abs()), "{j}: {found} {expected}"); // roundings
+        }
+        // The nearest such state is no farther than the start.
+        assert!(distance(&state, &away) <= distance(&start, &away));
+    }
+}
+
+#[test]
+fn constraints_and_energy_hold_together() {
+    let graph = Graph::new();
+    let pendulum = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - x[1])
+        .build()
+        .unwrap();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let rod = Constraint::new("rod", x.square() + y.square() - 1.0);
+    let multipliers = pendulum.with_multipliers(&[rod]).unwrap();
+    let start = [0.6, -0.8, 1.6, 1.2];
+    let kept = multipliers.kept(&["energy"]).unwrap();
+    let mut motion = multipliers.compile().unwrap().keep(kept, 0.0, &start).unwrap();
+    let energy = motion.observe(0.0, &start)[0];
+    let mut state = disturbed(&start, 1e-3);
+    motion.project(0.0, &mut state).unwrap();
+    assert!((motion.observe(0.0, &state)[0] - energy).abs() < 1e-14);
+    assert!((state[0].hypot(state[1]) - 1.0).abs() < 1e-15);
+    assert!((state[0] * state[2] + state[1] * state[3]).abs() < 1e-15);
+}
+
+#[test]
+fn an_integral_that_others_imply_is_left_to_them() {
+    let graph = Graph::new();
+    let oscillator = System::builder(&graph)
+        .coordinates(["x"])
+        .lagrangian(|_, x, v| (v[0].square() - x[0].square()) / 2.0)
+        .integral("amplitude", |_, x, v| v[0].square() + x[0].square())
+        .build()
+        .unwrap();
+    let equations = oscillator.poincare().unwrap();
+    let kept = equations.kept(&["amplitude", "energy"]).unwrap();
+    let mut motion = equations.compile().unwrap().keep(kept, 0.0, &[3.0, 4.0]).unwrap();
+    let mut state = [2.997, 3.996];
+    motion.project(0.0, &mut state).unwrap();
+    assert!(distance(&state, &[3.0, 4.0]) < 1e-14, "{state:?}");
+    // At rest the gradient vanishes, and there is nothing to move along.
+    let mut rest = [0.0, 0.0];
+    motion.project(0.0, &mut rest).unwrap();
+    assert_eq!(rest, [0.0, 0.0]);
+}
+
+#[test]
+fn after_an_impact_other_values_are_kept() {
+    let graph = Graph::new();
+    let equations = top(&graph).poincare().unwrap();
+    let kept = equations.kept(&["energy"]).unwrap();
+    let mut motion = equations.compile().unwrap().keep(kept, 0.0, &START).unwrap();
+    let struck: Vec<f64> = START.iter().map(|y| 0.5 * y).collect();
+    motion.restart(1.0, &struck);
+    let mut state = struck.clone();
+    motion.project(1.0, &mut state).unwrap();
+    assert_eq!(state, struck);
+}
+
+#[test]
+fn what_is_no_integral_is_refused() {
+    let graph = Graph::new();
+    let equations = top(&graph).poincare().unwrap();
+    let spin = equations.kept(&["spin"]).unwrap();
+    let refused = equations.compile().unwrap().keep(spin, 0.0, &START).unwrap_err();
+    // 4 ω̇3 = −ω1 ω2 + 2 γ1 − γ2 = 0.3
+    assert_eq!(
+        refused.to_string(),
+        "`spin` cannot be kept: it changes along the motion, at the start at the rate 0.075"
+    );
+    let unknown = equations.kept(&["norm", "are"]).unwrap_err();
+    assert!(matches!(&unknown, MechError::UnknownIntegral { name, .. } if name == "are"));
+    assert_eq!(
+        unknown.to_string(),
+        "`are` is not an integral of the system; there are `norm`, `area`, `spin`, `energy`"
+    );
+}
