@@ -5,6 +5,11 @@ use pc_expr::{Failure, VectorField};
 /// The states are y = z + d with z integrated by CVODES. A projection changes d alone: the history of z, on which a
 /// multistep method of any order rests, stays as smooth as it was, and f(t, z + d) changes by no more than the error
 /// of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
+///
+/// CVODES has a hook of its own, `CVodeSetProjFn`, for BDF alone. On a top with a unit quaternion and on pendulums in
+/// Cartesian coordinates, at four tolerances, it took as many steps within 3 % (once 10 % more), came to errors that
+/// scatter about the same ones, and drifted as little; its projection of the error estimate cost a second projection a
+/// step and saved no steps. So there is one method for both families.
 pub(crate) struct Offset {
     d: Vec<f64>,
     /// z + d
