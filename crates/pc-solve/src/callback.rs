@@ -10,16 +10,18 @@ use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
 use crate::error::NonFinite;
+use crate::linear::Work;
 use crate::offset::Offset;
 
-const SUCCESS: c_int = 0;
+pub(crate) const SUCCESS: c_int = 0;
 const RECOVERABLE: c_int = 1;
-const FATAL: c_int = -1;
+pub(crate) const FATAL: c_int = -1;
 
 /// What the callbacks read and write.
 pub(crate) struct Callbacks<F> {
     pub(crate) field: F,
-    dim: usize,
+    pub(crate) dim: usize,
+    pub(crate) linear: Work,
     /// From the vectors of CVODES to states.
     offset: Option<Offset>,
     /// The last failure since it was taken.
@@ -28,7 +30,7 @@ pub(crate) struct Callbacks<F> {
 }
 
 impl<F: VectorField> Callbacks<F> {
-    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> c_int {
+    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> c_int {
         self.guard(|field, offset| {
             let y = offset.map_or(y, |offset| offset.state_of(y));
             field.rhs(t, y, ydot)?;
@@ -43,25 +45,11 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> c_int {
-        let dim = self.dim;
-        self.guard(|field, offset| {
-            let y = offset.map_or(y, |offset| offset.state_of(y));
-            field.jacobian(t, y, jacobian)?;
-            match jacobian.iter().position(|entry| !entry.is_finite()) {
-                None => Ok(()),
-                Some(k) => Err(Failure::recoverable(NonFinite::Jacobian {
-                    row: field.component_name(k % dim),
-                    column: field.component_name(k / dim),
-                    value: jacobian[k],
-                    t,
-                })),
-            }
-        })
-    }
-
     /// Evaluates, keeps a failure or panic for the caller of CVODES, and answers as CVODES expects.
-    fn guard(&mut self, evaluate: impl FnOnce(&mut F, Option<&mut Offset>) -> Result<(), Failure>) -> c_int {
+    pub(crate) fn guard(
+        &mut self,
+        evaluate: impl FnOnce(&mut F, Option<&mut Offset>) -> Result<(), Failure>,
+    ) -> c_int {
         if self.panic.is_some() {
             return FATAL;
         }
@@ -91,7 +79,7 @@ impl<F> UserData<F> {
         F: VectorField,
     {
         let offset = field.has_projection().then(|| Offset::new(dim));
-        let callbacks = Callbacks { field, dim, offset, failure: None, panic: None };
+        let callbacks = Callbacks { field, dim, linear: Work::default(), offset, failure: None, panic: None };
         UserData(NonNull::from(Box::leak(Box::new(callbacks))))
     }
 
@@ -103,6 +91,17 @@ impl<F> UserData<F> {
     pub(crate) fn field(&self) -> &F {
         // SAFETY: owned and live; callbacks run only in calls that borrow the owner exclusively.
         &unsafe { self.0.as_ref() }.field
+    }
+
+    /// What the callbacks of the linear solver work with.
+    pub(crate) fn linear(&self) -> &Work {
+        // SAFETY: owned and live; callbacks run only in calls that borrow the owner exclusively.
+        &unsafe { self.0.as_ref() }.linear
+    }
+
+    pub(crate) fn set_linear(&mut self, work: Work) {
+        // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.linear = work;
     }
 
     pub(crate) fn into_field(self) -> F {
@@ -156,35 +155,11 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     callbacks.rhs(t, y, ydot)
 }
 
-/// `CVLsJacFn`.
-///
-/// # Safety
-/// As for [`rhs`]; `matrix` is dense and square.
-pub(crate) unsafe extern "C" fn jacobian<F: VectorField>(
-    t: f64,
-    y: sys::N_Vector,
-    _ydot: sys::N_Vector,
-    matrix: sys::SUNMatrix,
-    user_data: *mut c_void,
-    _tmp1: sys::N_Vector,
-    _tmp2: sys::N_Vector,
-    _tmp3: sys::N_Vector,
-) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
-    let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
-    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim, column-major and contiguous.
-    let (y, matrix) = unsafe {
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
-        (y, nan_slice(sys::SUNDenseMatrix_Data(matrix), callbacks.dim * callbacks.dim))
-    };
-    callbacks.jacobian(t, y, matrix)
-}
-
 /// `len` numbers at `data` as a slice, all set to NaN, so that an entry the field leaves unwritten is found.
 ///
 /// # Safety
 /// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be initialised.
-unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
+pub(crate) unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     for i in 0..len {
         // SAFETY: within the room promised.
         unsafe { data.add(i).write(f64::NAN) };

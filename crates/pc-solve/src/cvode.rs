@@ -2,6 +2,7 @@
 
 mod setup;
 
+use std::ffi::{c_int, c_void};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -13,7 +14,8 @@ use crate::callback::UserData;
 use crate::code::Code;
 use crate::context::Context;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
-use crate::handles::{LinearSolver, Matrix, Memory, NonlinearIteration, Vector};
+use crate::handles::{Memory, NonlinearIteration, Vector};
+use crate::linear::{Linear, LinearSolver};
 use crate::options::finite;
 use crate::statistics::Statistics;
 
@@ -29,7 +31,7 @@ pub struct Cvode<F> {
     // Dropped in this order: what CVODES refers to after CVODES, the context last.
     memory: Memory,
     _nonlinear_iteration: NonlinearIteration,
-    linear: Option<(LinearSolver, Matrix)>,
+    linear: Option<Linear>,
     /// y(`step_time`).
     step_state: Vector,
     /// y(`time`), unless `time` is `step_time`.
@@ -186,7 +188,44 @@ impl<F: VectorField> Cvode<F> {
 
     /// The work so far.
     pub fn statistics(&self) -> Statistics {
-        Statistics::read(&self.memory, self.linear.is_some())
+        Statistics::read(&self.memory, self.linear.as_ref().map(|_| self.callbacks.linear()))
+    }
+
+    /// The linear solver of Newton's iteration, as chosen or as the field made it; none for the fixed-point iteration.
+    pub fn linear_solver(&self) -> Option<&LinearSolver> {
+        self.linear.as_ref().map(Linear::choice)
+    }
+
+    /// The weights 1/(rtol |yᵢ| + atolᵢ) of the error test, one for each component, at the end of the last internal step.
+    ///
+    /// # Errors
+    /// [`InputError::NoStep`] before the first step.
+    pub fn error_weights(&mut self) -> Result<&[f64], SolveError> {
+        self.vector("CVodeGetErrWeights", sys::CVodeGetErrWeights)
+    }
+
+    /// The estimated local errors of the components in the last internal step; a step is accepted if the root mean
+    /// square of their products with the [weights](Cvode::error_weights) is at most 1.
+    ///
+    /// # Errors
+    /// [`InputError::NoStep`] before the first step.
+    pub fn local_errors(&mut self) -> Result<&[f64], SolveError> {
+        self.vector("CVodeGetEstLocalErrors", sys::CVodeGetEstLocalErrors)
+    }
+
+    /// A vector that CVODES has once a step has been taken.
+    fn vector(
+        &mut self,
+        name: &'static str,
+        get: unsafe extern "C" fn(*mut c_void, sys::N_Vector) -> c_int,
+    ) -> Result<&[f64], SolveError> {
+        if self.direction.is_none() {
+            return Err(InputError::NoStep.into());
+        }
+        // SAFETY: memory and vector are live and of one context; CVODES copies to the vector.
+        let code = unsafe { get(self.memory.raw(), self.work.raw()) };
+        self.context.check(name, code)?;
+        Ok(self.work.as_slice())
     }
 
     /// Sets a time beyond which the vector field is never evaluated, or removes it.

@@ -6,6 +6,7 @@ use std::fmt;
 use pc_expr::Failure;
 
 use crate::code::Code;
+use crate::inequality::Inequality;
 use crate::options::Method;
 use crate::trajectory::Trajectory;
 
@@ -153,6 +154,28 @@ pub enum NonFinite {
         /// Where the Jacobian was evaluated.
         t: f64,
     },
+
+    /// A component of (∂f/∂y) v.
+    #[error("the change of the rate of {component} in a direction is {value} at t = {t}")]
+    Product {
+        /// Name of the component of f.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the product was evaluated.
+        t: f64,
+    },
+
+    /// A component of what a [preconditioner](crate::Preconditioner) wrote.
+    #[error("the preconditioner makes {component} {value} at t = {t}")]
+    Preconditioned {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// The time of the step.
+        t: f64,
+    },
 }
 
 /// What is wrong with a problem or an option.
@@ -216,6 +239,73 @@ pub enum InputError {
     #[error("the maximum number of steps must be at least 1")]
     MaxSteps,
 
+    /// A linear solver is chosen, and the fixed-point iteration uses none.
+    #[error("a linear solver is chosen, but the fixed-point iteration has no linear systems to solve")]
+    LinearSolverUnused,
+
+    /// The sparse linear solver is chosen for a field that does not know the zero pattern of ∂f/∂y.
+    #[error(
+        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not know"
+    )]
+    NoPattern,
+
+    /// The zero pattern of ∂f/∂y is not that of a square matrix of the field's dimension.
+    #[error(
+        "the zero pattern of the Jacobian has {rows} rows and {columns} columns for {expected} components"
+    )]
+    PatternSize {
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        columns: usize,
+        /// Dimension of the vector field.
+        expected: usize,
+    },
+
+    /// A band matrix has diagonals beyond its corners.
+    #[error(
+        "a band of {lower} diagonals below the main one and {upper} above does not fit {components} components"
+    )]
+    BandTooWide {
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+        /// Dimension of the vector field.
+        components: usize,
+    },
+
+    /// An entry of ∂f/∂y that may be other than zero lies outside of the band chosen.
+    #[error(
+        "the rate of {row} depends on {column}, outside of the band of {lower} diagonals below the main one and \
+         {upper} above"
+    )]
+    OutsideBand {
+        /// Name of the component of f.
+        row: String,
+        /// Name of the component of y.
+        column: String,
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+    },
+
+    /// The start does not satisfy an inequality.
+    #[error("{component} at the start is {value}, but must be {inequality}")]
+    Inequality {
+        /// Name of the component.
+        component: String,
+        /// What it must satisfy.
+        inequality: Inequality,
+        /// Its value.
+        value: f64,
+    },
+
+    /// Inequalities are given for a field with a projection, which would move the states on.
+    #[error("inequalities cannot be kept for a vector field that projects its states")]
+    InequalitiesOfProjected,
+
     /// No output times are given.
     #[error("no output times are given")]
     NoTimes,
@@ -261,7 +351,7 @@ pub enum InputError {
     NoStep,
 }
 
-/// A failed [`solve`](crate::solve) with the outputs it had reached.
+/// A failed [`solve`](crate::solve()) with the outputs it had reached.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SolveFailure {

@@ -3,6 +3,8 @@
 use std::fmt;
 
 use crate::error::InputError;
+use crate::inequality::Inequality;
+use crate::linear::LinearSolver;
 
 /// A family of linear multistep methods of variable order and step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,7 +37,7 @@ impl fmt::Display for Method {
 /// How the implicit equation of a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum NonlinearSolver {
-    /// Newton's iteration with a dense matrix, from the field's Jacobian if it has one, else from difference quotients.
+    /// Newton's iteration, with a [`LinearSolver`].
     Newton,
     /// Fixed-point iteration, which needs no matrix but contracts only for small steps of a stiff system.
     FixedPoint,
@@ -70,6 +72,8 @@ impl From<Vec<f64>> for Tolerance {
 pub struct Options {
     pub(crate) method: Method,
     pub(crate) nonlinear_solver: NonlinearSolver,
+    pub(crate) linear_solver: Option<LinearSolver>,
+    pub(crate) inequalities: Vec<Inequality>,
     pub(crate) relative_tolerance: f64,
     pub(crate) absolute_tolerance: Tolerance,
     pub(crate) max_steps: u64,
@@ -97,6 +101,8 @@ impl Options {
                 Method::Bdf => NonlinearSolver::Newton,
                 Method::Adams => NonlinearSolver::FixedPoint,
             },
+            linear_solver: None,
+            inequalities: Vec::new(),
             relative_tolerance: 1e-9,
             absolute_tolerance: Tolerance::Scalar(1e-12),
             max_steps: 500_000,
@@ -111,6 +117,19 @@ impl Options {
     /// How the implicit equation of a step is solved.
     pub fn nonlinear_solver(self, nonlinear_solver: NonlinearSolver) -> Self {
         Options { nonlinear_solver, ..self }
+    }
+
+    /// How the linear systems of Newton's iteration are solved; chosen by the field's dimension and zero pattern
+    /// [unless given](LinearSolver).
+    pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
+        Options { linear_solver: Some(linear_solver), ..self }
+    }
+
+    /// Inequalities to satisfy, one for each component; none unless given.
+    ///
+    /// They are not for a field [with a projection](pc_expr::VectorField::has_projection), which moves the states on.
+    pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
+        Options { inequalities, ..self }
     }
 
     /// Relative tolerance, positive.
@@ -165,6 +184,9 @@ impl Options {
                 }
             }
         }
+        if !self.inequalities.is_empty() {
+            check_length("the inequalities", self.inequalities.len(), dim)?;
+        }
         if self.max_steps == 0 {
             return Err(InputError::MaxSteps);
         }
@@ -200,7 +222,7 @@ pub(crate) fn finite(what: &str, value: f64) -> Result<(), InputError> {
     if value.is_finite() { Ok(()) } else { Err(InputError::NotFinite { what: what.to_owned(), value }) }
 }
 
-fn positive(what: &str, value: f64) -> Result<(), InputError> {
+pub(crate) fn positive(what: &str, value: f64) -> Result<(), InputError> {
     finite(what, value)?;
     if value > 0.0 { Ok(()) } else { Err(InputError::NotPositive { what: what.to_owned(), value }) }
 }

@@ -5,8 +5,11 @@ use std::ffi::{c_int, c_long, c_void};
 use sundials_sys as sys;
 
 use crate::handles::Memory;
+use crate::linear::Work;
 
 /// Counts since the start, and the last internal step.
+///
+/// Those of a linear solver are 0 if there is none, or none of that kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Statistics {
@@ -22,19 +25,38 @@ pub struct Statistics {
     pub nonlinear_iterations: u64,
     /// Failures of the nonlinear solver, with those recovered by a new Jacobian.
     pub nonlinear_failures: u64,
-    /// Set-ups (factorisations) of the linear solver.
+    /// Steps tried again because the nonlinear solver failed.
+    pub step_failures: u64,
+    /// Set-ups of the linear solver: factorisations, or renewals of the preconditioner.
     pub linear_setups: u64,
+    /// Iterations of the Krylov solver.
+    pub linear_iterations: u64,
+    /// Linear systems that were not solved: not to the tolerance of the Krylov solver, or for a singular matrix that
+    /// was found only then.
+    pub linear_failures: u64,
+    /// Products (∂f/∂y) v, by the field or by difference quotients.
+    pub jacobian_products: u64,
+    /// Times the preconditioner took a new ∂f/∂y.
+    pub preconditioner_evaluations: u64,
+    /// Systems solved with the preconditioner.
+    pub preconditioner_solves: u64,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
+    /// Order of the next step, 0 before the first.
+    pub current_order: u32,
+    /// Length of the first step, with the sign of the direction; 0 before it.
+    pub first_step: f64,
     /// Length of the last step, with the sign of the direction; 0 before the first.
     pub last_step: f64,
+    /// Length that the next step will be tried with, with the sign of the direction; 0 before the first.
+    pub current_step: f64,
     /// End of the last step.
     pub current_time: f64,
 }
 
 impl Statistics {
-    /// Reads the counters; those of the linear solver only if `newton` says there is one.
-    pub(crate) fn read(memory: &Memory, newton: bool) -> Self {
+    /// Reads the counters; those of the linear solver only if there is one, with this `linear` work.
+    pub(crate) fn read(memory: &Memory, linear: Option<&Work>) -> Self {
         let counter = |get: unsafe extern "C" fn(*mut c_void, *mut c_long) -> c_int| {
             let mut value = 0;
             // SAFETY: the memory is live and initialised; `value` is a place for the result.
@@ -47,20 +69,34 @@ impl Statistics {
             unsafe { get(memory.raw(), &raw mut value) };
             value
         };
-        let mut last_order = 0;
-        // SAFETY: as above.
-        unsafe { sys::CVodeGetLastOrder(memory.raw(), &raw mut last_order) };
-        let newton_counter = |get| if newton { counter(get) } else { 0 };
+        let order = |get: unsafe extern "C" fn(*mut c_void, *mut c_int) -> c_int| {
+            let mut value = 0;
+            // SAFETY: as above.
+            unsafe { get(memory.raw(), &raw mut value) };
+            u32::try_from(value).unwrap_or(0)
+        };
+        let of_linear = |get| if linear.is_some() { counter(get) } else { 0 };
         Statistics {
             steps: counter(sys::CVodeGetNumSteps),
-            rhs_evaluations: counter(sys::CVodeGetNumRhsEvals) + newton_counter(sys::CVodeGetNumLinRhsEvals),
-            jacobian_evaluations: newton_counter(sys::CVodeGetNumJacEvals),
+            rhs_evaluations: counter(sys::CVodeGetNumRhsEvals)
+                + of_linear(sys::CVodeGetNumLinRhsEvals)
+                + linear.map_or(0, Work::quotient_evaluations),
+            jacobian_evaluations: of_linear(sys::CVodeGetNumJacEvals),
             error_test_failures: counter(sys::CVodeGetNumErrTestFails),
             nonlinear_iterations: counter(sys::CVodeGetNumNonlinSolvIters),
             nonlinear_failures: counter(sys::CVodeGetNumNonlinSolvConvFails),
-            linear_setups: newton_counter(sys::CVodeGetNumLinSolvSetups),
-            last_order: u32::try_from(last_order).unwrap_or(0),
+            step_failures: counter(sys::CVodeGetNumStepSolveFails),
+            linear_setups: of_linear(sys::CVodeGetNumLinSolvSetups),
+            linear_iterations: of_linear(sys::CVodeGetNumLinIters),
+            linear_failures: of_linear(sys::CVodeGetNumLinConvFails),
+            jacobian_products: of_linear(sys::CVodeGetNumJtimesEvals),
+            preconditioner_evaluations: of_linear(sys::CVodeGetNumPrecEvals),
+            preconditioner_solves: of_linear(sys::CVodeGetNumPrecSolves),
+            last_order: order(sys::CVodeGetLastOrder),
+            current_order: order(sys::CVodeGetCurrentOrder),
+            first_step: number(sys::CVodeGetActualInitStep),
             last_step: number(sys::CVodeGetLastStep),
+            current_step: number(sys::CVodeGetCurrentStep),
             current_time: number(sys::CVodeGetCurrentTime),
         }
     }

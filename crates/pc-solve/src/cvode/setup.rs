@@ -9,8 +9,10 @@ use super::Cvode;
 use crate::callback::{self, UserData};
 use crate::context::Context;
 use crate::error::{InputError, SolveError};
-use crate::handles::{LinearSolver, Matrix, Memory, NonlinearIteration, Vector};
-use crate::options::{Method, NonlinearSolver, Options, Tolerance, check_length, finite};
+use crate::handles::{Memory, NonlinearIteration, Vector};
+use crate::inequality::{self, Inequality};
+use crate::linear::{self, Linear};
+use crate::options::{Method, Options, Tolerance, check_length, finite};
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
@@ -21,23 +23,23 @@ impl<F: VectorField> Cvode<F> {
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         options.validate(y0.len())?;
-        let has_jacobian = field.has_jacobian();
+        inequality::check(&field, y0, &options.inequalities)?;
+        let linear_solver = linear::choose(&field, options)?;
 
         // Dropped in reverse order if one of them fails.
         let mut context = Context::new()?;
-        let callbacks = UserData::new(field, y0.len());
-        let step_state = Vector::new(&mut context, y0)?;
+        let mut callbacks = UserData::new(field, y0.len());
+        let mut step_state = Vector::new(&mut context, y0)?;
+        step_state.halve_after_violations();
         let output = Vector::new(&mut context, y0)?;
         let work = Vector::new(&mut context, y0)?;
-        let (linear, nonlinear_iteration) = match options.nonlinear_solver {
-            NonlinearSolver::Newton => {
-                let matrix = Matrix::new(&mut context, y0.len())?;
-                let solver = LinearSolver::dense(&mut context, &step_state, &matrix)?;
-                (Some((solver, matrix)), NonlinearIteration::newton(&mut context, &step_state)?)
-            }
-            NonlinearSolver::FixedPoint => {
-                (None, NonlinearIteration::fixed_point(&mut context, &step_state)?)
-            }
+        let linear = linear_solver
+            .map(|choice| Linear::new(&mut context, &step_state, choice, callbacks.field()))
+            .transpose()?;
+        let nonlinear_iteration = if linear.is_some() {
+            NonlinearIteration::newton(&mut context, &step_state)?
+        } else {
+            NonlinearIteration::fixed_point(&mut context, &step_state)?
         };
         let method = match options.method {
             Method::Bdf => sys::CV_BDF,
@@ -55,15 +57,8 @@ impl<F: VectorField> Cvode<F> {
         // SAFETY: `mem` is initialised; the iteration outlives it.
         let code = unsafe { sys::CVodeSetNonlinearSolver(mem, nonlinear_iteration.raw()) };
         context.check("CVodeSetNonlinearSolver", code)?;
-        if let Some((solver, matrix)) = &linear {
-            // SAFETY: `mem` is initialised; solver and matrix match and outlive it.
-            let code = unsafe { sys::CVodeSetLinearSolver(mem, solver.raw(), matrix.raw()) };
-            context.check("CVodeSetLinearSolver", code)?;
-            if has_jacobian {
-                // SAFETY: the linear solver is set, and its matrix is dense as the callback expects.
-                let code = unsafe { sys::CVodeSetJacFn(mem, Some(callback::jacobian::<F>)) };
-                context.check("CVodeSetJacFn", code)?;
-            }
+        if let Some(linear) = &linear {
+            linear.attach(&memory, &mut context, &mut callbacks, &options.inequalities)?;
         }
         apply(options, &memory, &mut context)?;
 
@@ -117,6 +112,13 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
             let code = unsafe { sys::CVodeSVtolerances(memory.raw(), rtol, atol.raw()) };
             context.check("CVodeSVtolerances", code)?;
         }
+    }
+    if options.inequalities.iter().any(|&inequality| inequality != Inequality::Free) {
+        let numbers: Vec<f64> = options.inequalities.iter().map(|inequality| inequality.number()).collect();
+        let numbers = Vector::new(context, &numbers)?;
+        // SAFETY: the memory is initialised; CVODES copies the vector, which has its dimension.
+        let code = unsafe { sys::CVodeSetConstraints(memory.raw(), numbers.raw()) };
+        context.check("CVodeSetConstraints", code)?;
     }
     if let Some(length) = options.max_step {
         memory.set(context, "CVodeSetMaxStep", sys::CVodeSetMaxStep, length)?;

@@ -1,0 +1,79 @@
+//! Components that keep their sign.
+
+use std::fmt;
+
+use crate::error::InputError;
+use pc_expr::VectorField;
+
+/// What a component of y must satisfy at the end of every step, so that f is not evaluated far from where it makes sense.
+///
+/// A step whose end does not satisfy it is corrected if it errs by little, and else tried again, shorter. Inside a step
+/// the polynomial of the method may err by the tolerance. Where the motion itself leads out, the steps become ever
+/// shorter, until the number of steps or the least step ends the integration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Inequality {
+    /// Nothing.
+    Free,
+    /// y ≥ 0.
+    NotNegative,
+    /// y ≤ 0.
+    NotPositive,
+    /// y > 0.
+    Positive,
+    /// y < 0.
+    Negative,
+}
+
+impl Inequality {
+    /// Whether `value` satisfies it.
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Inequality::Free => true,
+            Inequality::NotNegative => value >= 0.0,
+            Inequality::NotPositive => value <= 0.0,
+            Inequality::Positive => value > 0.0,
+            Inequality::Negative => value < 0.0,
+        }
+    }
+
+    /// The number that stands for it in `CVodeSetConstraints`.
+    pub(crate) fn number(self) -> f64 {
+        match self {
+            Inequality::Free => 0.0,
+            Inequality::NotNegative => 1.0,
+            Inequality::NotPositive => -1.0,
+            Inequality::Positive => 2.0,
+            Inequality::Negative => -2.0,
+        }
+    }
+}
+
+impl fmt::Display for Inequality {
+    /// What is said of a component: `not negative`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Inequality::Free => "any number",
+            Inequality::NotNegative => "not negative",
+            Inequality::NotPositive => "not positive",
+            Inequality::Positive => "positive",
+            Inequality::Negative => "negative",
+        })
+    }
+}
+
+/// Checks that the start satisfies the inequalities, of which there are as many as components or none.
+pub(crate) fn check(
+    field: &impl VectorField,
+    y0: &[f64],
+    inequalities: &[Inequality],
+) -> Result<(), InputError> {
+    if !inequalities.is_empty() && field.has_projection() {
+        return Err(InputError::InequalitiesOfProjected);
+    }
+    for (i, (&value, &inequality)) in y0.iter().zip(inequalities).enumerate() {
+        if !inequality.holds(value) {
+            return Err(InputError::Inequality { component: field.component_name(i), inequality, value });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,116 @@
+//! Components that keep their sign.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_solve::{
+    Code, Cvode, Inequality, LinearSolver, Method, NonlinearSolver, Options, Pattern, SolveError, from_fn,
+};
+
+/// The least y over the ends of steps of ẏ = −100 y.
+fn least(options: &Options) -> f64 {
+    let decay = from_fn(1, |_t, y, ydot| {
+        ydot[0] = -100.0 * y[0];
+        Ok(())
+    })
+    .with_sparsity(Pattern::full(1, 1));
+    let mut cvode = Cvode::new(decay, 0.0, &[1.0], options).unwrap();
+    let mut least = f64::INFINITY;
+    while cvode.time() < 2.0 {
+        cvode.step(2.0).unwrap();
+        least = least.min(cvode.state()[0]);
+    }
+    least
+}
+
+/// To loose tolerances the decay overshoots.
+#[test]
+fn signs_are_kept() {
+    let loose = Options::new(Method::Bdf).relative_tolerance(1e-3).absolute_tolerance(1e-2);
+    for options in
+        [loose.clone().linear_solver(LinearSolver::Dense), loose.clone().linear_solver(LinearSolver::Sparse)]
+    {
+        let kept = least(&options.clone().inequalities(vec![Inequality::NotNegative]));
+        let free = least(&options);
+        assert!(free < 0.0, "{free}");
+        assert!(kept >= 0.0, "{kept}");
+    }
+}
+
+/// ẏ = −1 from 1 leaves y ≥ 0 at t = 1, whatever the step. What is predicted exactly is met by shorter steps too.
+#[test]
+fn what_cannot_be_kept_ends_the_integration() {
+    for nonlinear_solver in [NonlinearSolver::Newton, NonlinearSolver::FixedPoint] {
+        let options = Options::new(Method::Bdf)
+            .nonlinear_solver(nonlinear_solver)
+            .min_step(1e-6)
+            .inequalities(vec![Inequality::NotNegative]);
+        let fall = from_fn(1, |_t, _y, ydot| {
+            ydot[0] = -1.0;
+            Ok(())
+        });
+        let mut cvode = Cvode::new(fall, 0.0, &[1.0], &options).unwrap();
+        let error = cvode.advance_to(2.0).unwrap_err();
+        let (t, y) = error.reached().unwrap();
+        assert!(t > 0.99 && t <= 1.0 && y[0] >= 0.0, "{t} {y:?}: {error}");
+        assert_eq!(error.code(), Some(Code::Nonlinear), "{error}"); // as CVODES calls it
+    }
+}
+
+/// Difference quotients do not step over: f is not defined for y ≤ 0.
+#[test]
+fn quotients_keep_to_their_side() {
+    let options = Options::new(Method::Bdf)
+        .linear_solver(LinearSolver::Sparse)
+        .inequalities(vec![Inequality::NotPositive]);
+    let crossed = std::cell::Cell::new(false);
+    let field = from_fn(1, |_t, y, ydot| {
+        crossed.set(crossed.get() || y[0] > 0.0);
+        ydot[0] = -y[0];
+        Ok(())
+    })
+    .with_sparsity(Pattern::full(1, 1));
+    let mut cvode = Cvode::new(field, 0.0, &[0.0], &options).unwrap();
+    cvode.advance_to(1.0).unwrap();
+    assert!(cvode.statistics().jacobian_evaluations > 0);
+    assert!(!crossed.get());
+}
+
+#[test]
+fn starts_that_do_not_satisfy_them_are_refused() {
+    let refusal = |inequalities: Vec<Inequality>, y0: &[f64]| {
+        let field = from_fn(2, |_t, _y, ydot| {
+            ydot.fill(0.0);
+            Ok(())
+        });
+        let options = Options::default().inequalities(inequalities);
+        match Cvode::new(field.with_names(["x"]), 0.0, y0, &options) {
+            Ok(_) => "taken".to_owned(),
+            Err(error) => error.to_string(),
+        }
+    };
+    use Inequality::{Free, Negative, NotNegative, NotPositive, Positive};
+    assert_eq!(refusal(vec![Positive, Free], &[0.0, 0.0]), "x at the start is 0, but must be positive");
+    assert_eq!(refusal(vec![Free, Negative], &[0.0, 0.0]), "y[1] at the start is 0, but must be negative");
+    assert_eq!(
+        refusal(vec![NotNegative, Free], &[-1.0, 0.0]),
+        "x at the start is -1, but must be not negative"
+    );
+    assert_eq!(
+        refusal(vec![NotPositive, Free], &[1.0, 0.0]),
+        "x at the start is 1, but must be not positive"
+    );
+    assert_eq!(refusal(vec![NotNegative, NotPositive], &[0.0, 0.0]), "taken");
+    assert_eq!(refusal(vec![Positive, Negative], &[1.0, -1.0]), "taken");
+    assert_eq!(refusal(vec![Free, Free], &[1.0, 0.0]), "taken");
+    assert_eq!(refusal(vec![Free], &[1.0, 0.0]), "the inequalities: 1 numbers for 2 components");
+
+    let projected = from_fn(1, |_t, _y, ydot| {
+        ydot[0] = 0.0;
+        Ok(())
+    })
+    .with_projection(|_t, _y| Ok(()));
+    let options = Options::default().inequalities(vec![Free]);
+    let error = Cvode::new(projected, 0.0, &[0.0], &options).unwrap_err();
+    assert!(matches!(error, SolveError::Input(_)));
+    assert_eq!(error.to_string(), "inequalities cannot be kept for a vector field that projects its states");
+}
