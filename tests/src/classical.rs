@@ -47,6 +47,7 @@ const SATELLITE: Satellite = Satellite { inertia: [0.1, 0.2, 0.25], mass: 1.0 };
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
     "ball-in-cylinder",
+    "bouncing-ball",
     "carriage",
     "chaplygin-sleigh",
     "charged-particle",
@@ -69,11 +70,13 @@ pub const MODELS: &[&str] = &[
     "relativistic-constant-force",
     "relativistic-particle",
     "rigid-body-spring",
+    "rocking-block",
     "rotating-oscillator",
     "snakeboard",
     "snakeboard-driven",
     "spherical-pendulum-cartesian",
     "spherical-pendulum-meridian",
+    "stick-slip-block",
     "stiff-sleigh",
     "suslov",
     "suslov-in-gravity",
@@ -93,6 +96,7 @@ pub const MODELS: &[&str] = &[
 pub fn classical(model: &str) -> Option<Rhs> {
     Some(match model {
         "ball-in-cylinder" => |_, y, dy| ball_in_cylinder(y, dy),
+        "bouncing-ball" => |_, y, dy| dy.copy_from_slice(&[y[1], -9.81]),
         "carriage" => |_, y, dy| carriage(y, dy),
         "chaplygin-sleigh" => |_, y, dy| chaplygin_sleigh(y, dy),
         "charged-particle" => |_, y, dy| charged_particle(2.0, 0.0, y, dy),
@@ -117,11 +121,14 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "relativistic-constant-force" => |_, y, dy| relativistic_constant_force(2.0, 3.0, y, dy),
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
         "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
+        "rocking-block" => |_, y, dy| dy.copy_from_slice(&[y[2], 0.0, y[0] - 0.2 * y[1]]),
         "rotating-oscillator" => |_, y, dy| rotating_oscillator(y, dy),
         "snakeboard" => |_, y, dy| snakeboard([0.0, 0.0], y, dy),
         "snakeboard-driven" => |t, y, dy| snakeboard([(2.0 * t).sin() / 2.0, (3.0 * t).cos() / 5.0], y, dy),
         "spherical-pendulum-cartesian" => |_, y, dy| spherical_pendulum(y, dy),
         "spherical-pendulum-meridian" => |_, y, dy| spherical_pendulum_on_meridians(y, dy),
+        // σ = 1 slips, σ = 0 is held
+        "stick-slip-block" => |t, y, dy| dy.copy_from_slice(&[y[2], 0.0, y[1] * (t / 2.0 - y[0] - 0.5)]),
         "stiff-sleigh" => stiff_sleigh,
         "suslov" => |_, y, dy| suslov(y, dy),
         "suslov-in-gravity" => |_, y, dy| suslov_in_gravity(y, dy),
@@ -167,6 +174,9 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             (t, y)
         }
         "damped-oscillator" | "damped-oscillator-scaled-frame" => (rng.uniform(0.0, 3.0), rng.normals(2)),
+        "bouncing-ball" => (0.0, rng.normals(2)),
+        "rocking-block" => (0.0, rng.normals(3)),
+        "stick-slip-block" => (rng.uniform(0.0, 3.0), rng.normals(3)),
         "double-pendulum-cartesian" | "double-pendulum-links" => {
             let mut y = hanging_links(rng, 2);
             y.extend(rng.normals(2));

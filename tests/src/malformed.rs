@@ -217,6 +217,22 @@ pub const MALFORMED: &[Malformed] = &[
         cure: None,
     },
     Malformed {
+        file: "event-not-a-number.toml",
+        fault: "an event whose function is no number at the start",
+        exit_code: 4,
+        mentions: &["sqrt(phi - 2)"],
+        line: Some(21),
+        cure: Some(("sqrt(phi - 2)", "sqrt(phi + 2)")),
+    },
+    Malformed {
+        file: "event-of-unknown.toml",
+        fault: "an event of a name that does not exist",
+        exit_code: 3,
+        mentions: &["chi"],
+        line: Some(21),
+        cure: Some(("when = \"chi\"", "when = \"phi\"")),
+    },
+    Malformed {
         file: "force-on-unknown.toml",
         fault: "a force on a name that does not exist",
         exit_code: 3,
@@ -522,6 +538,14 @@ pub const MALFORMED: &[Malformed] = &[
         mentions: &["t = "],
         line: Some(6),
         cure: Some(("l = 1.0\nt = 2.0", "l = 1.0")),
+    },
+    Malformed {
+        file: "reset-of-parameter.toml",
+        fault: "a reset of a parameter",
+        exit_code: 3,
+        mentions: &["`l` cannot be reset: it is a parameter"],
+        line: Some(23),
+        cure: Some(("{ l = ", "{ omega = ")),
     },
     Malformed {
         file: "root-of-negative.toml",

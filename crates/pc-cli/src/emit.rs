@@ -12,6 +12,9 @@ use crate::input;
 use crate::output::atomic;
 use crate::text::say;
 
+const NO_EVENTS: &str =
+    "The events of the model are not part of this source: it has the equations between them.";
+
 /// Writes the source of a model into a directory, one file after the other, each whole.
 ///
 /// # Errors
@@ -27,9 +30,17 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(input::title(&model));
     say_dropped(&assembly);
+    let mut remarks = Vec::new();
     if let Some(remark) = choice(&assembly, equations.system()) {
         say_choice(&remark);
-        options = options.remark(remark);
+        remarks.push(remark);
+    }
+    if !assembly.events.is_empty() {
+        say(format_args!("note: {NO_EVENTS}\n"));
+        remarks.push(NO_EVENTS.to_owned());
+    }
+    if !remarks.is_empty() {
+        options = options.remark(remarks.join("\n"));
     }
     if let Some(t_end) = &model.document().simulation.t_end {
         let system = equations.system();

@@ -1,10 +1,11 @@
 //! The vector field that is integrated, and what a table shows of its states.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
-use pc_mech::{LegendreTransform, MechError, Motion};
+use pc_mech::{LegendreTransform, MechError, Motion, System};
 use pc_model::{Assembly, Form, Model, ModelError};
 
 use crate::args::RunForm;
+use crate::events::FlowEvents;
 
 /// Equations of motion of a model in one of their forms, tried at the start.
 #[derive(Debug)]
@@ -15,14 +16,71 @@ pub struct Flow {
     pub start: Vec<f64>,
     /// Coordinates and declared quasi-velocities, the columns of a table whatever the form.
     pub names: Vec<String>,
-    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η) with the free η.
-    quasi_velocities: Evaluator,
-    parameters: Vec<f64>,
-    /// From momenta to quasi-velocities, where the state has momenta.
-    transform: Option<LegendreTransform>,
+    /// What happens where; none in most models.
+    pub events: FlowEvents,
+    reading: Reading,
     /// The motion with multipliers, where another is integrated: it knows the residuals of the constraints, the reactions,
     /// and the energy of all velocities, which is not that of independent ones.
     watch: Option<Motion>,
+}
+
+/// How a state is read as coordinates and all quasi-velocities of the model, and written.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// Number of coordinates.
+    coordinates: usize,
+    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η) with the free η.
+    quasi_velocities: Evaluator,
+    /// Which of them are the free ones.
+    free: Vec<usize>,
+    parameters: Vec<f64>,
+    /// From momenta to quasi-velocities, where the state has momenta.
+    transform: Option<LegendreTransform>,
+}
+
+impl Reading {
+    /// (x, η) with all η of a state.
+    ///
+    /// # Errors
+    /// [`MechError`] where momenta have no quasi-velocities.
+    pub fn read(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        match &mut self.transform {
+            Some(transform) => {
+                let free = transform.to_quasi_velocities(t, state)?;
+                Ok(self.complete(t, &free))
+            }
+            None => Ok(self.complete(t, state)),
+        }
+    }
+
+    /// (x, η) with all η of one with the free ones.
+    fn complete(&mut self, t: f64, free: &[f64]) -> Vec<f64> {
+        let n = self.coordinates;
+        let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
+        let (coordinates, quasi_velocities) = all.split_at_mut(n);
+        coordinates.copy_from_slice(&free[..n]);
+        self.quasi_velocities.eval(t, free, &self.parameters, quasi_velocities);
+        all
+    }
+
+    /// The state of an (x, η) with all η.
+    ///
+    /// # Errors
+    /// [`MechError`] where the quasi-velocities have no momenta.
+    pub fn write(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
+        let (coordinates, eta) = all.split_at(self.coordinates);
+        let mut state = coordinates.to_vec();
+        state.extend(self.free.iter().map(|&s| eta[s]));
+        match &mut self.transform {
+            Some(transform) => transform.to_momenta(t, &state),
+            None => Ok(state),
+        }
+    }
+
+    /// Values of the parameters.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
 }
 
 impl Flow {
@@ -35,8 +93,9 @@ impl Flow {
             RunForm::Poincare => {
                 let compiled = model.compile(assembly)?;
                 let all = assembly.system.quasi_velocities().iter().copied();
-                let free = all.filter(|eta| compiled.0.names().contains(&eta.to_string())).collect();
-                Flow::of(model, assembly, free, compiled, None)
+                let free: Vec<Expr<'_>> =
+                    all.filter(|eta| compiled.0.names().contains(&eta.to_string())).collect();
+                Flow::of(model, assembly, &free, compiled, (None, None))
             }
             RunForm::Canonical => {
                 let refused = |error| model.derivation_error(error);
@@ -52,12 +111,14 @@ impl Flow {
                 let mut transform = canonical.legendre_transform().map_err(refused)?;
                 let start = transform.to_momenta(assembly.t_start, &start).map_err(refused)?;
                 let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
-                let free = system.quasi_velocities().to_vec();
-                let mut flow = Flow::of(model, assembly, free, (motion, start), Some(transform))?;
-                if held {
-                    flow.watch = Some(model.compile(assembly)?.0);
-                }
-                Ok(flow)
+                let watch = if held { Some(model.compile(assembly)?.0) } else { None };
+                Flow::of(
+                    model,
+                    assembly,
+                    system.quasi_velocities(),
+                    (motion, start),
+                    (Some(transform), watch),
+                )
             }
         }
     }
@@ -66,47 +127,44 @@ impl Flow {
     fn of<'g>(
         model: &Model,
         assembly: &Assembly<'g>,
-        free: Vec<Expr<'g>>,
+        free: &[Expr<'g>],
         (motion, start): (Motion, Vec<f64>),
-        transform: Option<LegendreTransform>,
+        (transform, watch): (Option<LegendreTransform>, Option<Motion>),
     ) -> Result<Flow, ModelError> {
         let system = &assembly.system;
         let x = system.frame().coordinates();
         let declared = &system.quasi_velocities()[..assembly.declared];
-        let all = assembly.quasi_velocities_of(&free).map_err(|error| model.constraint_error(error))?;
-        let inputs = Inputs {
-            time: Some(system.frame().time()),
-            state: x.iter().copied().chain(free).collect(),
-            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
-        };
+        let all = assembly.quasi_velocities_of(free).map_err(|error| model.constraint_error(error))?;
+        let eta = system.quasi_velocities();
+        let free_places = free.iter().filter_map(|free| eta.iter().position(|eta| eta == free)).collect();
+        let inputs = inputs(system, &[x, free].concat());
         let program = Program::new(system.graph(), &inputs, &all)
             .map_err(|error| model.derivation_error(MechError::from(error)))?;
+        let reading = Reading {
+            coordinates: x.len(),
+            quasi_velocities: Evaluator::new(program, Backend::Interpreter),
+            free: free_places,
+            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            transform,
+        };
         Ok(Flow {
+            events: FlowEvents::new(model, assembly, &reading, watch.as_ref().unwrap_or(&motion))?,
             motion,
             start,
             names: x.iter().chain(declared).map(ToString::to_string).collect(),
-            quasi_velocities: Evaluator::new(program, Backend::Interpreter),
-            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
-            transform,
-            watch: None,
+            reading,
+            watch,
         })
     }
 
     /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
-        let mut free = state.to_vec();
-        if let Some(transform) = &mut self.transform {
-            match transform.to_quasi_velocities(t, state) {
-                Ok(state) => free = state,
-                Err(_) => free[n..].fill(f64::NAN),
-            }
-        }
-        let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
-        let (coordinates, quasi_velocities) = all.split_at_mut(n);
-        coordinates.copy_from_slice(&free[..n]);
-        self.quasi_velocities.eval(t, &free, &self.parameters, quasi_velocities);
-        all
+        self.reading.read(t, state).unwrap_or_else(|_| {
+            let mut free = state.to_vec();
+            free[n..].fill(f64::NAN);
+            self.reading.complete(t, &free)
+        })
     }
 
     /// Coordinates and declared quasi-velocities of a state, then the observables.
@@ -117,7 +175,8 @@ impl Flow {
             None => self.motion.observe(t, state),
         });
         row.drain(
-            self.names.len()..self.motion.coordinates() + self.quasi_velocities.program().outputs_len(),
+            self.names.len()
+                ..self.motion.coordinates() + self.reading.quasi_velocities.program().outputs_len(),
         );
         row
     }
@@ -144,5 +203,14 @@ impl Flow {
     /// Number of quasi-velocities.
     pub fn quasi_velocities(&self) -> usize {
         self.names.len() - self.motion.coordinates()
+    }
+}
+
+/// Time, a state of these symbols, and the parameters.
+pub fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
+    Inputs {
+        time: Some(system.frame().time()),
+        state: state.to_vec(),
+        parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
     }
 }

@@ -18,6 +18,7 @@ pub mod check;
 pub mod derive;
 pub mod emit;
 pub mod error;
+pub mod events;
 pub mod flow;
 pub mod input;
 mod interrupt;

@@ -78,7 +78,7 @@ impl Destination {
     pub fn write_table(&self, run: &Run) -> Result<(), CliError> {
         self.write(|out| match self.encoding {
             Encoding::Json => json::write(run, out),
-            Encoding::Npz => npz::write(&run.table, out),
+            Encoding::Npz => npz::write(run, out),
             Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
         })
     }

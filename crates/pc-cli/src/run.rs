@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use pc_mech::{Expr, Graph};
 use pc_model::{Assembly, Form, Model};
-use pc_solve::{SolveError, Statistics, Trajectory, solve_observed};
+use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
 
 use crate::args::{Outputs, RunArguments, RunForm};
 use crate::binding::{choice, dropped, say_choice};
@@ -37,6 +37,10 @@ pub struct Run {
     pub dropped: Vec<(String, String)>,
     /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
     pub keeps_energy: bool,
+    /// The names of the events that the model has.
+    pub events: Vec<String>,
+    /// What occurred, in order: the numbers of events, and when.
+    pub occurrences: Vec<(usize, f64)>,
     /// How it ended.
     pub ending: Ending,
     /// The work done.
@@ -50,6 +54,11 @@ pub struct Run {
 pub enum Ending {
     /// At its end.
     Completed,
+    /// By a terminal event.
+    Event {
+        /// Its name.
+        name: String,
+    },
     /// By Ctrl-C.
     Interrupted,
     /// The integration could not go on.
@@ -61,6 +70,7 @@ impl Ending {
     pub fn word(&self) -> &'static str {
         match self {
             Ending::Completed => "completed",
+            Ending::Event { .. } => "event",
             Ending::Interrupted => "interrupted",
             Ending::Failed(_) => "failed",
         }
@@ -122,15 +132,17 @@ pub fn integrate(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let solved =
-        solve_observed(&mut flow.motion, plan.t_start, &flow.start, &plan.times(), &plan.options(), observer);
+    let (solved, error) = solve(&mut flow, &plan, observer);
     let wall = start.elapsed();
     drop(progress);
 
-    let (trajectory, ending) = match solved {
-        Ok(trajectory) if trajectory.is_complete() => (trajectory, Ending::Completed),
-        Ok(trajectory) => (trajectory, Ending::Interrupted),
-        Err(failure) => (failure.reached, Ending::Failed(Box::new(failure.error))),
+    let HybridMotion { trajectory, occurrences, ending } = solved;
+    let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
+    let ending = match (ending, error) {
+        (_, Some(error)) => Ending::Failed(Box::new(error)),
+        (Some(solver::Ending::Completed), None) => Ending::Completed,
+        (Some(solver::Ending::Event { event }), None) => Ending::Event { name: events[event].clone() },
+        (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
     Ok(Run {
         title: input::title(model).to_owned(),
@@ -142,15 +154,46 @@ pub fn integrate(
         keeps_energy: keeps_energy(&assembly),
         statistics: *trajectory.statistics(),
         plan,
+        events,
+        occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
         ending,
         wall,
     })
 }
 
-/// Whether nothing changes the energy of the table: of all velocities where multipliers hold constraints, which must be
+/// The motion as far as it could be computed, and why not further.
+fn solve(
+    flow: &mut Flow,
+    plan: &Plan,
+    observer: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> (HybridMotion, Option<SolveError>) {
+    let (motion, start) = (&mut flow.motion, &flow.start);
+    let (times, options) = (plan.times(), plan.options());
+    if flow.events.is_empty() {
+        let alone = |trajectory, ending| HybridMotion { trajectory, occurrences: Vec::new(), ending };
+        return match solver::solve_observed(motion, plan.t_start, start, &times, &options, observer) {
+            Ok(trajectory) if trajectory.is_complete() => {
+                (alone(trajectory, Some(solver::Ending::Completed)), None)
+            }
+            Ok(trajectory) => (alone(trajectory, Some(solver::Ending::Stopped)), None),
+            Err(failure) => (alone(failure.reached, None), Some(failure.error)),
+        };
+    }
+    let events = &mut flow.events;
+    match solver::solve_with_events_observed(motion, plan.t_start, start, &times, &options, events, observer)
+    {
+        Ok(motion) => (motion, None),
+        Err(failure) => (failure.reached, Some(failure.error)),
+    }
+}
+
+/// Whether nothing changes the energy of the table, no reset either: of all velocities where multipliers hold constraints, which must be
 /// homogeneous then, else of the free ones.
 fn keeps_energy(assembly: &Assembly<'_>) -> bool {
     let system = &assembly.system;
+    if assembly.events.iter().any(|event| !event.resets.is_empty()) {
+        return false;
+    }
     match assembly.bound.form() {
         Form::Held(held) => {
             let homogeneous = |(_, drift): (Vec<Expr<'_>>, Expr<'_>)| drift.is_zero();
@@ -190,7 +233,7 @@ impl Run {
     fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
         match self.ending {
-            Ending::Completed => Ok(()),
+            Ending::Completed | Ending::Event { .. } => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
             Ending::Failed(cause) => Err(CliError::Integration { cause, names }),
         }

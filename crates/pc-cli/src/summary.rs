@@ -16,8 +16,11 @@ pub fn text(run: &Run) -> String {
 
     line("method", &[format!("{}, rtol {:e}, atol {:e}", plan.method, plan.rtol, plan.atol)]);
     let rows = run.table.len();
-    let reached = match run.ending {
+    let reached = match &run.ending {
         Ending::Completed => format!("{rows} rows"),
+        Ending::Event { name } => {
+            format!("ended by the event {name} at {}, {rows} rows", short(reached_time(run), 10))
+        }
         _ => format!(
             "{} at {}, {rows} of {} rows",
             run.ending.word(),
@@ -27,6 +30,7 @@ pub fn text(run: &Run) -> String {
     };
     line("time", &[format!("{} to {}, {reached}", short(plan.t_start, 10), short(plan.t_end, 10))]);
     line("work", &[work_done(run)]);
+    line("events", &events(run));
     line("drift", &drifts(run));
     if !run.constraints.is_empty() {
         line("held", &held(run));
@@ -37,7 +41,8 @@ pub fn text(run: &Run) -> String {
         let state = run.table.coordinates().start..run.table.quasi_velocities().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
         let shown = names.take(1 + state.len());
-        let label = if matches!(run.ending, Ending::Completed) { "end" } else { "last row" };
+        let arrived = matches!(run.ending, Ending::Completed | Ending::Event { .. });
+        let label = if arrived { "end" } else { "last row" };
         line(label, &assignments(shown, WIDTH));
     }
     text
@@ -55,6 +60,35 @@ fn work_done(run: &Run) -> String {
     }
     parts.push(format!("{:.3} ms", run.wall.as_secs_f64() * 1e3));
     parts.join(", ")
+}
+
+/// Occurrences of an event that are all listed.
+const FEW: usize = 5;
+
+fn events(run: &Run) -> Vec<String> {
+    let width = run.events.iter().map(|name| columns(name)).max().unwrap_or(0);
+    let line = |(event, name): (usize, &String)| {
+        let times = run.occurrences.iter().filter(|(number, _)| *number == event);
+        let times: Vec<String> = times.map(|(_, t)| short(*t, 10)).collect();
+        let when = match times.as_slice() {
+            [] => "does not occur".to_owned(),
+            [t] => format!("once: {t}"),
+            [first, .., last] if times.len() > FEW => {
+                format!("{} times: first {first}, last {last}", times.len())
+            }
+            all => format!("{} times: {}", all.len(), all.join(", ")),
+        };
+        format!("{name:width$}  {when}")
+    };
+    run.events.iter().enumerate().map(line).collect()
+}
+
+/// How far the motion went.
+fn reached_time(run: &Run) -> f64 {
+    match (&run.ending, run.occurrences.last()) {
+        (Ending::Event { .. }, Some(&(_, t))) => t,
+        _ => run.statistics.current_time,
+    }
 }
 
 fn drifts(run: &Run) -> Vec<String> {
@@ -102,7 +136,7 @@ pub fn json(run: &Run) -> Value {
         "atol": plan.atol,
         "t_start": plan.t_start,
         "t_end": plan.t_end,
-        "t_reached": work.current_time,
+        "t_reached": reached_time(run),
         "steps": work.steps,
         "evaluations": work.rhs_evaluations,
         "jacobians": work.jacobian_evaluations,

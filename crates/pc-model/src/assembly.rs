@@ -3,6 +3,7 @@
 mod bodies;
 mod brackets;
 mod constraints;
+mod events;
 mod frame;
 mod trial;
 
@@ -64,6 +65,8 @@ impl<'g> Assembler<'g, '_> {
             outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
         }
 
+        let crossings = self.crossings(&x_dot)?;
+
         let state: Vec<Expr<'g>> = frame.coordinates().iter().chain(&eta).copied().collect();
         let mut values = parameters.clone();
         values.push((frame.time(), t_start));
@@ -98,7 +101,8 @@ impl<'g> Assembler<'g, '_> {
         }
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;
-        Ok(Assembly { system, bound, t_start, start, declared })
+        let events = self.events(crossings, &x_dot, &bound)?;
+        Ok(Assembly { system, bound, t_start, start, declared, events })
     }
 
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.

@@ -62,6 +62,9 @@ pub const BUILTIN: &[Builtin] = models![
     "voronets",
     "voronets-rheonomic",
     "stiff-sleigh",
+    "bouncing-ball",
+    "stick-slip-block",
+    "rocking-block",
 ];
 
 impl Builtin {

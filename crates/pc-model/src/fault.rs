@@ -39,6 +39,16 @@ pub enum Fault {
         /// The names that can be given a force.
         known: Vec<String>,
     },
+    /// A reset of something that has no value of its own in a state.
+    #[error("`{name}` cannot be reset: it is {what}")]
+    NotReset {
+        /// The name.
+        name: String,
+        /// What it is, in words.
+        what: &'static str,
+        /// The names that can be reset.
+        known: Vec<String>,
+    },
     /// A name that means nothing at this place.
     #[error("`{name}` cannot be used in {place}")]
     NotHere {
@@ -336,6 +346,9 @@ impl Fault {
             }
             Fault::NothingToPush { name, known } => {
                 suggest(name, known, &format!("a force can act on {}", listed(known)))
+            }
+            Fault::NotReset { name, known, .. } => {
+                suggest(name, known, &format!("an event can reset {}", listed(known)))
             }
             Fault::NotHere { allowed, .. } => format!("use {allowed} only"),
             Fault::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),

@@ -11,6 +11,7 @@ use crate::assembly::assemble;
 use crate::bound::{Bound, Form};
 use crate::document::{self, AlgebraDefinition, Bracket, Document, Method};
 use crate::error::{ErrorKind, ModelError};
+use crate::event::Event;
 use crate::fault::Fault;
 use crate::source::Place;
 
@@ -37,6 +38,8 @@ pub struct Assembly<'g> {
     pub start: Vec<f64>,
     /// Number of quasi-velocities that are declared, the first ones; the velocities where none is.
     pub declared: usize,
+    /// What happens where, in the order in which simultaneous events are dealt with.
+    pub events: Vec<Event<'g>>,
 }
 
 impl<'g> Assembly<'g> {
@@ -326,9 +329,6 @@ impl Model {
     fn refuse_unsupported(&self) -> Result<(), ModelError> {
         let document = &self.document;
         let refuse = |place: &Place, what| Err(self.error(place, ErrorKind::Unsupported { what }));
-        if let Some(event) = document.events.first() {
-            return refuse(&event.place, "[events] are");
-        }
         let simulation = &document.simulation;
         if let Some(method) = &simulation.method
             && !matches!(method.value, Method::Bdf | Method::Adams)

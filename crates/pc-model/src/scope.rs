@@ -23,6 +23,8 @@ pub(crate) enum Stage {
     Constraint,
     /// The energy or a force: everything but accelerations.
     Dynamics,
+    /// An event: everything but accelerations.
+    Event,
     /// Integrals and outputs: everything.
     Observation,
 }
@@ -36,6 +38,7 @@ impl Stage {
             Stage::Position => "the mass, inertia, position or rotation of a body",
             Stage::Constraint => "a constraint",
             Stage::Dynamics => "the Lagrangian or a force",
+            Stage::Event => "an event",
             Stage::Observation => "an integral or output",
         }
     }
@@ -46,7 +49,7 @@ impl Stage {
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position => "parameters, coordinates and t",
-            Stage::Constraint | Stage::Dynamics | Stage::Observation => "declared names",
+            Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Observation => "declared names",
         }
     }
 }
@@ -292,7 +295,9 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
             Stage::Start | Stage::Kinematics | Stage::Position => true,
-            Stage::Definition | Stage::Constraint | Stage::Dynamics | Stage::Observation => false,
+            Stage::Definition | Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Observation => {
+                false
+            }
         };
         if refused {
             let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };

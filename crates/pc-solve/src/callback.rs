@@ -104,6 +104,20 @@ impl<F> UserData<F> {
         unsafe { self.0.as_mut() }.linear = work;
     }
 
+    /// Says that CVODES has been started anew at y(t) = y.
+    pub(crate) fn restart(&mut self, t: f64, y: &[f64])
+    where
+        F: VectorField,
+    {
+        // SAFETY: owned and live, borrowed exclusively.
+        let callbacks = unsafe { self.0.as_mut() };
+        callbacks.linear.forget_counts();
+        if let Some(offset) = &mut callbacks.offset {
+            offset.clear();
+        }
+        callbacks.field.restart(t, y);
+    }
+
     pub(crate) fn into_field(self) -> F {
         let callbacks = std::mem::ManuallyDrop::new(self).0;
         // SAFETY: made by `Box::leak` in `new`, and `drop` will not run.

@@ -1,5 +1,8 @@
 //! The integrator.
 
+mod dense;
+mod hybrid;
+mod restart;
 mod setup;
 
 use std::ffi::{c_int, c_void};
@@ -18,6 +21,8 @@ use crate::handles::{Memory, NonlinearIteration, Vector};
 use crate::linear::{Linear, LinearSolver};
 use crate::options::finite;
 use crate::statistics::Statistics;
+
+pub use hybrid::Hybrid;
 
 /// An integration of ẏ = f(t, y) by CVODES, owning the vector field.
 ///
@@ -52,6 +57,9 @@ pub struct Cvode<F> {
     /// Steps in sequence that have ended at the same time, and the last failure got over in them.
     idle_steps: u32,
     idle_failure: Option<Failure>,
+    /// The work before the last restart, and whether there has been no step since.
+    earlier: Statistics,
+    restarted: bool,
 }
 
 /// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
@@ -78,6 +86,11 @@ pub enum Ending {
     Completed,
     /// An observer stopped it.
     Stopped,
+    /// A terminal event.
+    Event {
+        /// Its number among the events.
+        event: usize,
+    },
 }
 
 impl<F: VectorField> Cvode<F> {
@@ -188,7 +201,11 @@ impl<F: VectorField> Cvode<F> {
 
     /// The work so far.
     pub fn statistics(&self) -> Statistics {
-        Statistics::read(&self.memory, self.linear.as_ref().map(|_| self.callbacks.linear()))
+        if self.restarted {
+            return self.earlier;
+        }
+        let linear = self.linear.as_ref().map(|_| self.callbacks.linear());
+        self.earlier.followed_by(Statistics::read(&self.memory, linear))
     }
 
     /// The linear solver of Newton's iteration, as chosen or as the field made it; none for the fixed-point iteration.
@@ -331,6 +348,7 @@ impl<F: VectorField> Cvode<F> {
         // CVODES minds its stop time only if the target is not nearer.
         let target = self.stop_time.unwrap_or(towards);
         let mut t = self.step_time;
+        self.restarted = false;
         // SAFETY: all is live and of one context; callbacks use only the user data, which nobody holds meanwhile.
         let code =
             unsafe { sys::CVode(self.memory.raw(), target, self.work.raw(), &raw mut t, sys::CV_ONE_STEP) };

@@ -40,7 +40,12 @@ impl SolveError {
         match self {
             SolveError::Integration(error) => match error.reason {
                 Reason::Cvode { code, .. } => Some(code),
-                Reason::Overflow { .. } | Reason::Projection { .. } | Reason::Stalled => None,
+                Reason::Overflow { .. }
+                | Reason::Projection { .. }
+                | Reason::Stalled
+                | Reason::Event { .. }
+                | Reason::Reset { .. }
+                | Reason::Accumulation { .. } => None,
             },
             SolveError::Input(_) | SolveError::Setup { .. } => None,
         }
@@ -84,6 +89,14 @@ impl fmt::Display for IntegrationError {
                 "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
             ),
             Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+            Reason::Event { event, t } => {
+                write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
+            }
+            Reason::Reset { event, t } => write!(f, "the event {event} cannot reset the state at t = {t}"),
+            Reason::Accumulation { event, occurrences, t } => write!(
+                f,
+                "the event {event} occurs infinitely often before t = {t} ({occurrences} times up to t = {time})"
+            ),
         }
     }
 }
@@ -125,6 +138,32 @@ pub enum Reason {
     /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
     /// wall it in.
     Stalled,
+
+    /// The function of an event, or of one together with it, could not be evaluated.
+    Event {
+        /// Its name.
+        event: String,
+        /// Time of the state at which it was evaluated.
+        t: f64,
+    },
+
+    /// An event did not give a new state.
+    Reset {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// An event [accumulates](crate::Accumulation).
+    Accumulation {
+        /// Its name.
+        event: String,
+        /// How often it has occurred.
+        occurrences: u64,
+        /// The time that its occurrences approach, if their distances go on as a geometric series.
+        t: f64,
+    },
 }
 
 /// A number that is not finite, written by a vector field that reported no failure, or never written.
@@ -174,6 +213,30 @@ pub enum NonFinite {
         /// NaN or an infinity.
         value: f64,
         /// The time of the step.
+        t: f64,
+    },
+
+    /// The function of an event.
+    #[error("the function of the event {event} is {value} at t = {t}")]
+    Event {
+        /// Its name.
+        event: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
+    /// A component of a state after a reset.
+    #[error("the event {event} sets {component} to {value} at t = {t}")]
+    Reset {
+        /// Its name.
+        event: String,
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// When it occurred.
         t: f64,
     },
 }
@@ -344,6 +407,17 @@ pub enum InputError {
         requested: f64,
         /// The stop time.
         stop_time: f64,
+    },
+
+    /// A time outside what a dense output covers.
+    #[error("t = {requested} lies outside the dense output, which goes from {start} to {end}")]
+    OutsideSpan {
+        /// The time asked for.
+        requested: f64,
+        /// Where the output begins.
+        start: f64,
+        /// Where it ends.
+        end: f64,
     },
 
     /// Interpolation before the first step.

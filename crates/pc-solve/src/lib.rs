@@ -28,8 +28,11 @@
 mod callback;
 mod code;
 mod context;
+mod crossing;
 mod cvode;
+mod dense;
 mod error;
+mod events;
 mod fn_field;
 mod handles;
 mod inequality;
@@ -41,13 +44,18 @@ mod statistics;
 mod trajectory;
 
 pub use code::Code;
-pub use cvode::{Cvode, Ending};
+pub use cvode::{Cvode, Ending, Hybrid};
+pub use dense::{DenseOutput, Segment};
 pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
+pub use events::{Accumulation, Direction, Event, Events, FnEvents, Occurrence};
 pub use fn_field::{FnField, from_fn};
 pub use inequality::Inequality;
 pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use options::{Method, NonlinearSolver, Options, Tolerance};
 pub use pc_expr::{Failure, Pattern, VectorField};
-pub use solve::{solve, solve_observed};
+pub use solve::{
+    HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,
+    solve_with_events_observed,
+};
 pub use statistics::Statistics;
 pub use trajectory::Trajectory;

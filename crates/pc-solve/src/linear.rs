@@ -44,6 +44,13 @@ pub(crate) struct Work {
 }
 
 impl Work {
+    /// Counts from the beginning, as CVODES does after a new start.
+    pub(crate) fn forget_counts(&mut self) {
+        if let Some(quotients) = &mut self.quotients {
+            quotients.forget_evaluations();
+        }
+    }
+
     /// Evaluations of f for difference quotients of ours, which CVODES does not count.
     pub(crate) fn quotient_evaluations(&self) -> u64 {
         self.quotients.as_ref().map_or(0, Quotients::evaluations)

@@ -22,6 +22,11 @@ impl Offset {
         Offset { d: vec![0.0; dim], state: vec![0.0; dim] }
     }
 
+    /// d = 0, for a new start.
+    pub(crate) fn clear(&mut self) {
+        self.d.fill(0.0);
+    }
+
     /// y = z + d
     pub(crate) fn state_of(&mut self, z: &[f64]) -> &[f64] {
         for ((state, z), d) in self.state.iter_mut().zip(z).zip(&self.d) {

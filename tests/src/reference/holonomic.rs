@@ -388,4 +388,31 @@ pub(super) const HOLONOMIC: &[Reference] = &[
         state: &[4.062127614161406, -3.034499902007452, -16.68620227861797],
         conserved: &["across", "hyperbola"],
     },
+    // Between events: a fall without a floor.
+    Reference {
+        model: "bouncing-ball",
+        t_end: 3.0,
+        columns: &["y", "y'"],
+        start: &[1.0, 0.0],
+        state: &[-43.145, -29.43],
+        conserved: &["energy"],
+    },
+    // Between events: on the edge s = 1 for ever, φ = α − (α − φ₀) cosh t.
+    Reference {
+        model: "rocking-block",
+        t_end: 6.0,
+        columns: &["φ", "s", "ω"],
+        start: &[0.1, 1.0, 0.0],
+        state: &[-19.97156361224559, 1.0, -20.17131573702792],
+        conserved: &["energy"],
+    },
+    // Between events: slipping for ever, V t − x = F_k + (F_s − F_k) cos t + V sin t.
+    Reference {
+        model: "stick-slip-block",
+        t_end: 20.0,
+        columns: &["x", "σ", "v"],
+        start: &[-1.0, 1.0, 0.0],
+        state: &[8.83948634372949, 1.0, 0.7524315944571178],
+        conserved: &[],
+    },
 ];

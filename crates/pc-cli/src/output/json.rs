@@ -20,5 +20,10 @@ pub(super) fn write(run: &Run, out: &mut dyn Write) -> io::Result<()> {
         serde_json::to_writer(&mut *out, row)?;
         writeln!(out, "{}", if i < last { "," } else { "" })?;
     }
-    writeln!(out, "],\n\"summary\": {}\n}}", summary::json(run))
+    writeln!(out, "],")?;
+    if !run.events.is_empty() {
+        let occurred = |&(event, t): &(usize, f64)| json!({ "name": run.events[event], "time": t });
+        writeln!(out, "\"events\": {},", run.occurrences.iter().map(occurred).collect::<Value>())?;
+    }
+    writeln!(out, "\"summary\": {}\n}}", summary::json(run))
 }

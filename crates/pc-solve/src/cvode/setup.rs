@@ -13,6 +13,7 @@ use crate::handles::{Memory, NonlinearIteration, Vector};
 use crate::inequality::{self, Inequality};
 use crate::linear::{self, Linear};
 use crate::options::{Method, Options, Tolerance, check_length, finite};
+use crate::statistics::Statistics;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
@@ -79,6 +80,8 @@ impl<F: VectorField> Cvode<F> {
             stop_time: None,
             idle_steps: 0,
             idle_failure: None,
+            earlier: Statistics::default(),
+            restarted: false,
         };
         cvode.set_stop_time(options.stop_time)?;
         Ok(cvode)

@@ -42,6 +42,10 @@ impl Quotients {
         }
     }
 
+    pub(super) fn forget_evaluations(&mut self) {
+        self.evaluations = 0;
+    }
+
     pub(super) fn evaluations(&self) -> u64 {
         self.evaluations
     }

@@ -1,0 +1,128 @@
+//! The events of a model on the states that are integrated, whatever their form.
+
+use pc_expr::{Backend, Evaluator, Program};
+use pc_mech::{MechError, Motion, VectorField};
+use pc_model::{Assembly, Form, Model, ModelError, document};
+use pc_solve::{Direction, Event, Events, Failure};
+
+use crate::flow::{Reading, inputs};
+
+/// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
+/// larger, is no rounding.
+const OFF: f64 = 1e-8;
+
+/// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
+#[derive(Debug)]
+pub struct FlowEvents {
+    events: Vec<Event>,
+    reading: Reading,
+    functions: Evaluator,
+    resets: Vec<Reset>,
+    /// The motion under constraints, which knows where they are satisfied.
+    constraints: Option<Motion>,
+}
+
+/// Components of (x, η) and their new values.
+#[derive(Debug)]
+struct Reset {
+    places: Vec<usize>,
+    values: Evaluator,
+}
+
+/// A reset to where constraints do not allow the system to be.
+#[derive(Debug, thiserror::Error)]
+#[error("its reset leaves the constraints: {coordinate} would have to be {allowed}, not {given}")]
+struct OffConstraints {
+    coordinate: String,
+    given: f64,
+    allowed: f64,
+}
+
+impl FlowEvents {
+    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities where there
+    /// are multipliers.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be compiled.
+    pub fn new(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        reading: &Reading,
+        watch: &Motion,
+    ) -> Result<FlowEvents, ModelError> {
+        let system = &assembly.system;
+        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+        let inputs = inputs(system, &state);
+        let compiled = |values: &[_]| {
+            let program = Program::new(system.graph(), &inputs, values);
+            let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;
+            Ok(Evaluator::new(program, Backend::Interpreter))
+        };
+        let declared = &assembly.events;
+        let functions: Vec<_> = declared.iter().map(|event| event.when).collect();
+        let resets = declared.iter().map(|event| {
+            let (places, values): (Vec<_>, Vec<_>) = event.resets.iter().copied().unzip();
+            Ok(Reset { places, values: compiled(&values)? })
+        });
+        let held = matches!(assembly.bound.form(), Form::Held(_)) && !declared.is_empty();
+        Ok(FlowEvents {
+            events: declared.iter().map(event).collect(),
+            reading: reading.clone(),
+            functions: compiled(&functions)?,
+            resets: resets.collect::<Result<_, ModelError>>()?,
+            constraints: held.then(|| watch.clone()),
+        })
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+}
+
+fn event(event: &pc_model::Event<'_>) -> Event {
+    let direction = match event.direction {
+        document::Direction::Rising => Direction::Rising,
+        document::Direction::Falling => Direction::Falling,
+        document::Direction::Both => Direction::Both,
+    };
+    let resets = !event.resets.is_empty();
+    Event::new(&event.name).direction(direction).terminal(event.terminal).resetting(resets)
+}
+
+impl Events for FlowEvents {
+    fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let all = self.reading.read(t, y).map_err(Failure::recoverable)?;
+        self.functions.eval(t, &all, self.reading.parameters(), values);
+        Ok(())
+    }
+
+    /// The new values all come of the state before; velocities are then moved to where constraints allow them.
+    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
+        let Reset { places, values } = &mut self.resets[event];
+        let mut new = vec![0.0; places.len()];
+        values.eval(t, &all, self.reading.parameters(), &mut new);
+        for (&place, value) in places.iter().zip(new) {
+            all[place] = value;
+        }
+        if let Some(motion) = self.constraints.as_mut().filter(|_| all.iter().all(|value| value.is_finite()))
+        {
+            let given = all.clone();
+            motion.project(t, &mut all)?;
+            for i in 0..motion.coordinates() {
+                let (given, allowed) = (given[i], all[i]);
+                if (given - allowed).abs() > OFF * given.abs().max(1.0) {
+                    let coordinate = motion.component_name(i);
+                    return Err(Failure::fatal(OffConstraints { coordinate, given, allowed }));
+                }
+            }
+        }
+        y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
+        Ok(())
+    }
+}

@@ -1,0 +1,251 @@
+//! `pc run` with events: times in closed form, in both forms of the equations, and what is said and kept of them.
+
+use std::f64::consts::TAU;
+use std::io::{Read, Write};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn pc(model: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
+    let mut child = command
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    child.wait_with_output().expect("pc ends")
+}
+
+fn said(output: &Output) -> String {
+    let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+/// What `-o FILE.json` keeps of a run that ends well.
+fn kept(model: &str, name: &str, arguments: &[&str]) -> Value {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("run.json").display().to_string();
+    let output = pc(model, &[&["run", name, "-o", &path], arguments].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
+fn times(run: &Value, event: &str) -> Vec<f64> {
+    let events = run["events"].as_array().expect("a list").iter();
+    events.filter(|e| e["name"] == event).map(|e| e["time"].as_f64().expect("a number")).collect()
+}
+
+/// In both forms and by both methods, at tolerances whose error over the run is below the 1e-10 asked for.
+fn sharply(name: &str, check: impl Fn(&Value)) {
+    for form in ["poincare", "canonical"] {
+        for method in ["adams", "bdf"] {
+            let sharp = ["--rtol", "1e-13", "--atol", "1e-15", "--form", form, "--method", method];
+            check(&kept("", name, &sharp));
+        }
+    }
+}
+
+#[track_caller]
+fn assert_close(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-10, "{found} is not {expected}");
+    }
+}
+
+/// t₀ = √(2h/g), then flights of 2 t₀ eⁿ.
+#[test]
+fn the_ball_bounces() {
+    sharply("bouncing-ball", |run| {
+        let (mut t, mut flight) = ((2.0_f64 / 9.81).sqrt(), 2.0 * (2.0_f64 / 9.81).sqrt());
+        let mut expected = Vec::new();
+        while t < 3.0 {
+            expected.push(t);
+            flight *= 0.8;
+            t += flight;
+        }
+        assert_close(&times(run, "bounce"), &expected);
+        assert_eq!(run["summary"]["keeps_energy"], false);
+    });
+}
+
+/// A slip takes (2π − 2 arctan q)/ω, q = 1, ω = 1; a stop 2 (F_s − F_k)/(k V) = 2.
+#[test]
+fn the_block_sticks_and_slips() {
+    sharply("stick-slip-block", |run| {
+        let slip = TAU * 0.75;
+        let period = slip + 2.0;
+        assert_close(&times(run, "stick"), &[slip, slip + period, slip + 2.0 * period]);
+        assert_close(&times(run, "slip"), &[period, 2.0 * period]);
+        // Stuck where the spring pulls with 2 F_k − F_s = 0, and at rest, exactly.
+        let last = run["rows"].as_array().and_then(|rows| rows.last()).expect("rows");
+        assert_eq!((last[2].as_f64(), last[3].as_f64()), (Some(0.0), Some(0.0)));
+        assert!((last[1].as_f64().expect("x") - (slip + 2.0 * period) / 2.0).abs() < 1e-10);
+    });
+}
+
+/// Upright after arcosh 1/(1 − φ_n/α) from rest at φ_n; 1 − (1 − φ_(n+1)/α)² = r² (1 − (1 − φ_n/α)²).
+#[test]
+fn the_block_rocks() {
+    sharply("rocking-block", |run| {
+        let mut rest = 0.5_f64; // 1 − φ₀/α
+        let mut t = (1.0 / rest).acosh();
+        let mut expected = Vec::new();
+        while t < 6.0 {
+            expected.push(t);
+            rest = (1.0 - 0.81 * (1.0 - rest * rest)).sqrt();
+            t += 2.0 * (1.0 / rest).acosh();
+        }
+        assert!(expected.len() >= 3);
+        assert_close(&times(run, "impact"), &expected);
+    });
+}
+
+/// The bead of a pendulum held by a multiplier, of length 1, that hits a wall below its point of suspension.
+const BEAD: &str = r#"
+[parameters]
+w = 0.0
+[coordinates]
+x = 1.0
+y = 0.0
+[constraints]
+circle = "(x^2 + y^2 - 1)/2"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+potential = "y"
+[events.wall]
+when = "x - w"
+direction = "falling"
+reset = { "x'" = "-x'", "y'" = "3" }
+[simulation]
+t_end = 12.0
+"#;
+
+/// The velocity after the reset is moved to where the constraint allows it, by the shortest way: y' goes.
+#[test]
+fn resets_under_constraints_end_on_them() {
+    let sharp = ["--rtol", "1e-11", "--atol", "1e-13"];
+    let run = kept(BEAD, "-", &sharp);
+    let quarter = 1.854_074_677_301_371_9; // K(1/2), from the horizontal to the vertical
+    let found = times(&run, "wall");
+    for (n, t) in found.iter().enumerate() {
+        let expected = quarter * (2 * n + 1) as f64;
+        assert!((t - expected).abs() < 1e-8, "{t} is not {expected}"); // 1000 rtol
+    }
+    assert_eq!(found.len(), 3);
+    assert!(run["summary"]["constraints"]["circle"].as_f64().expect("a number") < 1e-12);
+
+    // In momenta of y' alone, which fails at x = 0: with the wall before it.
+    let aside = |form| {
+        let run =
+            kept(BEAD, "-", &[&sharp[..], &["--set", "w=0.5", "--t-end", "4", "--form", form]].concat());
+        times(&run, "wall")
+    };
+    let (poincare, canonical) = (aside("poincare"), aside("canonical"));
+    assert!(poincare.len() > 1 && poincare.len() == canonical.len(), "{poincare:?} {canonical:?}");
+    for (a, b) in poincare.iter().zip(&canonical) {
+        assert!((a - b).abs() < 1e-8, "{a} is not {b}"); // 1000 rtol
+    }
+    let off = BEAD.replace("\"y'\" = \"3\"", "x = \"x + 0.25\"");
+    let output = pc(&off, &["run", "-"]);
+    assert_eq!(output.status.code(), Some(5));
+    let text = said(&output);
+    assert!(text.contains("the event wall cannot reset the state at t = 1.85407"), "{text}");
+    assert!(text.contains("its reset leaves the constraints: x would have to be "), "{text}");
+}
+
+const FALL: &str = r#"
+[coordinates]
+y = 1.0
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "y"
+[events.half]
+when = "y - 1/2"
+[events.floor]
+when = "y"
+terminal = true
+[events.never]
+when = "y + 1"
+[simulation]
+t_end = 3.0
+samples = 4
+"#;
+
+#[test]
+fn a_terminal_event_ends_the_run_well() {
+    let output = pc(FALL, &["run", "-"]);
+    assert_eq!(output.status.code(), Some(0));
+    let table = String::from_utf8(output.stdout.clone()).expect("UTF-8");
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    assert_eq!((rows[0][0], rows[1][0]), (0.0, 1.0));
+    assert!(
+        rows.len() == 3 && (rows[2][0] - 2.0_f64.sqrt()).abs() < 1e-9 && rows[2][1].abs() < 1e-9,
+        "{rows:?}"
+    );
+    let text = said(&output);
+    for line in [
+        "  time     0 to 3, ended by the event floor at 1.41421356",
+        "  events   half   once: 1\n           floor  once: 1.41421356",
+        "\n           never  does not occur\n",
+        "  end      t = 1.41421356",
+    ] {
+        assert!(text.contains(line), "{line} is not in\n{text}");
+    }
+    let run = kept(FALL, "-", &[]);
+    assert_eq!(run["summary"]["ending"], "event");
+    assert!((run["summary"]["t_reached"].as_f64().expect("a number") - 2.0_f64.sqrt()).abs() < 1e-9);
+    assert_eq!(
+        (times(&run, "half").len(), times(&run, "floor").len(), times(&run, "never").len()),
+        (1, 1, 0)
+    );
+}
+
+#[test]
+fn bounces_that_accumulate_end_a_run_with_their_limit() {
+    let output = pc("", &["run", "bouncing-ball", "--t-end", "9", "--samples", "10", "--set", "e=0.5"]);
+    assert_eq!(output.status.code(), Some(5));
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout).lines().count(),
+        1 + 2,
+        "rows before the limit at 1.354…"
+    );
+    let text = said(&output);
+    assert!(text.contains("because: the event bounce occurs infinitely often before t = 1.35457"), "{text}");
+}
+
+#[test]
+fn an_archive_keeps_the_times_of_each_event() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("a.npz");
+    let output = pc("", &["run", "stick-slip-block", "-o", path.to_str().expect("UTF-8")]);
+    assert_eq!(output.status.code(), Some(0));
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(path).expect("a file")).expect("an archive");
+    for (name, expected) in [("events/slip.npy", 2), ("events/stick.npy", 3), ("x.npy", 201)] {
+        let mut bytes = Vec::new();
+        archive.by_name(name).expect(name).read_to_end(&mut bytes).expect("an array");
+        let values: Vec<f64> = npyz::NpyFile::new(&bytes[..]).expect("npy").into_vec().expect("f64");
+        assert_eq!(values.len(), expected);
+    }
+}
+
+#[test]
+fn emitted_source_says_that_it_has_no_events() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().display().to_string();
+    let output = pc("", &["emit", "bouncing-ball", "--lang", "c", "-o", &path]);
+    assert_eq!(output.status.code(), Some(0));
+    let note = "The events of the model are not part of this source";
+    assert!(said(&output).contains(note));
+    let files = std::fs::read_dir(directory.path()).expect("a directory");
+    let texts = files.map(|file| std::fs::read_to_string(file.expect("a file").path()).expect("text"));
+    assert!(texts.into_iter().any(|text| text.contains(note)));
+}

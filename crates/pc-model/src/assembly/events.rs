@@ -1,0 +1,105 @@
+//! The section `[events.NAME]`.
+
+use pc_mech::Expr;
+
+use super::Assembler;
+use crate::bound::{Bound, Form};
+use crate::document::{self, Direction, NamedExpression};
+use crate::error::ModelError;
+use crate::event::Event;
+use crate::fault::Fault;
+use crate::scope::{Stage, entry};
+
+impl<'g> Assembler<'g, '_> {
+    /// What passes through zero, ẋ = b η + b_0 put in, in the order of the file.
+    pub(super) fn crossings(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
+        let events = &self.model.document().events;
+        events.iter().map(|event| self.at_event(&event.when, x_dot)).collect()
+    }
+
+    /// The events with these crossings, and their resets, which need have no value before the event.
+    pub(super) fn events(
+        &mut self,
+        crossings: Vec<Expr<'g>>,
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+        bound: &Bound<'g>,
+    ) -> Result<Vec<Event<'g>>, ModelError> {
+        let mut events = Vec::with_capacity(crossings.len());
+        for (event, when) in self.model.document().events.iter().zip(crossings) {
+            let mut resets = Vec::with_capacity(event.reset.len());
+            for reset in &event.reset {
+                let place = self.reset_place(reset, bound)?;
+                resets.push((place, self.at_event(&reset.expression, x_dot)?));
+            }
+            events.push(Event {
+                name: event.name.text.clone(),
+                when,
+                direction: event.direction.as_ref().map_or(Direction::Both, |direction| direction.value),
+                terminal: event.terminal.as_ref().is_some_and(|terminal| terminal.value),
+                resets,
+            });
+        }
+        Ok(events)
+    }
+
+    fn at_event(
+        &mut self,
+        expression: &document::Expression,
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Expr<'g>, ModelError> {
+        let value = self.scope.resolve(expression, Stage::Event)?;
+        Ok(self.graph.substitute(&[value], x_dot)[0])
+    }
+
+    /// The component of (x, η) that a reset gives a new value.
+    fn reset_place(&self, reset: &NamedExpression, bound: &Bound<'g>) -> Result<usize, ModelError> {
+        let document = self.model.document();
+        let name = reset.name.text.as_str();
+        let n = document.coordinates.len();
+        let place_of = |name: &str| document.coordinates.iter().position(|x| x.name.text == name);
+        let refuse = |fault| Err(self.model.error(&reset.name.place, fault));
+        if let Some(coordinate) = name.strip_suffix('\'') {
+            let Some(place) = place_of(coordinate) else {
+                let mut name = reset.name.clone();
+                name.text = coordinate.to_owned();
+                return Err(self.not_a_coordinate(&name));
+            };
+            return match self.is_lagrangian_form() {
+                true => Ok(n + place),
+                false => refuse(self.not_reset(name, "a velocity that quasi-velocities give")),
+            };
+        }
+        if let Some(place) = place_of(name) {
+            return Ok(place);
+        }
+        if let Some(place) = document.quasi_velocities.iter().position(|eta| eta.name.text == name) {
+            return match bound.form() {
+                Form::Vanishing(constrained)
+                    if constrained.vanishing().contains(&self.graph.symbol(name)) =>
+                {
+                    refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero"))
+                }
+                Form::Free | Form::Vanishing(_) | Form::Held(_) => Ok(n + place),
+            };
+        }
+        let what = match () {
+            () if name == "t" => "time",
+            () if document.parameters.iter().any(|parameter| parameter.name.text == name) => "a parameter",
+            () if entry(&document.definitions, name).is_some() => "a definition",
+            () if entry(&document.integrals, name).is_some() => "an integral",
+            () if entry(&document.outputs, name).is_some() => "an output",
+            () => "declared nowhere",
+        };
+        refuse(self.not_reset(name, what))
+    }
+
+    fn not_reset(&self, name: &str, what: &'static str) -> Fault {
+        let document = self.model.document();
+        let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
+        let velocities: Vec<String> = match self.is_lagrangian_form() {
+            true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).collect(),
+            false => document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
+        };
+        Fault::NotReset { name: name.to_owned(), what, known: coordinates.chain(velocities).collect() }
+    }
+}

@@ -1,0 +1,234 @@
+//! Where functions along a step pass through zero first.
+
+use crate::events::Direction;
+
+/// Times closer than so many units of rounding are the same: events between are simultaneous.
+const SAME: f64 = 64.0 * f64::EPSILON;
+/// A passage is located between two times so many units of rounding apart.
+const LOCATED: f64 = 4.0 * f64::EPSILON;
+
+/// All functions at a time.
+#[derive(Debug, Clone)]
+pub(crate) struct Sample {
+    pub(crate) t: f64,
+    pub(crate) values: Vec<f64>,
+}
+
+/// On which side of zero each function is.
+#[derive(Debug, Clone)]
+pub(crate) struct Sides {
+    directions: Vec<Direction>,
+    /// 1, −1, or 0 while a function is at zero.
+    sides: Vec<f64>,
+    /// What a function that is or was at zero has to exceed to have left it.
+    noise: Vec<f64>,
+}
+
+/// What is found along a step.
+pub(crate) enum Passage {
+    /// Nothing occurs up to this sample.
+    Clear(Sample),
+    /// Some functions pass through zero in their directions.
+    Crossing(Crossing),
+}
+
+/// Functions that pass through zero together.
+pub(crate) struct Crossing {
+    /// Just after the first of them has.
+    pub(crate) at: Sample,
+    /// Which they are, in order.
+    pub(crate) events: Vec<usize>,
+    /// What each function has to exceed there to be told from zero.
+    pub(crate) noise: Vec<f64>,
+}
+
+impl Sides {
+    pub(crate) fn new(directions: Vec<Direction>, values: &[f64]) -> Sides {
+        let n = directions.len();
+        let mut sides = Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] };
+        sides.pass(values);
+        sides
+    }
+
+    /// Where the functions are after a jump of the state.
+    pub(crate) fn jump(&mut self, values: &[f64], noise: Vec<f64>) {
+        self.sides.fill(0.0);
+        self.noise = noise;
+        self.pass(values);
+    }
+
+    /// After the functions `events` have passed through zero at `values`. One that is exactly zero has yet to show on
+    /// which side it goes on; all have to exceed `noise` to pass again.
+    pub(crate) fn cross(&mut self, events: &[usize], values: &[f64], noise: &[f64]) {
+        for &i in events {
+            self.sides[i] = if values[i] == 0.0 { 0.0 } else { -self.sides[i] };
+            self.noise[i] = noise[i];
+        }
+        self.pass(values);
+    }
+
+    fn crossed(&self, i: usize, value: f64) -> bool {
+        let (side, noise) = (self.sides[i], self.noise[i]);
+        let through = if noise == 0.0 { value * side <= 0.0 } else { value * side < -noise };
+        through && self.directions[i].leaves(side)
+    }
+
+    fn any_crossed(&self, values: &[f64]) -> bool {
+        values.iter().enumerate().any(|(i, &value)| self.crossed(i, value))
+    }
+
+    /// Takes note of values at which nothing has occurred.
+    fn pass(&mut self, values: &[f64]) {
+        for ((side, noise), &value) in self.sides.iter_mut().zip(&mut self.noise).zip(values) {
+            if value.abs() > *noise {
+                *side = 1.0_f64.copysign(value);
+                *noise = 0.0;
+            }
+        }
+    }
+
+    /// Looks from `from` to the time `to` for the first passage, with values by `evaluate`.
+    ///
+    /// The functions are seen at both ends and in the middle, at first also near `from` while one of them is at zero, and
+    /// at the vertex of the parabola through these values where it suggests that a function passes through zero twice.
+    pub(crate) fn first<E>(
+        &mut self,
+        from: Sample,
+        to: f64,
+        evaluate: &mut impl FnMut(f64) -> Result<Vec<f64>, E>,
+    ) -> Result<Passage, E> {
+        let length = to - from.t;
+        let mut sample = |t: f64| Ok(Sample { t, values: evaluate(t)? });
+        let mut left = from;
+        let early = if self.sides.contains(&0.0) { Some(1e-3) } else { None };
+        for fraction in early.into_iter().chain([0.5]) {
+            let right = sample(left.t + fraction * (to - left.t))?;
+            if self.any_crossed(&right.values) {
+                return self.locate(left, right, &mut sample).map(Passage::Crossing);
+            }
+            if fraction == 0.5 {
+                let end = sample(to)?;
+                let mut samples = self.hidden([&left, &right, &end], &mut sample)?;
+                samples.extend([right, end]);
+                samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
+                for right in samples {
+                    if self.any_crossed(&right.values) {
+                        return self.locate(left, right, &mut sample).map(Passage::Crossing);
+                    }
+                    self.pass(&right.values);
+                    left = right;
+                }
+                break;
+            }
+            self.pass(&right.values);
+            left = right;
+        }
+        Ok(Passage::Clear(left))
+    }
+
+    /// Samples at which functions are beyond zero that are on one side of it at all three.
+    fn hidden<E>(
+        &self,
+        three: [&Sample; 3],
+        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+    ) -> Result<Vec<Sample>, E> {
+        let mut found = Vec::new();
+        for i in 0..self.sides.len() {
+            let side = self.sides[i];
+            let mut points = three.map(|sample| (sample.t, sample.values[i] * side));
+            if points.iter().any(|&(_, u)| u <= 0.0) {
+                continue;
+            }
+            while let Some((t, predicted)) = vertex(points) {
+                let least = points.iter().map(|&(_, u)| u).fold(f64::INFINITY, f64::min);
+                if predicted > 0.25 * least {
+                    break;
+                }
+                let lowest = sample(t)?;
+                let u = lowest.values[i] * side;
+                if u < 0.0 {
+                    found.push(lowest);
+                    break;
+                }
+                if u > 0.5 * least {
+                    break;
+                }
+                let [a, b, c] = points;
+                points = if (t - a.0) / (c.0 - a.0) < (b.0 - a.0) / (c.0 - a.0) {
+                    [a, (t, u), b]
+                } else {
+                    [b, (t, u), c]
+                };
+            }
+        }
+        Ok(found)
+    }
+
+    /// The first passage between `a`, where there has been none, and `b`, where there has: by secants, each the earliest
+    /// of those of the functions, with Illinois' weights, and by bisection where these are slow.
+    fn locate<E>(
+        &self,
+        mut a: Sample,
+        mut b: Sample,
+        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+    ) -> Result<Crossing, E> {
+        let scale = b.t.abs().max(1e-3 * (b.t - a.t).abs());
+        let tolerance = LOCATED * scale;
+        let (mut weight_a, mut weight_b, mut b_moved) = (1.0, 1.0, None);
+        let (mut goal, mut tries) = ((b.t - a.t).abs() / 8.0, 0);
+        loop {
+            let width = b.t - a.t;
+            if width.abs() <= tolerance {
+                break;
+            }
+            if width.abs() <= goal {
+                (goal, tries) = (width.abs() / 8.0, 0);
+            }
+            tries += 1;
+            let fraction = if tries > 4 {
+                0.5
+            } else {
+                let crossed = (0..self.sides.len()).filter(|&i| self.crossed(i, b.values[i]));
+                let secant = |i: usize| {
+                    let (before, after) = (weight_a * a.values[i], weight_b * b.values[i]);
+                    before / (before - after)
+                };
+                crossed.map(secant).fold(1.0, f64::min)
+            };
+            let edge = 0.5 * tolerance / width.abs();
+            let middle = sample(a.t + fraction.clamp(edge, 1.0 - edge) * width)?;
+            let moves_b = self.any_crossed(&middle.values);
+            let repeated = if b_moved == Some(moves_b) { 0.5 } else { 1.0 };
+            if moves_b {
+                (weight_a, weight_b) = (if repeated < 1.0 { 0.5 * weight_a } else { 1.0 }, 1.0);
+                b = middle;
+            } else {
+                (weight_a, weight_b) = (1.0, if repeated < 1.0 { 0.5 * weight_b } else { 1.0 });
+                a = middle;
+            }
+            b_moved = Some(moves_b);
+        }
+        let after = sample(b.t + (SAME * scale).copysign(b.t - a.t))?;
+        let together = |i: &usize| self.crossed(*i, b.values[*i]) || self.crossed(*i, after.values[*i]);
+        let events: Vec<usize> = (0..self.sides.len()).filter(together).collect();
+        let noise = (0..self.sides.len()).map(|i| {
+            let near = [&a, &b, &after].map(|sample| sample.values[i].abs());
+            let rounding = 16.0 * near.into_iter().fold(0.0, f64::max);
+            if events.contains(&i) { rounding } else { 0.0 }
+        });
+        let noise = noise.collect();
+        Ok(Crossing { at: b, events, noise })
+    }
+}
+
+/// The lowest point of the parabola through three points in order, if it lies between the outer ones.
+fn vertex([(t0, u0), (t1, u1), (t2, u2)]: [(f64, f64); 3]) -> Option<(f64, f64)> {
+    let slope = (u1 - u0) / (t1 - t0);
+    let bend = ((u2 - u1) / (t2 - t1) - slope) / (t2 - t0);
+    if bend <= 0.0 {
+        return None;
+    }
+    let t = 0.5 * (t0 + t1) - 0.5 * slope / bend;
+    let inside = (t - t0) / (t2 - t0);
+    (inside > 0.0 && inside < 1.0).then_some((t, u0 + (t - t0) * (slope + bend * (t - t1))))
+}

@@ -1,0 +1,249 @@
+//! An integration that events interrupt.
+
+mod occur;
+mod run;
+
+use std::fmt;
+
+use pc_expr::{Failure, VectorField};
+
+use super::{Cvode, Ending};
+use crate::crossing::{Passage, Sample, Sides};
+use crate::error::{NonFinite, Reason, SolveError};
+use crate::events::{Accumulation, Event, Events, History};
+use crate::statistics::Statistics;
+
+/// An integration of ẏ = f(t, y) by [`Cvode`] with [`Events`].
+///
+/// Along each internal step the functions of the events are evaluated at states on the polynomial of the method,
+/// [projected](VectorField::project) where the field does so: at its ends, in its middle, and where these values suggest
+/// that a function passes through zero twice. A passage is located to 1e-15 of the time, and functions that pass
+/// through zero within 1e-14 of each other do so together: their resets are applied one after the other, in the order of
+/// the events, each to the state that the one before has left. After a reset the integration
+/// [restarts](Cvode::restart) with the same options.
+///
+/// CVODES has a search for roots of its own. It is not used because it knows neither projected states nor what a reset
+/// does to the functions, reports one of two roots in a step at most, and may report a root again after a restart.
+///
+/// Where the integration stands at an event, its state is y⁺: states are continuous from the right in the direction of
+/// integration. After an error or a panic it stands where it last could.
+pub struct Hybrid<F, E> {
+    /// Stands at the end of its last step; its `time` is that of this integration.
+    engine: Cvode<F>,
+    events: E,
+    accumulation: Accumulation,
+    histories: Vec<History>,
+    start: f64,
+    /// 1 or −1 since the first step.
+    direction: Option<f64>,
+    /// Up to where it is known what occurs, the functions there, and y.
+    front: Sample,
+    front_state: Vec<f64>,
+    sides: Sides,
+    /// The events that occur at the front and have yet to be dealt with.
+    due: Vec<usize>,
+    noise: Vec<f64>,
+    /// y(`time`), unless `time` is the front.
+    output: Vec<f64>,
+}
+
+impl<F: VectorField, E: Events> fmt::Debug for Hybrid<F, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Hybrid")
+            .field("time", &self.time())
+            .field("state", &self.state())
+            .field("events", &self.events.events())
+            .field("statistics", &self.statistics())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: VectorField> Cvode<F> {
+    /// This integration, with events from where it stands.
+    ///
+    /// # Errors
+    /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there.
+    pub fn with_events<E: Events>(self, events: E) -> Result<Hybrid<F, E>, SolveError> {
+        let (t, state) = (self.time, self.state().to_vec());
+        let n = events.events().len();
+        let directions: Vec<_> = events.events().iter().map(Event::crosses).collect();
+        let mut engine = self;
+        if t != engine.step_time {
+            engine.restart(t, &state)?;
+        }
+        let mut hybrid = Hybrid {
+            engine,
+            events,
+            accumulation: Accumulation::default(),
+            histories: vec![History::default(); n],
+            start: t,
+            direction: None,
+            front: Sample { t, values: Vec::new() },
+            output: state.clone(),
+            front_state: state.clone(),
+            sides: Sides::new(Vec::new(), &[]),
+            due: Vec::new(),
+            noise: Vec::new(),
+        };
+        hybrid.front.values = hybrid.evaluate(t, &state)?;
+        hybrid.sides = Sides::new(directions, &hybrid.front.values);
+        Ok(hybrid)
+    }
+}
+
+impl<F: VectorField, E: Events> Hybrid<F, E> {
+    /// When occurrences of an event accumulate, which is an error.
+    pub fn accumulation(self, accumulation: Accumulation) -> Self {
+        Hybrid { accumulation, ..self }
+    }
+
+    /// Where the integration stands: the time last advanced to, or that of the event that stopped it.
+    pub fn time(&self) -> f64 {
+        self.engine.time
+    }
+
+    /// y at [`time`](Hybrid::time).
+    pub fn state(&self) -> &[f64] {
+        if self.engine.time == self.front.t { &self.front_state } else { &self.output }
+    }
+
+    /// The vector field.
+    pub fn field(&self) -> &F {
+        self.engine.field()
+    }
+
+    /// The events.
+    pub fn events(&self) -> &E {
+        &self.events
+    }
+
+    /// Ends the integration and gives the vector field and the events back.
+    pub fn into_parts(self) -> (F, E) {
+        (self.engine.into_field(), self.events)
+    }
+
+    /// The work so far, that before restarts included.
+    pub fn statistics(&self) -> Statistics {
+        self.engine.statistics()
+    }
+
+    /// Moves the front to the next event or to the end of the next internal step.
+    fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
+        if self.engine.step_time == self.front.t {
+            if self.arrives(towards)? {
+                return Ok(());
+            }
+            let time = self.engine.time;
+            self.engine.internal_step(towards)?;
+            self.engine.time = time;
+            self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));
+        }
+        let to = self.engine.step_time;
+        let (engine, events) = (&mut self.engine, &mut self.events);
+        let mut blamed = 0;
+        let mut values = |t: f64| {
+            let state = if t == to {
+                engine.step_state.as_slice()
+            } else {
+                engine.interpolate_to_work(t, 0).map_err(Fault::Solver)?;
+                engine.work.as_slice()
+            };
+            values_at(events, t, state, &mut blamed).map_err(|failure| Fault::Event(t, failure))
+        };
+        let mut sides = self.sides.clone();
+        let passage = match sides.first(self.front.clone(), to, &mut values) {
+            Ok(passage) => passage,
+            Err(Fault::Solver(error)) => return Err(self.stay(error)),
+            Err(Fault::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
+        };
+        if self.engine.time == self.front.t {
+            self.output.copy_from_slice(&self.front_state);
+        }
+        let (front, noise, due) = match passage {
+            Passage::Clear(end) => (end, Vec::new(), Vec::new()),
+            Passage::Crossing(crossing) => (crossing.at, crossing.noise, crossing.events),
+        };
+        let state = if front.t == to {
+            self.engine.step_state.as_slice()
+        } else {
+            if let Err(error) = self.engine.interpolate_to_work(front.t, 0) {
+                return Err(self.stay(error));
+            }
+            self.engine.work.as_slice()
+        };
+        self.front_state.copy_from_slice(state);
+        (self.front, self.sides, self.noise, self.due) = (front, sides, noise, due);
+        Ok(())
+    }
+
+    /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.
+    fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
+        let target = self.engine.stop_time.unwrap_or(towards);
+        let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
+        if !self.engine.restarted || (target - self.front.t).abs() > rounding {
+            return Ok(false);
+        }
+        let time = self.engine.time;
+        self.engine.restart(target, &self.front_state)?;
+        self.engine.direction = self.direction;
+        self.engine.time = if time == self.front.t { target } else { time };
+        self.front.t = target;
+        Ok(true)
+    }
+
+    /// The functions at a state.
+    fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut blamed = 0;
+        values_at(&mut self.events, t, state, &mut blamed)
+            .map_err(|failure| self.event_error(blamed, t, failure))
+    }
+
+    /// The error of a function, of the first event if the failure does not say of which.
+    fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
+        let reason = Reason::Event { event: self.name(event), t };
+        self.failed(reason, Some(failure))
+    }
+
+    fn name(&self, event: usize) -> String {
+        self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
+    }
+
+    /// The error of something that did not succeed beyond the front, where the integration stands then.
+    fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+        let error = self.engine.failed(reason, failure);
+        self.stay(error)
+    }
+
+    fn stay(&mut self, mut error: SolveError) -> SolveError {
+        self.engine.time = self.front.t;
+        if let SolveError::Integration(error) = &mut error {
+            error.time = self.front.t;
+            error.state.clone_from(&self.front_state);
+        }
+        error
+    }
+}
+
+enum Fault {
+    Solver(SolveError),
+    Event(f64, Failure),
+}
+
+/// The functions at a state; `blamed` is the first that is not finite.
+fn values_at(
+    events: &mut impl Events,
+    t: f64,
+    state: &[f64],
+    blamed: &mut usize,
+) -> Result<Vec<f64>, Failure> {
+    let mut values = vec![f64::NAN; events.events().len()];
+    events.evaluate(t, state, &mut values)?;
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values),
+        Some(i) => {
+            *blamed = i;
+            let event = events.events()[i].name().to_owned();
+            Err(Failure::recoverable(NonFinite::Event { event, value: values[i], t }))
+        }
+    }
+}

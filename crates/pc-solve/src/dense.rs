@@ -1,0 +1,140 @@
+//! Motions as functions of time.
+
+use crate::error::InputError;
+
+/// A motion along one internal step, or along a part of it: a polynomial of degree q + 1, q the order of the step.
+///
+/// With s = (t − end)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(end) (end − start)ᵏ/k! from the method's own
+/// polynomial for k ≤ q. That begins where the step did, to rounding, but where states are projected after a step: then
+/// it misses the start by the error of a step, and the term of degree q + 1 makes up for it. So the segments of a motion
+/// fit together, and are of the order of the method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    start: f64,
+    end: f64,
+    dim: usize,
+    /// c_0, then c_1, …
+    coefficients: Vec<f64>,
+}
+
+impl Segment {
+    /// The constant segment; derivatives follow.
+    pub(crate) fn new(start: f64, (end, state): (f64, &[f64])) -> Segment {
+        Segment { start, end, dim: state.len(), coefficients: state.to_vec() }
+    }
+
+    /// Adds the term of degree k from the derivative of that order at the end.
+    pub(crate) fn push(&mut self, k: u32, derivative: &[f64]) {
+        let factor = (1..=k).fold(1.0, |factor, j| factor * (self.end - self.start) / f64::from(j));
+        self.coefficients.extend(derivative.iter().map(|derivative| derivative * factor));
+    }
+
+    /// Adds the term that makes the polynomial begin at `start`.
+    pub(crate) fn close(&mut self, start: &[f64]) {
+        let mut reached = vec![0.0; self.dim];
+        self.evaluate(self.start, &mut reached);
+        let odd = (self.coefficients.len() / self.dim) % 2 == 1;
+        let gap = start.iter().zip(&reached).map(|(start, reached)| start - reached);
+        self.coefficients.extend(gap.map(|gap| if odd { -gap } else { gap }));
+    }
+
+    /// Start and end.
+    pub fn span(&self) -> (f64, f64) {
+        (self.start, self.end)
+    }
+
+    /// Number of components of a state.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Writes y(t) to `state`, of length [`dim`](Segment::dim); outside the span the polynomial goes on.
+    pub fn evaluate(&self, t: f64, state: &mut [f64]) {
+        let s = (t - self.end) / (self.end - self.start);
+        state.fill(0.0);
+        for terms in self.coefficients.chunks_exact(self.dim).rev() {
+            for (state, term) in state.iter_mut().zip(terms) {
+                *state = *state * s + term;
+            }
+        }
+    }
+
+    /// Writes ẏ(t) to `rate`, of length [`dim`](Segment::dim).
+    pub fn derivative(&self, t: f64, rate: &mut [f64]) {
+        let length = self.end - self.start;
+        let s = (t - self.end) / length;
+        rate.fill(0.0);
+        for (k, terms) in self.coefficients.chunks_exact(self.dim).enumerate().skip(1).rev() {
+            for (rate, term) in rate.iter_mut().zip(terms) {
+                *rate = *rate * s + k as f64 * term / length;
+            }
+        }
+    }
+}
+
+/// A motion as a function of time: [`Segment`]s, each from where the one before ends.
+///
+/// It is continuous but for resets at events, where it is continuous from the right in the direction of integration. At
+/// its very end it is the limit from before. States inside steps are not projected.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DenseOutput {
+    segments: Vec<Segment>,
+}
+
+impl DenseOutput {
+    /// The segments in order.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Start and end; none if there is no segment.
+    pub fn span(&self) -> Option<(f64, f64)> {
+        Some((self.segments.first()?.start, self.segments.last()?.end))
+    }
+
+    /// y(t).
+    ///
+    /// # Errors
+    /// [`InputError::OutsideSpan`]
+    pub fn evaluate(&self, t: f64) -> Result<Vec<f64>, InputError> {
+        let segment = self.at(t)?;
+        let mut state = vec![0.0; segment.dim];
+        segment.evaluate(t, &mut state);
+        Ok(state)
+    }
+
+    /// ẏ(t), which may jump by the error of a step from one step to the next.
+    ///
+    /// # Errors
+    /// [`InputError::OutsideSpan`]
+    pub fn derivative(&self, t: f64) -> Result<Vec<f64>, InputError> {
+        let segment = self.at(t)?;
+        let mut rate = vec![0.0; segment.dim];
+        segment.derivative(t, &mut rate);
+        Ok(rate)
+    }
+
+    fn at(&self, t: f64) -> Result<&Segment, InputError> {
+        let (start, end) = self.span().unwrap_or((f64::NAN, f64::NAN));
+        let direction = 1.0_f64.copysign(end - start);
+        let covered = (t - start) * direction >= 0.0 && (end - t) * direction >= 0.0;
+        let after = self.segments.partition_point(|segment| (segment.end - t) * direction <= 0.0);
+        match self.segments.get(after).or(self.segments.last()) {
+            Some(segment) if covered => Ok(segment),
+            _ => Err(InputError::OutsideSpan { requested: t, start, end }),
+        }
+    }
+}
+
+impl Extend<Segment> for DenseOutput {
+    /// Goes on with segments, the first from where the last ends.
+    fn extend<I: IntoIterator<Item = Segment>>(&mut self, segments: I) {
+        self.segments.extend(segments);
+    }
+}
+
+impl FromIterator<Segment> for DenseOutput {
+    fn from_iter<I: IntoIterator<Item = Segment>>(segments: I) -> Self {
+        DenseOutput { segments: segments.into_iter().collect() }
+    }
+}

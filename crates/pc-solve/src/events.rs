@@ -1,0 +1,288 @@
+//! Events: zeros of functions g(t, y) along a motion, and what happens to the state there.
+
+use std::collections::VecDeque;
+use std::fmt;
+
+use pc_expr::Failure;
+
+/// In which direction a function passes through zero as the integration goes: against time where it goes backwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either way.
+    #[default]
+    Both,
+}
+
+impl Direction {
+    /// Whether a function that leaves the side of this sign passes through zero in this direction.
+    pub(crate) fn leaves(self, side: f64) -> bool {
+        match self {
+            Direction::Rising => side < 0.0,
+            Direction::Falling => side > 0.0,
+            Direction::Both => side != 0.0,
+        }
+    }
+}
+
+/// What is to be known of an event beside its function.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Event {
+    name: String,
+    direction: Direction,
+    terminal: bool,
+    resets: bool,
+}
+
+impl Event {
+    /// An event of either direction that changes nothing.
+    pub fn new(name: impl Into<String>) -> Event {
+        Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
+    }
+
+    /// The same with a direction.
+    pub fn direction(self, direction: Direction) -> Event {
+        Event { direction, ..self }
+    }
+
+    /// Where its function rises through zero.
+    pub fn rising(self) -> Event {
+        self.direction(Direction::Rising)
+    }
+
+    /// Where its function falls through zero.
+    pub fn falling(self) -> Event {
+        self.direction(Direction::Falling)
+    }
+
+    /// Whether the integration ends there.
+    pub fn terminal(self, terminal: bool) -> Event {
+        Event { terminal, ..self }
+    }
+
+    /// Whether [`Events::reset`] changes the state there.
+    pub fn resetting(self, resets: bool) -> Event {
+        Event { resets, ..self }
+    }
+
+    /// Its name, for messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its direction.
+    pub fn crosses(&self) -> Direction {
+        self.direction
+    }
+
+    /// Whether the integration ends there.
+    pub fn is_terminal(&self) -> bool {
+        self.terminal
+    }
+
+    /// Whether it resets the state.
+    pub fn resets(&self) -> bool {
+        self.resets
+    }
+}
+
+/// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
+///
+/// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to be
+/// exactly zero at the end of a step. A function that only touches zero causes none. A function that is zero at the
+/// start, or is brought to zero by a reset, has to leave zero first. A reset that carries a function from one sign to
+/// the other is no passage through zero.
+pub trait Events {
+    /// The events, in the order in which simultaneous ones are dealt with.
+    fn events(&self) -> &[Event];
+
+    /// Writes g_i(t, y) to `values`, as many as there are events.
+    ///
+    /// # Errors
+    /// [`Failure`] where one is not defined; it ends the integration.
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+
+    /// Turns y⁻ into y⁺ at event number `event`; called only if that [resets](Event::resets).
+    ///
+    /// # Errors
+    /// [`Failure`] where the new state is not defined; it ends the integration.
+    fn reset(&mut self, _event: usize, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+impl<E: Events + ?Sized> Events for &mut E {
+    fn events(&self) -> &[Event] {
+        (**self).events()
+    }
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        (**self).evaluate(t, y, values)
+    }
+    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        (**self).reset(event, t, y)
+    }
+}
+
+type Function<'a> = Box<dyn FnMut(f64, &[f64]) -> Result<f64, Failure> + 'a>;
+type Reset<'a> = Box<dyn FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a>;
+
+/// Events given by closures.
+///
+/// ```
+/// use pc_solve::{Event, FnEvents, Options, from_fn, solve_with_events};
+///
+/// // A ball falls on the floor and loses half of its speed there.
+/// let ball = from_fn(2, |_t, y, ydot| {
+///     ydot[0] = y[1];
+///     ydot[1] = -9.81;
+///     Ok(())
+/// });
+/// let bounce = FnEvents::new().with_reset(
+///     Event::new("bounce").falling(),
+///     |_t, y| Ok(y[0]),
+///     |_t, y| {
+///         y[1] *= -0.5;
+///         Ok(())
+///     },
+/// );
+/// let motion = solve_with_events(ball, 0.0, &[1.0, 0.0], &[0.5, 0.8], &Options::default(), bounce)?;
+/// assert!((motion.occurrences[0].time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Default)]
+pub struct FnEvents<'a> {
+    events: Vec<Event>,
+    functions: Vec<Function<'a>>,
+    resets: Vec<Option<Reset<'a>>>,
+}
+
+impl<'a> FnEvents<'a> {
+    /// No events.
+    pub fn new() -> Self {
+        FnEvents::default()
+    }
+
+    /// One more event, where `function` of (t, y) passes through zero.
+    pub fn with(
+        mut self,
+        event: Event,
+        function: impl FnMut(f64, &[f64]) -> Result<f64, Failure> + 'a,
+    ) -> Self {
+        self.events.push(event.resetting(false));
+        self.functions.push(Box::new(function));
+        self.resets.push(None);
+        self
+    }
+
+    /// One more event, and the reset that turns y⁻ into y⁺ there.
+    pub fn with_reset(
+        mut self,
+        event: Event,
+        function: impl FnMut(f64, &[f64]) -> Result<f64, Failure> + 'a,
+        reset: impl FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a,
+    ) -> Self {
+        self.events.push(event.resetting(true));
+        self.functions.push(Box::new(function));
+        self.resets.push(Some(Box::new(reset)));
+        self
+    }
+}
+
+impl fmt::Debug for FnEvents<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FnEvents").field("events", &self.events).finish_non_exhaustive()
+    }
+}
+
+impl Events for FnEvents<'_> {
+    fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        for (value, function) in values.iter_mut().zip(&mut self.functions) {
+            *value = function(t, y)?;
+        }
+        Ok(())
+    }
+
+    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        match self.resets.get_mut(event) {
+            Some(Some(reset)) => reset(t, y),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// An event that occurred.
+///
+/// Of simultaneous ones each has the state that it found, which those before it may have changed, and the one it left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Occurrence {
+    /// Its number among the [events](Events::events), from 0.
+    pub event: usize,
+    /// When.
+    pub time: f64,
+    /// y⁻
+    pub state_before: Vec<f64>,
+    /// y⁺, projected where the field [projects](pc_expr::VectorField::has_projection) its states; y⁻ where nothing is reset.
+    pub state_after: Vec<f64>,
+}
+
+/// When occurrences of an event are taken to accumulate, as the bounces of a ball do that comes to rest: no integration
+/// from event to event passes that time.
+///
+/// So they are if each of their last distances is less than the one before, and going on as a geometric series would bring
+/// them to an end within a small part of the time since the start; or if they lie within 1e-12 of that time. An event
+/// whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and may be
+/// passed without being seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accumulation {
+    /// So many occurrences of one event in sequence, at least 4.
+    pub occurrences: usize,
+    /// The part of the time since the start.
+    pub within: f64,
+}
+
+impl Default for Accumulation {
+    /// 6 occurrences and a rest of 1e-6.
+    fn default() -> Self {
+        Accumulation { occurrences: 6, within: 1e-6 }
+    }
+}
+
+/// The last times of one event, and how often it has occurred.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct History {
+    times: VecDeque<f64>,
+    pub(crate) occurrences: u64,
+}
+
+impl History {
+    /// Notes an occurrence at `t` of an integration from `start`. If the last ones accumulate, the time at which they
+    /// do, by the sum of a geometric series [Aitken 1926].
+    pub(crate) fn note(&mut self, t: f64, start: f64, limit: Accumulation) -> Option<f64> {
+        let kept = limit.occurrences.max(4);
+        self.occurrences += 1;
+        self.times.push_back(t);
+        if self.times.len() > kept {
+            self.times.pop_front();
+        }
+        if self.times.len() < kept {
+            return None;
+        }
+        let since = (t - start).abs();
+        let times = self.times.iter();
+        let distances: Vec<f64> = times.clone().skip(1).zip(times).map(|(b, a)| b - a).collect();
+        let (last, before) = (distances[kept - 2], distances[kept - 3]);
+        let rest = last * last / (before - last);
+        let shrink = distances.windows(2).all(|pair| pair[1].abs() < pair[0].abs());
+        if shrink && rest.abs() <= limit.within * since {
+            return Some(t + rest);
+        }
+        ((t - self.times[0]).abs() <= 1e-12 * since).then_some(t)
+    }
+}
