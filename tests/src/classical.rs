@@ -17,8 +17,9 @@ mod tops;
 
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
 pub use nonholonomic::{
-    ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle, snakeboard,
-    stiff_sleigh, suslov, suslov_in_gravity, tilted_disk, vertical_disk, vertical_disk_driven, voronets,
+    appell_hamel, ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle,
+    snakeboard, stiff_sleigh, suslov, suslov_in_gravity, tilted_disk, vertical_disk, vertical_disk_driven,
+    voronets,
 };
 pub use orbit::Satellite;
 pub use particles::{
@@ -46,6 +47,7 @@ const SATELLITE: Satellite = Satellite { inertia: [0.1, 0.2, 0.25], mass: 1.0 };
 
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
+    "appell-hamel",
     "ball-in-cylinder",
     "bouncing-ball",
     "carriage",
@@ -95,6 +97,7 @@ pub const MODELS: &[&str] = &[
 /// The classical equations of a built-in model with its parameters, or `None` for a name not in [`MODELS`].
 pub fn classical(model: &str) -> Option<Rhs> {
     Some(match model {
+        "appell-hamel" => |_, y, dy| appell_hamel(y, dy),
         "ball-in-cylinder" => |_, y, dy| ball_in_cylinder(y, dy),
         "bouncing-ball" => |_, y, dy| dy.copy_from_slice(&[y[1], -9.81]),
         "carriage" => |_, y, dy| carriage(y, dy),
@@ -227,7 +230,7 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
         }
         "snakeboard" | "snakeboard-driven" => (rng.uniform(0.0, 3.0), rng.normals(8)),
         "stiff-sleigh" | "voronets-rheonomic" => (rng.uniform(0.0, 3.0), rng.normals(5)),
-        "suslov" | "suslov-in-gravity" | "vertical-disk-driven" => (0.0, rng.normals(6)),
+        "appell-hamel" | "suslov" | "suslov-in-gravity" | "vertical-disk-driven" => (0.0, rng.normals(6)),
         "tilted-disk" => {
             let mut y = rng.normals(8);
             y[3] = rng.uniform(0.4, 2.6);

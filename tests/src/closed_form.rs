@@ -5,8 +5,8 @@
 mod nonholonomic;
 
 pub use nonholonomic::{
-    ball_in_cylinder, carriage_turn, chaplygin_sleigh, nonholonomic_particle, suslov, turntable_centre,
-    vertical_disk,
+    appell_hamel, ball_in_cylinder, carriage_turn, chaplygin_sleigh, constant_speed, nonholonomic_particle,
+    suslov, turntable_centre, vertical_disk,
 };
 
 /// Jacobi's elliptic functions (sn, cn, dn) of the argument `u` and the parameter m = k², 0 ≤ m < 1, by the

@@ -444,6 +444,22 @@ pub const MALFORMED: &[Malformed] = &[
         cure: Some(("t_end = 1.0\nrtol = -1e-6", "t_end = 1.0")),
     },
     Malformed {
+        file: "nonlinear-and-affine.toml",
+        fault: "a constraint called nonlinear that is affine",
+        exit_code: 3,
+        mentions: &["\"nonlinear\""],
+        line: Some(12),
+        cure: Some((", kind = \"nonlinear\"", "")),
+    },
+    Malformed {
+        file: "nonlinear-constraint.toml",
+        fault: "a constraint quadratic in the velocities that is not said to be so",
+        exit_code: 3,
+        mentions: &["x'^2 + y'^2 - 25"],
+        line: Some(12),
+        cure: Some(("\"nonholonomic\"", "\"nonlinear\"")),
+    },
+    Malformed {
         file: "number-for-title.toml",
         fault: "a number where a title must stand",
         exit_code: 3,

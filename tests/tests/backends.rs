@@ -59,6 +59,9 @@ impl Subject {
         let states = (0..STATES).map(|_| {
             let (t, mut y) = sample(&mut random);
             scatter(&mut y, &angles, fastest, &mut random);
+            if name == SINGULAR_AT_REST && y[angles.len()..].iter().all(|&rate| rate == 0.0) {
+                y[angles.len()..].fill(1.0);
+            }
             // Within what keeps the samples regular, so that parameters are seen to be arguments.
             let p = values.iter().map(|value| value * (1.0 + random.uniform(0.0, 0.05)));
             [t].into_iter().chain(y).chain(p).collect()
@@ -121,6 +124,9 @@ impl Subject {
         worst
     }
 }
+
+/// A model whose constraint, homogeneous in the velocities, restricts none of them where all vanish.
+const SINGULAR_AT_REST: &str = "appell-hamel";
 
 fn is_angle(name: &str) -> bool {
     ["ψ", "θ", "φ", "psi", "theta", "phi"].contains(&name)

@@ -6,7 +6,7 @@ use pc_nonholo::Kind;
 use serde_json::{Value, json};
 
 use crate::derive::Derived;
-use crate::text::say;
+use crate::text::{say, short, wrapped};
 
 /// What vanishes, a line a constraint.
 pub fn constraints(derived: &Derived<'_>) -> Vec<String> {
@@ -23,6 +23,7 @@ pub fn kind_in_words(kind: Kind) -> &'static str {
         Kind::Position => "holonomic",
         Kind::Integrable => "holonomic in disguise: integrable",
         Kind::Nonholonomic { .. } => "nonholonomic",
+        Kind::Nonlinear => "nonholonomic, not affine in the velocities",
     }
 }
 
@@ -55,10 +56,19 @@ pub fn say_dropped(assembly: &Assembly<'_>) {
     }
 }
 
-/// What is to be known of equations in the `free` velocities chosen from those that constraints bind; nothing where
-/// there is no choice.
+/// What is to be known of equations in the `free` velocities chosen from those that constraints bind, or in all where
+/// they bind none of them to others; nothing where there is no choice.
 pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
     let Form::Held(_) = assembly.bound.form() else { return None };
+    if let Some(held) = assembly.bound.nonlinear() {
+        let names: Vec<&str> = held.constraints().iter().map(Constraint::name).collect();
+        let are = if names.len() == 1 { "is an integral" } else { "are integrals" };
+        return Some(format!(
+            "The equations are in all velocities, with the reactions put in; {} {are} of them,\n\
+             and nothing takes errors of the integration back to the constraints.",
+            names.join(", ")
+        ));
+    }
     let free = free.quasi_velocities();
     let all = assembly.system.quasi_velocities().iter();
     let others: Vec<String> = all.filter(|eta| !free.contains(eta)).map(Expr::to_string).collect();
@@ -76,4 +86,59 @@ pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
 /// Says it, on standard error.
 pub fn say_choice(choice: &str) {
     say(format_args!("note: {}\n", choice.replace('\n', "\n      ")));
+}
+
+/// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
+pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
+    let Form::Held(held) = assembly.bound.form() else { return None };
+    let mut constraints = held.multipliers.constraints().iter();
+    let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
+    (!same).then_some(ENERGY_REMARK)
+}
+
+const ENERGY_REMARK: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral). \
+                             The energy of a run is that of all velocities.";
+
+/// Says where the start was moved, on standard error.
+pub fn say_moved(assembly: &Assembly<'_>) {
+    if let Some(written) = &assembly.written_start {
+        let frame = assembly.system.frame();
+        let names = frame.coordinates().iter().chain(assembly.system.quasi_velocities());
+        let moved =
+            names.zip(written.iter().zip(&assembly.start)).filter(|(_, (before, after))| before != after);
+        let moves = moved.map(|(name, (before, after))| {
+            format!("{name} = {} → {}", short(*before, 10), short(*after, 10))
+        });
+        match wrapped(moves, 80).as_slice() {
+            [] => say(format_args!("note: the start satisfies the constraints; it was not moved\n")),
+            lines => {
+                let lines = lines.join("\n      ");
+                say(format_args!("note: the start was moved to the constraints:\n      {lines}\n"));
+            }
+        }
+    }
+}
+
+/// Says that the kinetic energy is negative where it is, on standard error.
+pub fn say_negative_energy(assembly: &Assembly<'_>) {
+    if assembly.has_negative_energy() {
+        say(format_args!("note: {NEGATIVE_ENERGY}\n"));
+    }
+}
+
+/// Of a kinetic energy that is negative for some velocities.
+pub const NEGATIVE_ENERGY: &str = "the kinetic energy is negative for some velocities at the start: a mass or a moment of \
+                                   inertia has the wrong sign";
+
+/// Says which forces of reactions on bodies are not among the outputs, on standard error.
+pub fn say_undetermined(assembly: &Assembly<'_>) {
+    let left_out = assembly.bound.undetermined();
+    if !left_out.is_empty() {
+        let are = if left_out.len() == 1 { "is" } else { "are" };
+        say(format_args!(
+            "note: {} of the reactions {are} left out: the choice of coordinates ties velocities of bodies together, and \
+             virtual work does not tell forces between them\n",
+            left_out.join(", ")
+        ));
+    }
 }

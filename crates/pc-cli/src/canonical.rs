@@ -21,7 +21,7 @@ pub fn text(derived: &Derived<'_>, equations: &Canonical<'_>, operations: &Opera
         ("Kinematics", kinematics(system, equations.velocities())),
         ("Brackets", brackets(system, &[])),
         ("Momenta", lines(&momenta(equations, Style::Book))),
-        ("Hamiltonian", vec![equations.hamiltonian().display(Style::Book)]),
+        ("Hamiltonian", derived.with_remark(equations.hamiltonian().display(Style::Book))),
         ("Equations", lines(&equations.balance(Style::Book))),
         (cost, operations.lines()),
     ])

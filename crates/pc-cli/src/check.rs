@@ -13,7 +13,7 @@ use self::frame::FrameFacts;
 use self::integrals::Integral;
 use self::steady::Search;
 use crate::args::{CheckArguments, Format};
-use crate::binding::{dropped, kind_in_words};
+use crate::binding::{NEGATIVE_ENERGY, dropped, energy_remark, kind_in_words, say_moved};
 use crate::derive::{Operations, counted};
 use crate::error::CliError;
 use crate::input;
@@ -27,6 +27,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = Graph::new();
     let (assembly, equations) = input::derive(&model, &graph)?;
+    say_moved(&assembly);
     let report = Report::new(&model, &assembly, &equations)?;
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", report.text()),
@@ -46,6 +47,7 @@ struct Report<'g> {
     jacobi_residual: f64,
     algebra: String,
     mass_rank: usize,
+    negative_energy: bool,
     /// The number of its rows.
     free: usize,
     t_start: f64,
@@ -86,7 +88,15 @@ impl<'g> Report<'g> {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let integrals = integrals::integrals(equations, &near);
+        let mut integrals = integrals::integrals(equations, &near);
+        if assembly.bound.nonlinear().is_some() && assembly.keeps_energy() {
+            integrals::say_energy_is_kept(&mut integrals);
+        }
+        if energy_remark(assembly).is_some()
+            && let Some(energy) = energy_of_all(assembly, equations)
+        {
+            integrals::add_energy_of_all(&mut integrals, equations, &near, energy);
+        }
         Ok(Report {
             title: input::title(model).to_owned(),
             coordinates: names(frame.coordinates()),
@@ -97,6 +107,7 @@ impl<'g> Report<'g> {
             jacobi_residual: frame.jacobi_residual(structure, &near),
             algebra: frame::algebra(structure),
             mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
+            negative_energy: assembly.has_negative_energy(),
             free: equations.mass_matrix().rows(),
             t_start: assembly.t_start,
             start: assembly.start.clone(),
@@ -142,7 +153,7 @@ impl<'g> Report<'g> {
             ("Jacobi identity", vec![residual(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
             ("constraints", self.constraint_lines()),
-            ("mass matrix", vec![format!("symmetric, rank {} of {}", self.mass_rank, self.free)]),
+            ("mass matrix", self.mass_matrix_lines()),
             ("start", start),
             (
                 "rates there",
@@ -176,6 +187,12 @@ impl<'g> Report<'g> {
         text + &labelled("steady motion", LABEL, &self.steady.lines(WIDTH))
     }
 
+    fn mass_matrix_lines(&self) -> Vec<String> {
+        let rank = format!("symmetric, rank {} of {}", self.mass_rank, self.free);
+        let negative = self.negative_energy.then(|| NEGATIVE_ENERGY.to_owned());
+        [rank].into_iter().chain(negative).collect()
+    }
+
     fn constraint_lines(&self) -> Vec<String> {
         match self.constraints.as_slice() {
             [] => vec!["none".to_owned()],
@@ -199,11 +216,21 @@ impl<'g> Report<'g> {
             "jacobi_residual": self.jacobi_residual,
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,
+            "negative_energy": self.negative_energy,
             "start_residual": self.start_residual,
             "integrals": integrals,
             "steady_motion": self.steady.object(),
         })
     }
+}
+
+/// The energy of all velocities, which is that of a run, in the independent ones of the equations.
+fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
+    let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
+    let values = assembly.quasi_velocities_of(free).ok()?;
+    let known: Vec<(Expr<'g>, Expr<'g>)> = all.iter().copied().zip(values).collect();
+    let graph = assembly.system.graph();
+    Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
 /// The steady motion near the start of the equations of a model, of which `motion` is what is integrated.
@@ -214,6 +241,9 @@ fn steady_motion<'g>(
     integrals: &[Integral<'g>],
 ) -> Search {
     let system = equations.system();
+    if assembly.bound.nonlinear().is_some() {
+        return Search::Nonlinear;
+    }
     let start = assembly.start_of(&[system.frame().coordinates(), system.quasi_velocities()].concat());
     let Form::Held(held) = assembly.bound.form() else {
         return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
@@ -233,7 +263,7 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
         let words = kind_in_words(verdict.kind);
         let words = match verdict.kind {
             Kind::Nonholonomic { residual } => format!("{words}, by {} in a bracket", short(residual, 3)),
-            Kind::Position | Kind::Integrable => words.to_owned(),
+            Kind::Position | Kind::Integrable | Kind::Nonlinear => words.to_owned(),
         };
         (verdict.constraint.clone(), words)
     });
@@ -243,8 +273,9 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
 
 fn constraint(verdict: &Verdict) -> Value {
     let residual = match verdict.kind {
-        Kind::Nonholonomic { residual } => residual,
-        Kind::Position | Kind::Integrable => 0.0,
+        Kind::Nonholonomic { residual } => Some(residual),
+        Kind::Position | Kind::Integrable => Some(0.0),
+        Kind::Nonlinear => None, // not tried
     };
     json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
 }

@@ -8,7 +8,7 @@ use pc_nonholo::{Kind, NonholoError, Voronets};
 use serde_json::{Map, Value, json};
 
 use crate::args::{DeriveArguments, Form, Page};
-use crate::binding::{constraint_objects, constraints, say_dropped};
+use crate::binding::{constraint_objects, constraints, energy_remark, say_dropped, say_moved};
 use crate::canonical;
 use crate::error::CliError;
 use crate::input;
@@ -24,6 +24,7 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
+    say_moved(&assembly);
     let title = input::title(&model);
     let page = page(arguments, title, &assembly).map_err(|error| model.constraint_error(error))?;
     print(|out| write!(out, "{page}"))
@@ -65,6 +66,8 @@ pub struct Derived<'g> {
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
     /// The reactions with what they are equal to.
     pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
+    /// What is to be known of the energy.
+    pub energy_remark: Option<&'static str>,
 }
 
 impl<'g> Derived<'g> {
@@ -80,6 +83,7 @@ impl<'g> Derived<'g> {
             constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
             definitions: Vec::new(),
             reactions: Vec::new(),
+            energy_remark: energy_remark(assembly),
         };
         let with = |equations: Equations<'g>, multipliers: &Multipliers<'g>| Derived {
             equations,
@@ -93,7 +97,8 @@ impl<'g> Derived<'g> {
             (Form::Lagrange, Some(multipliers)) => {
                 let held = multipliers.in_velocities()?;
                 let system = held.equations().system().with_added_forces(&held.reaction_forces())?;
-                ("Lagrange's equations with multipliers", with(system.poincare()?, &held))
+                let derived = with(system.poincare()?, &held);
+                ("Lagrange's equations with multipliers", Derived { energy_remark: None, ..derived })
             }
             (Form::Voronets, Some(multipliers)) => {
                 let held = multipliers.in_velocities()?;
@@ -107,6 +112,12 @@ impl<'g> Derived<'g> {
                 let name =
                     if voronets.is_chaplygin() { "Chaplygin's equations" } else { "Voronets' equations" };
                 (name, with(voronets.system()?.poincare()?, &held))
+            }
+            (Form::Poincare, Some(held)) if held.is_nonlinear() => {
+                let system = held.equations().system().with_added_forces(&held.reaction_forces())?;
+                let reactions = bound.reactions(&assembly.at_start())?;
+                let name = "Poincaré's equations with multipliers";
+                (name, Derived { reactions, ..with(system.poincare()?, held) })
             }
             (Form::Poincare | Form::Canonical, _) => {
                 let reduced = bound.constrained(&assembly.at_start())?;
@@ -200,13 +211,18 @@ pub fn text(derived: &Derived<'_>, operations: &Operations) -> String {
         ("Brackets", brackets(equations.system(), &derived.vanishing)),
         ("Mass matrix", mass_matrix(equations)),
         ("Equations", balance(equations)),
-        ("Energy", vec![equations.energy().display(Style::Book)]),
+        ("Energy", derived.with_remark(equations.energy().display(Style::Book))),
         ("Reactions", aligned(reactions.iter().map(|(left, right)| (left, right)))),
         ("Operations of one right-hand side", operations.lines()),
     ])
 }
 
 impl<'g> Derived<'g> {
+    /// The energy, and a line with what is to be known of it.
+    pub fn with_remark(&self, energy: String) -> Vec<String> {
+        [energy].into_iter().chain(self.energy_remark.map(|remark| format!("({remark})"))).collect()
+    }
+
     /// The left-hand side of a constraint, written out if it is a quasi-velocity.
     pub fn vanishing(&self, constraint: &Constraint<'g>) -> Expr<'g> {
         let expression = constraint.expression();
@@ -351,6 +367,9 @@ pub fn object(title: &str, derived: &Derived<'_>, operations: &Operations) -> Va
     object.insert("mass_matrix".to_owned(), json!(matrix(&equations.mass_matrix().to_rows())));
     object.insert("equations".to_owned(), json!(strings(equations.right_hand_side())));
     object.insert("energy".to_owned(), json!(equations.energy().to_string()));
+    if let Some(remark) = derived.energy_remark {
+        object.insert("energy_remark".to_owned(), json!(remark));
+    }
     object.insert("operations".to_owned(), operations.object());
     Value::Object(object)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Graph, Language};
 
 use crate::args::{EmitArguments, Lang};
-use crate::binding::{choice, say_choice, say_dropped};
+use crate::binding::{choice, energy_remark, say_choice, say_dropped, say_moved};
 use crate::error::CliError;
 use crate::input;
 use crate::output::atomic;
@@ -30,10 +30,12 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(input::title(&model));
     say_dropped(&assembly);
+    say_moved(&assembly);
     let mut remarks = Vec::new();
     if let Some(remark) = choice(&assembly, equations.system()) {
         say_choice(&remark);
         remarks.push(remark);
+        remarks.extend(energy_remark(&assembly).map(str::to_owned));
     }
     if !assembly.events.is_empty() {
         say(format_args!("note: {NO_EVENTS}\n"));

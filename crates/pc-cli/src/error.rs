@@ -134,7 +134,8 @@ impl CliError {
         let mut source = self.source();
         while let Some(error) = source {
             let message = error.to_string();
-            if message != last {
+            // Some say what their source says, behind a word of their own.
+            if !last.ends_with(&message) {
                 report += &format!("\n  because: {message}");
             }
             last = message;

@@ -20,7 +20,7 @@ pub fn page(heading: &str, derived: &Derived<'_>) -> String {
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &derived.vanishing)),
             ("Equations", equations.balance(Style::Latex)),
-            ("Energy", vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
+            (&titled("Energy", derived), vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
             ("Reactions", set(&derived.reactions)),
         ],
     )
@@ -40,10 +40,18 @@ pub fn canonical_page(heading: &str, derived: &Derived<'_>, equations: &Canonica
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &[])),
             ("Momenta", canonical::momenta(equations, Style::Latex)),
-            ("Hamiltonian", vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))]),
+            (
+                &titled("Hamiltonian", derived),
+                vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))],
+            ),
             ("Equations", equations.balance(Style::Latex)),
         ],
     )
+}
+
+/// The title with what is to be known of the energy.
+fn titled(title: &str, derived: &Derived<'_>) -> String {
+    derived.energy_remark.map_or_else(|| title.to_owned(), |remark| format!("{title}. {remark}"))
 }
 
 fn displays(heading: &str, parts: &[(&str, Vec<(String, String)>)]) -> String {

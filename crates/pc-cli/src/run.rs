@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use pc_mech::{Expr, Graph};
-use pc_model::{Assembly, Form, Model};
+use pc_mech::Graph;
+use pc_model::Model;
 use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
 
 use crate::args::{Outputs, RunArguments, RunForm};
-use crate::binding::{choice, dropped, say_choice};
+use crate::binding::{choice, dropped, say_choice, say_moved, say_negative_energy, say_undetermined};
 use crate::error::CliError;
 use crate::flow::Flow;
 use crate::output::Destination;
@@ -118,6 +118,9 @@ pub fn integrate(
 ) -> Result<Run, CliError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
+    say_moved(&assembly);
+    say_negative_energy(&assembly);
+    say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
     let free = assembly.free_system().map_err(|error| model.constraint_error(error));
@@ -151,7 +154,7 @@ pub fn integrate(
         table: Table::new(&mut flow, &trajectory),
         constraints: residuals(&mut flow, &trajectory),
         dropped: dropped(&assembly),
-        keeps_energy: keeps_energy(&assembly),
+        keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
         statistics: *trajectory.statistics(),
         plan,
         events,
@@ -184,26 +187,6 @@ fn solve(
     {
         Ok(motion) => (motion, None),
         Err(failure) => (failure.reached, Some(failure.error)),
-    }
-}
-
-/// Whether nothing changes the energy of the table, no reset either: of all velocities where multipliers hold constraints, which must be
-/// homogeneous then, else of the free ones.
-fn keeps_energy(assembly: &Assembly<'_>) -> bool {
-    let system = &assembly.system;
-    if assembly.events.iter().any(|event| !event.resets.is_empty()) {
-        return false;
-    }
-    match assembly.bound.form() {
-        Form::Held(held) => {
-            let homogeneous = |(_, drift): (Vec<Expr<'_>>, Expr<'_>)| drift.is_zero();
-            let mut constraints = held.multipliers.constraints().iter();
-            system.energy_rate().is_zero()
-                && constraints.all(|constraint| constraint.coefficients(system).is_ok_and(homogeneous))
-        }
-        Form::Free | Form::Vanishing(_) => {
-            assembly.free_system().is_ok_and(|system| system.energy_rate().is_zero())
-        }
     }
 }
 

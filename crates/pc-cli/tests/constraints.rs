@@ -452,3 +452,165 @@ fn the_jacobian_of_held_motions_serves_bdf() {
     assert!(with.steps < 2000 && 2 * with.steps < 3 * without.steps, "{with:?} {without:?}");
     assert!(with.nonlinear_iterations < 2 * with.steps && with.nonlinear_failures < 10, "{with:?}");
 }
+
+/// Appell's and Hamel's machine: its forms, and which there are not.
+#[test]
+fn a_nonlinear_constraint_has_the_forms_with_multipliers() {
+    let text = stdout(&pc("", &["derive", "appell-hamel"]));
+    let lines = "  m z'' = -m g - 2 k² z' λ_drive\n";
+    assert!(
+        text.contains("drive: x'² - k² z'² + y'² = 0   (nonholonomic, not affine in the velocities)\n"),
+        "{text}"
+    );
+    assert!(text.contains(lines) && text.contains("\nReactions\n  λ_drive = "), "{text}");
+    let text = stdout(&pc("", &["derive", "appell-hamel", "--form", "lagrange"]));
+    assert!(text.contains(lines), "{text}");
+    let refused = pc("", &["derive", "appell-hamel", "--form", "voronets"]);
+    assert_eq!(refused.status.code(), Some(4));
+    assert_eq!(
+        stderr(&refused),
+        "pc: appell-hamel.toml:29:19: [constraints] drive.expr: Voronets' equations need constraints that are affine in \
+         the velocities; `drive` is not\n    drive = { expr = \"x'^2 + y'^2 - k^2*z'^2\", kind = \"nonlinear\" }\n\
+         \u{20}                     ^^^^^^^^^^^^^^^^^^^^^^\n  \
+         help: take a form with multipliers: poincare, lagrange, or canonical\n"
+    );
+    let report = json_of("", &["check", "appell-hamel", "--format", "json"]);
+    let kind =
+        json!([{ "name": "drive", "kind": "nonholonomic, not affine in the velocities", "residual": null }]);
+    assert_eq!(report["constraints"], kind);
+    let check = stdout(&pc("", &["check", "appell-hamel"]));
+    assert!(check.contains("energy     conserved (proved)\n"), "{check}");
+    assert!(
+        check.contains("steady motion      not looked for: a constraint is not affine in the velocities\n"),
+        "{check}"
+    );
+
+    let run = |arguments: &[&str]| table(&stdout(&pc("", &[&["run", "appell-hamel"], arguments].concat())));
+    let (names, rows) = run(&["--outputs", "reactions"]);
+    assert_eq!(names, ["t", "x", "y", "z", "x'", "y'", "z'", "direction", "energy", "λ_drive"]);
+    // λ = −½ m k² g ż/(k² ż² + k⁴ ż²) = −½ m g/((1 + k²) ż)
+    assert!(rows.iter().all(|row| (row[9] + 0.5 * 10.0 / 1.5625 / row[6]).abs() < 1e-8), "{rows:?}");
+    agree(&run(&["--form", "canonical"]), &(names, rows), 1e-7);
+    let text = stderr(&pc("", &["run", "appell-hamel", "--form", "canonical"]));
+    let note = "note: The equations are in all velocities, with the reactions put in; drive is an integral of them,\n      \
+                and nothing takes errors of the integration back to the constraints.\n";
+    assert!(text.starts_with(note), "{text}");
+    let directory = tempfile::tempdir().expect("a directory");
+    let output =
+        pc("", &["emit", "appell-hamel", "--lang", "c", "-o", directory.path().to_str().expect("UTF-8")]);
+    assert!(stderr(&output).starts_with(note), "{}", stderr(&output));
+}
+
+#[test]
+fn forces_on_bodies_are_columns_beside_the_reactions() {
+    let pendulum = "[coordinates]\nx = 0.6\nz = -0.8\n[bodies.bob]\nmass = 2\nposition = [\"x\", 0, \"z\"]\n\
+                    force = [0, 0, -19.6]\n[constraints]\nlength = \"x^2 + z^2 - 1\"\n[simulation]\nt_end = 1.0\nsamples = 5\n";
+    let (names, rows) = run(pendulum, &["--outputs", "reactions"]);
+    let columns = ["λ_length", "F_length_bob_x", "F_length_bob_y", "F_length_bob_z"];
+    assert_eq!(names[names.len() - 4..], columns);
+    for row in &rows {
+        // The rod pulls along itself with m g cos θ + m l θ̇².
+        let tension = -19.6 * row[2] + 2.0 * (row[3].powi(2) + row[4].powi(2));
+        assert!(
+            (row[7] + tension * row[1]).abs() < 1e-12 && (row[9] + tension * row[2]).abs() < 1e-12,
+            "{row:?}"
+        );
+    }
+    agree(&run(pendulum, &["--outputs", "reactions", "--form", "canonical"]), &(names, rows), 1e-6);
+    let tied = pendulum
+        .replace("[constraints]", "[bodies.end]\nmass = 1\nposition = [\"2*x\", 0, 0]\n[constraints]");
+    let text = stderr(&pc(&tied, &["run", "-", "--outputs", "reactions"]));
+    let note = "note: the force on `bob`, the force on `end` of the reactions are left out: the choice of coordinates ties \
+                velocities of bodies together, and virtual work does not tell forces between them\n";
+    assert!(text.starts_with(note), "{text}");
+}
+
+/// On a belt Jacobi's integral is not the energy of the run, and each is called by its name.
+#[test]
+fn energies_are_told_apart() {
+    let belt = "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n\"y'\" = 2.0\n[constraints]\n\
+                belt = \"y' - 2 - x\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[simulation]\nt_end = 1.0\n";
+    let remark = "(This energy is y·η − L of the independent velocities (Jacobi's integral). The energy of a run is that of \
+                  all velocities.)\n";
+    for (form, expected) in [("poincare", true), ("canonical", true), ("voronets", true), ("lagrange", false)]
+    {
+        let text = stdout(&pc(belt, &["derive", "-", "--form", form]));
+        assert_eq!(text.contains(remark), expected, "{form}: {text}");
+        let page = stdout(&pc(belt, &["derive", "-", "--form", form, "--format", "latex"]));
+        assert_eq!(page.contains("Jacobi's integral"), expected, "{form}: {page}");
+    }
+    assert!(!stdout(&pc(SPHERE, &["derive", "-"])).contains("Jacobi"));
+    let report = json_of(belt, &["check", "-", "--format", "json"]);
+    let named = |name: &str| {
+        report["integrals"].as_array().expect("a list").iter().find(|i| i["name"] == name).cloned()
+    };
+    // ½ (1 + (2 + x)²) grows at the rate (2 + x) ẋ = 2.
+    assert_eq!(named("energy").expect("listed")["rate_at_start"], 2.0);
+    assert!(named("Jacobi's").is_some(), "{report}");
+    let directory = tempfile::tempdir().expect("a directory");
+    std::fs::write(directory.path().join("belt.toml"), belt).expect("written");
+    let path = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
+    pc("", &["emit", &path("belt.toml"), "--lang", "c", "-o", &path("")]);
+    let header = std::fs::read_to_string(path("belt.h")).expect("a header");
+    assert!(header.contains("This energy is y·η − L of the independent velocities"), "{header}");
+}
+
+#[test]
+fn a_mass_of_the_wrong_sign_is_remarked() {
+    let words = "the kinetic energy is negative for some velocities at the start: a mass or a moment of inertia has the \
+                 wrong sign";
+    let negative = ["--set", "m=-1"];
+    let text = stdout(&pc(SPHERE, &[&["check", "-"], &negative[..]].concat()));
+    assert!(text.contains(words), "{text}");
+    let output = pc(SPHERE, &[&["run", "-"], &negative[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "a note is no error");
+    assert!(stderr(&output).starts_with(&format!("note: {words}\n")), "{}", stderr(&output));
+    assert!(!stdout(&pc(SPHERE, &["check", "-"])).contains("wrong sign"));
+    // What the constraint forbids does not count.
+    let forbidden = "[coordinates]\nx = 0.0\ny = 0.0\n[constraints]\nwall = \"y\"\n[lagrangian]\n\
+                     kinetic = \"(x'^2 - y'^2)/2\"\n[simulation]\nt_end = 1.0\n";
+    assert!(!stderr(&pc(forbidden, &["run", "-"])).contains("wrong sign"));
+}
+
+#[test]
+fn what_was_moved_is_said() {
+    let off = SPHERE.replace("x = 0.6", "x = 0.7");
+    let text = stderr(&pc(&off, &["run", "-", "--project-start"]));
+    let note = "note: the start was moved to the constraints:\n      x = 0.7 → 0.6585046079, z = -0.8 → -0.7525766947\n";
+    assert!(text.starts_with(note), "{text}");
+    let text = stderr(&pc(SLEIGH, &["run", "-", "--project-start"]));
+    assert!(text.starts_with("note: the start satisfies the constraints; it was not moved\n"), "{text}");
+}
+
+#[test]
+fn an_unknown_parameter_is_said_once() {
+    let text = stderr(&pc("", &["run", "euler-top", "--set", "I4=1"]));
+    assert_eq!(text, "pc: --set: `I4` is not a parameter of this model; its parameters are I1, I2, I3\n");
+}
+
+/// Lagrange's equations need as many velocities as coordinates.
+#[test]
+fn a_form_that_is_not_there_says_which_are() {
+    let output = pc("", &["derive", "spherical-pendulum-cartesian", "--form", "lagrange"]);
+    assert_eq!(output.status.code(), Some(4));
+    let text = stderr(&output);
+    let help = "\n  help: its forms are poincare and canonical, in the quasi-velocities of the model\n";
+    assert!(text.ends_with(help), "{text}");
+}
+
+#[test]
+fn names_are_set_alike() {
+    let names = "[coordinates]\nth = 0.1\nphi = 0.2\nheight = 0.3\n[lagrangian]\n\
+                 kinetic = \"(th'^2 + phi'^2 + height'^2)/2\"\npotential = \"cos(th)*cos(phi)*cos(height)\"\n";
+    let page = stdout(&pc(names, &["derive", "-", "--format", "latex"]));
+    for word in [
+        "\\cos \\theta",
+        "\\cos \\varphi",
+        "\\cos \\mathrm{height}",
+        "\\ddot{\\theta}",
+        "\\ddot{\\mathrm{height}}",
+    ] {
+        assert!(page.contains(word), "{word}: {page}");
+    }
+    assert!(!page.contains("\\text"), "{page}");
+}

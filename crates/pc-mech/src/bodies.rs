@@ -2,6 +2,7 @@
 
 pub(crate) mod particle;
 pub(crate) mod rigid_body;
+pub(crate) mod velocity;
 
 use pc_algebra::Frame;
 use pc_expr::Expr;
@@ -26,6 +27,14 @@ impl<'g> Body<'g> {
             Body::Rigid(body) => body.share(moving),
         }
     }
+
+    /// The name it was given.
+    pub(crate) fn name(&self) -> Option<&str> {
+        match self {
+            Body::Particle(particle) => particle.name(),
+            Body::Rigid(body) => body.name(),
+        }
+    }
 }
 
 /// What a body adds to a system.
@@ -35,6 +44,10 @@ pub(crate) struct Share<'g> {
     pub(crate) kinetic: Expr<'g>,
     /// Q_1..Q_k
     pub(crate) forces: Vec<Expr<'g>>,
+    /// ṙ
+    pub(crate) velocity: Vec<Expr<'g>>,
+    /// ω, if it turns.
+    pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
 }
 
 /// A frame with its quasi-velocities, and the symbols x' of its velocities.

@@ -5,6 +5,7 @@ use pc_expr::{Expr, Graph};
 
 use crate::bodies::particle::Particle;
 use crate::bodies::rigid_body::RigidBody;
+use crate::bodies::velocity::{Bodies, BodyVelocity};
 use crate::bodies::{Body, Moving};
 use crate::error::{MechError, shape};
 use crate::external;
@@ -322,10 +323,14 @@ impl<'g> SystemBuilder<'g> {
         let velocities: Vec<_> = velocities.into_iter().zip(frame.velocities(&eta)).collect();
         terms.extend(self.graph.substitute(&self.in_velocities, &velocities));
         let mut parts = vec![vec![Expr::ZERO; k]];
+        let mut bodies = Bodies { list: Vec::new(), rest: self.graph.sum(terms.clone()) };
         for body in &self.bodies {
             let share = body.share(&moving)?;
             terms.push(share.kinetic);
             parts.push(share.forces);
+            let name = body.name().map_or_else(|| format!("body {}", bodies.list.len() + 1), str::to_owned);
+            let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
+            bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
         }
         if terms.is_empty() {
             return Err(MechError::NoLagrangian);
@@ -355,6 +360,7 @@ impl<'g> SystemBuilder<'g> {
             external,
             integrals: self.integrals,
             outputs: self.outputs,
+            bodies,
         })
     }
 }

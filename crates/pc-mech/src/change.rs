@@ -95,6 +95,7 @@ impl<'g> System<'g> {
             lagrangian: graph.shorten(&put(&[self.lagrangian]), &order)[0],
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
+            bodies: self.bodies.map(put),
             parameters: self.parameters.clone(),
             external: self.external.clone(),
             quasi_velocities: symbols,

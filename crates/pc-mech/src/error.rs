@@ -55,7 +55,9 @@ pub enum MechError {
     },
     /// A pivot of the mass matrix vanished on the way.
     #[error(
-        "the mass matrix is singular: the pivot of `{quasi_velocity}` is {pivot:e} at t = {t}{}",
+        "the mass matrix is singular: the kinetic energy {}`{quasi_velocity}` (pivot {}) at t = {t}{}",
+        if *pivot == 0.0 { "lacks " } else { "hardly knows " },
+        readable(*pivot),
         listed(state)
     )]
     SingularMassMatrix {

@@ -20,7 +20,7 @@ impl<'g> Multipliers<'g> {
     /// singular where det C_D = 0, where the constraints themselves are not.
     ///
     /// # Errors
-    /// [`MechError::SingularConstraint`] if the constraints are dependent there;
+    /// [`MechError::SingularConstraint`] if the constraints are dependent there; [`MechError::ConstraintNotAffine`];
     /// [`AlgebraError::NotClosed`](crate::AlgebraError::NotClosed) if they are not integrable.
     ///
     /// ```
@@ -52,8 +52,12 @@ impl<'g> Multipliers<'g> {
     /// k − m others.
     ///
     /// # Errors
+    /// [`MechError::ConstraintNotAffine`] for one that is [nonlinear](crate::Constraint::nonlinear);
     /// [`MechError::DependentConstraint`] if det C_D = 0 everywhere.
     pub fn solved_for(&self, dependent: &[usize]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, MechError> {
+        if let Some(constraint) = self.constraints().iter().find(|constraint| constraint.is_nonlinear()) {
+            return Err(MechError::ConstraintNotAffine { constraint: constraint.name().to_owned() });
+        }
         let system = self.equations().system();
         let (graph, eta, c) = (system.graph(), system.quasi_velocities(), self.coefficients());
         let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])]);
@@ -126,6 +130,7 @@ impl<'g> Multipliers<'g> {
             lagrangian: put(&[system.lagrangian()])[0],
             integrals: named(system.integrals()),
             outputs: named(system.outputs()),
+            bodies: system.bodies.map(put),
             quasi_velocities: free,
             structure,
             frame,

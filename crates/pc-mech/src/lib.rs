@@ -317,6 +317,7 @@ mod book;
 mod builder;
 mod canonical;
 mod change;
+mod chetaev;
 mod compiled;
 mod emit;
 mod error;
@@ -333,12 +334,14 @@ mod orthonormal;
 mod poincare;
 mod reduction;
 mod restriction;
+mod resultants;
 mod stability;
 mod system;
 mod velocities;
 
 pub use bodies::particle::Particle;
 pub use bodies::rigid_body::{Inertia, RigidBody};
+pub use bodies::velocity::BodyVelocity;
 pub use builder::SystemBuilder;
 pub use canonical::Canonical;
 pub use compiled::kept::KeptIntegrals;
@@ -363,6 +366,7 @@ pub use pc_expr::{
     VectorField,
 };
 pub use poincare::Equations;
+pub use resultants::BodyReaction;
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady::{SteadyMotion, SteadyOptions};

@@ -135,16 +135,16 @@ impl<'g> Constraint<'g> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Multipliers<'g> {
-    equations: Equations<'g>,
+    pub(crate) equations: Equations<'g>,
     constraints: Vec<Constraint<'g>>,
     /// g, which is C η + c_0 where it is affine.
     velocities: Vec<Expr<'g>>,
     /// C = ∂g/∂η, m × k.
-    coefficients: Matrix<Expr<'g>>,
+    pub(crate) coefficients: Matrix<Expr<'g>>,
     /// −(dC/dt) η − dc_0/dt, length m.
-    right: Vec<Expr<'g>>,
+    pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
-    reactions: Vec<Expr<'g>>,
+    pub(crate) reactions: Vec<Expr<'g>>,
     /// Whether the reactions are observed.
     observed: bool,
 }

@@ -3,6 +3,7 @@
 use pc_algebra::{Frame, Matrix};
 use pc_expr::Expr;
 
+use crate::bodies::velocity::Bodies;
 use crate::error::MechError;
 use crate::system::System;
 
@@ -73,6 +74,7 @@ impl<'g> System<'g> {
             forces,
             integrals: known(&self.integrals),
             outputs: known(&self.outputs),
+            bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their places are gone
         })
     }
 

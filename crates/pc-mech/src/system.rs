@@ -3,6 +3,7 @@
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
+use crate::bodies::velocity::Bodies;
 use crate::builder::SystemBuilder;
 use crate::error::{MechError, shape};
 
@@ -20,6 +21,7 @@ pub struct System<'g> {
     pub(crate) external: Vec<(String, Expr<'g>)>,
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
+    pub(crate) bodies: Bodies<'g>,
 }
 
 impl<'g> System<'g> {
@@ -144,6 +146,7 @@ impl<'g> System<'g> {
             external: self.external.clone(),
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
+            bodies: self.bodies.map(|list| graph.substitute(list, &numbers)),
         }
     }
 
@@ -161,6 +164,12 @@ impl<'g> System<'g> {
             list.iter().map(|(name, f)| (name.clone(), value(*f))).collect()
         };
         System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }
+    }
+
+    /// The same system with more outputs, after those it has.
+    #[must_use]
+    pub fn with_more_outputs(&self, more: impl IntoIterator<Item = (String, Expr<'g>)>) -> System<'g> {
+        System { outputs: self.outputs.iter().cloned().chain(more).collect(), ..self.clone() }
     }
 
     /// The same system with more generalised forces, one a quasi-velocity.

@@ -328,8 +328,7 @@ fn a_parameter_that_makes_the_mass_matrix_singular_is_found_when_it_changes() {
     let (y, mut ydot) = ([0.0, 0.0, 1.0, 2.0], [0.0; 4]);
     motion.rhs(0.0, &y, &mut ydot).unwrap();
     motion.parameters_mut()[1] = 0.0;
-    let message =
-        "the mass matrix is singular: the pivot of `y'` is 0e0 at t = 0, x = 0, y = 0, x' = 1, y' = 2";
+    let message = "the mass matrix is singular: the kinetic energy lacks `y'` (pivot 0) at t = 0, x = 0, y = 0, x' = 1, y' = 2";
     assert_eq!(motion.rhs(0.0, &y, &mut ydot).unwrap_err().to_string(), message);
     motion.parameters_mut()[1] = 2.0;
     motion.rhs(0.0, &y, &mut ydot).unwrap();

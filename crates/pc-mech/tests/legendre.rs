@@ -206,7 +206,8 @@ fn the_guess_chooses_where_to_start_and_which_solution_is_found() {
     let graph = Graph::new();
     let quartic = on_a_line(&graph, |v| v.powi(4) / 4.0);
     let error = quartic.legendre_transform().unwrap().to_quasi_velocities(0.0, &[0.0, 8.0]).unwrap_err();
-    let message = "the mass matrix is singular: the pivot of `x'` is 0e0 at t = 0, x = 0, p_x = 8";
+    let message =
+        "the mass matrix is singular: the kinetic energy lacks `x'` (pivot 0) at t = 0, x = 0, p_x = 8";
     assert_eq!(error.to_string(), message);
     let mut transform = quartic.with_guess(&[1.0]).unwrap().legendre_transform().unwrap();
     assert_eq!(transform.to_quasi_velocities(0.0, &[0.0, 8.0]).unwrap(), [0.0, 2.0]);

@@ -5,6 +5,7 @@ mod brackets;
 mod constraints;
 mod events;
 mod frame;
+mod resultants;
 mod trial;
 
 use pc_mech::{Expr, Graph, System};
@@ -100,9 +101,10 @@ impl<'g> Assembler<'g, '_> {
             builder = builder.structure(structure);
         }
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
+        let written_start = self.model.projects_start().then(|| start.clone());
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;
         let events = self.events(crossings, &x_dot, &bound)?;
-        Ok(Assembly { system, bound, t_start, start, declared, events })
+        Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
     }
 
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.

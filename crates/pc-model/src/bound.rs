@@ -19,6 +19,7 @@ pub struct Bound<'g> {
     multipliers: Option<Multipliers<'g>>,
     verdicts: Vec<Verdict>,
     redundant: Vec<Redundant>,
+    undetermined: Vec<String>,
 }
 
 /// How the constraints are kept.
@@ -48,7 +49,8 @@ impl<'g> Bound<'g> {
 
     /// Constraints that say nothing.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> Bound<'g> {
-        Bound { form: Form::Free, multipliers: None, verdicts: Vec::new(), redundant }
+        let verdicts = Vec::new();
+        Bound { form: Form::Free, multipliers: None, verdicts, redundant, undetermined: Vec::new() }
     }
 
     /// Constraints that bind, kept in some form.
@@ -58,7 +60,11 @@ impl<'g> Bound<'g> {
         verdicts: Vec<Verdict>,
         redundant: Vec<Redundant>,
     ) -> Bound<'g> {
-        Bound { form, multipliers: Some(multipliers), verdicts, redundant }
+        Bound { form, multipliers: Some(multipliers), verdicts, redundant, undetermined: Vec::new() }
+    }
+
+    pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> Bound<'g> {
+        Bound { undetermined, ..self }
     }
 
     /// The equations with multipliers, unless nothing binds.
@@ -81,9 +87,15 @@ impl<'g> Bound<'g> {
         &self.redundant
     }
 
+    /// Where the forces of reactions on bodies are observed, those that virtual work does not determine, in words: `the
+    /// force on` and the name of the body.
+    pub fn undetermined(&self) -> &[String] {
+        &self.undetermined
+    }
+
     /// The system in a frame in which the constraints are that quasi-velocities vanish: that of the model if it is such,
-    /// else the one that is best at the values `at` of time and state. None if there are no constraints, or only
-    /// integrable ones held by multipliers.
+    /// else the one that is best at the values `at` of time and state. None if there are no constraints, only
+    /// integrable ones held by multipliers, or some that are not affine in the velocities.
     ///
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
@@ -91,17 +103,21 @@ impl<'g> Bound<'g> {
         Ok(match &self.form {
             Form::Free => None,
             Form::Vanishing(constrained) => Some(Constrained::clone(constrained)),
-            Form::Held(held) if held.holonomic => None,
+            Form::Held(held) if held.holonomic || held.multipliers.is_nonlinear() => None,
             Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
         })
     }
 
     /// The symbols λ of the reactions with what they are in the frame of [`constrained`](Bound::constrained), functions of
-    /// time, coordinates and free quasi-velocities; none where there is no such frame.
+    /// time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
+    /// integrable constraints are held by multipliers.
     ///
     /// # Errors
     /// As there.
     pub fn reactions(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, NonholoError> {
+        if let Some(held) = self.nonlinear() {
+            return Ok(held.reactions().iter().copied().zip(held.reactions_of_state()?).collect());
+        }
         let (Some(constrained), Some(multipliers)) = (self.constrained(at)?, &self.multipliers) else {
             return Ok(Vec::new());
         };
@@ -114,8 +130,14 @@ impl<'g> Bound<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
+    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no independent ones then.
+    pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
+        self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
+    }
+
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by
-    /// multipliers are for the choice of independent ones that is best at `at`.
+    /// multipliers are for the choice of independent ones that is best at `at`. Where a constraint is not affine in
+    /// the velocities, those of all of them, with the reactions put in.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.
@@ -163,6 +185,9 @@ impl<'g> Bound<'g> {
 
     fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {
         match &self.form {
+            Form::Held(held) if held.multipliers.is_nonlinear() => {
+                Ok(held.multipliers.with_reactions_put_in()?)
+            }
             Form::Held(held) => Ok(held.multipliers.in_independent_velocities(at)?),
             Form::Free | Form::Vanishing(_) => Ok(system.clone()),
         }

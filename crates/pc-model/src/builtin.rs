@@ -65,6 +65,7 @@ pub const BUILTIN: &[Builtin] = models![
     "bouncing-ball",
     "stick-slip-block",
     "rocking-block",
+    "appell-hamel",
 ];
 
 impl Builtin {

@@ -190,13 +190,15 @@ pub struct Constraint {
     pub kind: Option<Located<ConstraintKind>>,
 }
 
-/// Whether a constraint can be integrated.
+/// Whether a constraint can be integrated, or is none that is affine in the velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintKind {
     /// It can.
     Holonomic,
     /// It cannot.
     Nonholonomic,
+    /// It is not affine in the velocities: Chetaev's condition says which displacements are virtual.
+    Nonlinear,
 }
 
 /// The energy. `lagrangian` excludes `kinetic` and `potential`; one of `lagrangian` and `kinetic` is given unless

@@ -195,6 +195,16 @@ pub enum ErrorKind {
         /// How it could be written.
         example: &'static str,
     },
+    /// An entry that does nothing by itself.
+    #[error("`{key}` has no effect without `{without}`")]
+    NoEffect {
+        /// Its key.
+        key: String,
+        /// The entry that it needs.
+        without: &'static str,
+        /// How this could be written.
+        example: &'static str,
+    },
     /// Two entries of which only one may be given.
     #[error("`{first}` and `{second}` exclude each other")]
     Exclusive {
@@ -372,6 +382,7 @@ impl ErrorKind {
                 format!("write `{example}`")
             }
             Self::Missing { example, .. } => format!("add `{example}`"),
+            Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
             Self::Exclusive { help, .. } => (*help).into(),
             Self::NotAName { .. } => {
                 "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()

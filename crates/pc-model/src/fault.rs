@@ -1,8 +1,8 @@
 //! What can be wrong with the meaning of a model whose text is well formed.
 
-use pc_expr::parse::nearest;
-use pc_expr::readable;
+mod words;
 
+use self::words::{against, at, listed, rounded, suggest, undetermined_text};
 use crate::error::Category;
 
 /// A fault of the meaning; quasi-velocities stand for their operators.
@@ -78,6 +78,44 @@ pub enum Fault {
         text: String,
         /// `velocities` or `quasi-velocities`.
         variables: &'static str,
+    },
+    /// A constraint that is not affine in the velocities and is not said to be so.
+    #[error("`{text}` is not affine in the velocities")]
+    ConstraintNotAffine {
+        /// Its name.
+        constraint: String,
+        /// The expression as written.
+        text: String,
+    },
+    /// A constraint called nonlinear that is not.
+    #[error("the constraint `{constraint}` is called nonlinear and {what}")]
+    NotNonlinear {
+        /// Its name.
+        constraint: String,
+        /// What it does instead, in words.
+        what: &'static str,
+    },
+    /// A force or torque of a reaction on a body that virtual work does not tell.
+    #[error(
+        "`{name}` is not determined: the velocity of the body is tied to others by the choice of coordinates"
+    )]
+    ForceNotDetermined {
+        /// The component.
+        name: String,
+    },
+    /// A definition that says nothing of velocities.
+    #[error("`{text}` contains no velocity, so it defines no quasi-velocity")]
+    NoVelocity {
+        /// The definition as written.
+        text: String,
+    },
+    /// A form of the equations that the model does not have.
+    #[error("{message}")]
+    NoForm {
+        /// Why.
+        message: String,
+        /// The forms that it has.
+        help: &'static str,
     },
     /// A coordinate without kinematics, where others have them.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
@@ -282,30 +320,6 @@ pub enum Fault {
     },
 }
 
-fn at(state: &[(String, f64)]) -> String {
-    let values: Vec<String> = state.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    if values.is_empty() { String::new() } else { format!(" ({})", values.join(", ")) }
-}
-
-/// Six digits.
-fn rounded(value: f64) -> String {
-    readable(format!("{value:.5e}").parse().unwrap_or(value))
-}
-
-fn against(others: &[String]) -> String {
-    let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
-    match names.as_slice() {
-        [] => "cannot hold: it is always ".to_owned(),
-        [name] => format!("contradicts {name}: where that holds, it is "),
-        _ => format!("contradicts {}: where these hold, it is ", names.join(" and ")),
-    }
-}
-
-fn undetermined_text(names: &[String]) -> String {
-    let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
-    rates.join(", ") + if rates.len() == 1 { " is" } else { " are" }
-}
-
 impl Fault {
     /// Whether the text or the model is to blame.
     pub fn category(&self) -> Category {
@@ -325,6 +339,8 @@ impl Fault {
             | Fault::NotFinite { .. }
             | Fault::SingularStart { .. }
             | Fault::NotAnIntegral { .. }
+            | Fault::ForceNotDetermined { .. }
+            | Fault::NoForm { .. }
             | Fault::Derivation { .. } => Category::Inconsistent,
             _ => Category::Text,
         }
@@ -354,6 +370,16 @@ impl Fault {
             Fault::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
             Fault::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
             Fault::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
+            Fault::ConstraintNotAffine { constraint, .. } => format!(
+                "write a sum of terms linear in the velocities, or say that it is none, with Chetaev's condition for the \
+                 displacements: `{constraint} = {{ expr = \"…\", kind = \"nonlinear\" }}`"
+            ),
+            Fault::NotNonlinear { .. } => "leave its kind out".into(),
+            Fault::ForceNotDetermined { .. } => {
+                "take coordinates in which the body moves by itself, and constraints that tie it".into()
+            }
+            Fault::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
+            Fault::NoForm { help, .. } => (*help).into(),
             Fault::KinematicsMissing { coordinate } => {
                 format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")
             }
@@ -393,16 +419,5 @@ impl Fault {
             }
             Fault::Derivation { .. } => "check the model".into(),
         }
-    }
-}
-
-fn listed(names: &[String]) -> String {
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-}
-
-fn suggest(name: &str, known: &[String], otherwise: &str) -> String {
-    match nearest(name, known.iter().map(String::as_str)) {
-        Some(word) => format!("did you mean `{word}`? {otherwise}"),
-        None => otherwise.to_owned(),
     }
 }

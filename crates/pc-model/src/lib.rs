@@ -26,11 +26,13 @@
 mod assembly;
 mod bound;
 mod builtin;
+mod definite;
 pub mod document;
 pub mod error;
 mod event;
 mod fault;
 mod model;
+mod resultant;
 mod scope;
 pub mod source;
 

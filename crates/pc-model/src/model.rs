@@ -36,6 +36,8 @@ pub struct Assembly<'g> {
     pub t_start: f64,
     /// Start state: coordinates, then quasi-velocities.
     pub start: Vec<f64>,
+    /// The start state as written, where it was to be moved to the constraints.
+    pub written_start: Option<Vec<f64>>,
     /// Number of quasi-velocities that are declared, the first ones; the velocities where none is.
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
@@ -73,6 +75,21 @@ impl<'g> Assembly<'g> {
     /// [`NonholoError`] if these do not determine the others.
     pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, NonholoError> {
         self.bound.quasi_velocities_of(self.system.quasi_velocities(), free)
+    }
+
+    /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold constraints, else that
+    /// of the free ones: nothing depends on time, and neither forces nor reactions do work.
+    pub fn keeps_energy(&self) -> bool {
+        let system = &self.system;
+        match self.bound.form() {
+            Form::Held(held) => {
+                let mut constraints = held.multipliers.constraints().iter();
+                system.energy_rate().is_zero() && constraints.all(|c| c.is_workless(system))
+            }
+            Form::Free | Form::Vanishing(_) => {
+                self.free_system().is_ok_and(|system| system.energy_rate().is_zero())
+            }
+        }
     }
 
     /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
@@ -250,10 +267,14 @@ impl Model {
             NonholoError::Contradictory { constraint, .. } => {
                 cannot(&constraint, "no motion satisfies it; mend it or leave it out")
             }
+            NonholoError::Nonlinear { constraint, .. } => {
+                cannot(&constraint, "take a form with multipliers: poincare, lagrange, or canonical")
+            }
             NonholoError::Mech(error) => match error {
                 MechError::ConstraintNotAffine { constraint } => {
                     let text = self.constraint_text(&constraint).map(|c| c.expression.text.clone());
-                    let fault = Fault::NotAffine { text: text.unwrap_or_default(), variables: "velocities" };
+                    let text = text.unwrap_or_default();
+                    let fault = Fault::ConstraintNotAffine { constraint: constraint.clone(), text };
                     self.constraint_fault(&constraint, fault)
                 }
                 MechError::TooManyConstraints { .. } => cannot(
@@ -295,6 +316,15 @@ impl Model {
         match error {
             MechError::DegenerateLagrangian { rank, size, quasi_velocities: undetermined } => {
                 self.error(&self.energy_place(), Fault::Degenerate { rank, size, undetermined })
+            }
+            error @ (MechError::Redundant { .. }
+            | MechError::Algebra(AlgebraError::DependentOperators { .. })) => {
+                let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
+                self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
+            }
+            error @ MechError::NotQuadratic { .. } => {
+                let help = "its forms are poincare and, where the coordinates are independent, lagrange";
+                self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
             }
             MechError::Algebra(error) => self.algebra_error(error),
             MechError::UnknownIntegral { name, known } => {

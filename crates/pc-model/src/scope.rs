@@ -3,9 +3,10 @@
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
-use crate::document::{Document, Expression, NamedExpression};
+use crate::document::{Body, Document, Expression, NamedExpression};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
+use crate::resultant::{force_names, torque_names};
 use crate::source::Place;
 
 /// What an expression may contain, by the place where it stands.
@@ -71,6 +72,8 @@ pub(crate) struct Scope<'g, 'd> {
     definitions: Vec<(usize, Stage, Expr<'g>)>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
+    /// Forces and torques of reactions that were named, each with a place.
+    pub(crate) resultants: Vec<(Expr<'g>, Place)>,
 }
 
 impl<'g, 'd> Scope<'g, 'd> {
@@ -82,7 +85,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         for name in names.chain(coordinates).chain(quasi_velocities) {
             graph.symbol(name);
         }
-        Scope { graph, document, time: graph.symbol("t"), definitions: Vec::new(), written: Vec::new() }
+        let time = graph.symbol("t");
+        Scope { graph, document, time, definitions: Vec::new(), written: Vec::new(), resultants: Vec::new() }
     }
 
     pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
@@ -223,6 +227,11 @@ impl<'g, 'd> Scope<'g, 'd> {
             _ if name == "t" => Ok(self.time),
             _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
+            Stage::Observation if self.is_resultant(name) => {
+                let symbol = self.graph.symbol(name);
+                self.resultants.push((symbol, expression.place(span)));
+                Ok(symbol)
+            }
             _ => {
                 let fault = |_| Fault::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
@@ -234,6 +243,17 @@ impl<'g, 'd> Scope<'g, 'd> {
     fn is_reaction(&self, name: &str) -> bool {
         let constraint = name.strip_prefix("λ_");
         constraint.is_some_and(|name| self.document.constraints.iter().any(|c| c.name.text == name))
+    }
+
+    /// Whether it is a component of the force or torque of a constraint on a body.
+    fn is_resultant(&self, name: &str) -> bool {
+        let of_body = |constraint: &str, body: &Body| {
+            let turns = body.orientation.is_some();
+            force_names(constraint, &body.name.text).iter().any(|known| known == name)
+                || turns && torque_names(constraint, &body.name.text).iter().any(|known| known == name)
+        };
+        let constraints = &self.document.constraints;
+        constraints.iter().any(|c| self.document.bodies.iter().any(|body| of_body(&c.name.text, body)))
     }
 
     fn definition(&mut self, index: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {

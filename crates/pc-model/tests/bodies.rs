@@ -161,11 +161,11 @@ fn expressions_of_bodies_are_refused_where_they_stand() {
         format!("m.toml:10:16: [bodies.b] inertia: `w` cannot be used {at_rest}")
     );
     assert_eq!(
-        refused_body("rotation = [1, 0, 0, 0, 1, 0, 0, 0, \"w\"]"),
+        refused_body("rotation = [1, 0, 0, 0, 1, 0, 0, 0, \"w\"]\ninertia = [1, 1, 1]"),
         format!("m.toml:10:38: [bodies.b] rotation: `w` cannot be used {at_rest}")
     );
     assert_eq!(
-        refused_body("angular_velocity = [0, \"1 + x'^2\", \"w\"]"),
+        refused_body("angular_velocity = [0, \"1 + x'^2\", \"w\"]\ninertia = [1, 1, 1]"),
         "m.toml:10:25: [bodies.b] angular_velocity: `1 + x'^2` is not affine in the velocities\n  \
          help: write a sum of terms linear in the velocities"
     );

@@ -86,7 +86,9 @@ fn texts_that_are_no_constraints_are_refused() {
         "speed = \"x'^2 + y'^2 - 1\"",
         Category::Text,
         "m.toml:5:10: [constraints] speed: `x'^2 + y'^2 - 1` is not affine in the velocities\n    \
-         speed = \"x'^2 + y'^2 - 1\"\n             ^^^^^^^^^^^^^^^\n  help: write a sum of terms linear in the velocities",
+         speed = \"x'^2 + y'^2 - 1\"\n             ^^^^^^^^^^^^^^^\n  help: write a sum of terms linear in the velocities, \
+         or say that it is none, with Chetaev's condition for the displacements: \
+         `speed = { expr = \"…\", kind = \"nonlinear\" }`",
     );
     // Of these the second derivatives vanish.
     for text in ["abs(x') - y'", "sign(x') - 1", "max(x', y')", "step(x', 1, 2)*x"] {
@@ -445,5 +447,91 @@ fn a_coordinate_without_mass_is_held_by_a_constraint() {
         "m.toml:7:1: [lagrangian]: the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 2 of 3, so \
          z'' is not determined\n    [lagrangian]\n    ^^^^^^^^^^^^\n  \
          help: every quasi-velocity needs kinetic energy of its own",
+    );
+}
+
+#[test]
+fn what_is_called_nonlinear_is_so() {
+    let called = |expr: &str| format!("c = {{ expr = \"{expr}\", kind = \"nonlinear\" }}");
+    let place = |column: usize, line: &str| {
+        format!("\n    {line}\n{}^^^^^^^^^^^\n  help: leave its kind out", " ".repeat(3 + column))
+    };
+    let affine = called("x' - x*y'");
+    refuses_point(
+        BELOW,
+        &affine,
+        Category::Text,
+        &format!(
+            "m.toml:5:34: [constraints] c.kind: the constraint `c` is called nonlinear and is affine in the velocities{}",
+            place(34, &affine)
+        ),
+    );
+    let position = called("x^2 + y^2 - 1");
+    refuses_point(
+        BELOW,
+        &position,
+        Category::Text,
+        &format!(
+            "m.toml:5:38: [constraints] c.kind: the constraint `c` is called nonlinear and contains no velocity{}",
+            place(38, &position)
+        ),
+    );
+    // Of one that defines a quasi-velocity where it is not called so.
+    let defining = format!("{SLEIGH}speed = \"x'^2 + y'^2 - 1\"\n");
+    let found = error(&defining).to_string();
+    assert!(found.contains("`x'^2 + y'^2 - 1` is not affine in the velocities\n"), "{found}");
+    assert!(found.ends_with("`speed = { expr = \"…\", kind = \"nonlinear\" }`"), "{found}");
+    let unmoved = point("x = 0\ny = 0\n", "", &called("x'^2 + y'^2"));
+    let found = error(&unmoved).to_string();
+    assert!(
+        found.contains("the constraint `c` restricts no velocity that the others leave free at t = 0"),
+        "{found}"
+    );
+}
+
+/// Beside quasi-velocities that are defined, it defines none; beside others, these keep their kinds.
+#[test]
+fn nonlinear_constraints_stand_beside_others() {
+    let verdicts = |text: &str| {
+        let graph = Graph::new();
+        let assembly = model(text).assemble(&graph).unwrap();
+        assembly.bound.verdicts().iter().map(|v| (v.constraint.clone(), v.kind)).collect::<Vec<_>>()
+    };
+    let text = "[coordinates]\nx = 0\ny = 0\nz = 0\n[quasi_velocities]\nu = { is = \"x'\", start = 1 }\n\
+                v = { is = \"y'\", start = 0 }\n[constraints]\n\
+                cone = { expr = \"x'^2 + y'^2 - 1\", kind = \"nonlinear\" }\nknife = \"z' - y*x'\"\n[lagrangian]\n\
+                kinetic = \"(x'^2 + y'^2 + z'^2)/2\"\n";
+    let found = verdicts(text);
+    assert_eq!(found[0], ("cone".to_owned(), Kind::Nonlinear));
+    assert!(found[1].0 == "knife" && matches!(found[1].1, Kind::Nonholonomic { .. }), "{found:?}");
+    // On a circle of the plane, a constant speed is one of the angle: the circle is a position still.
+    let circle = "circle = \"x^2 + y^2 - 1\"\nspeed = { expr = \"x'^2 + z'^2 - 1\", kind = \"nonlinear\" }";
+    let text = point("x = 1\ny = 0\nz = 0\n", "[quasi_velocities]\n\"z'\" = 1\n", circle);
+    let found = verdicts(&text.replace("y'^2)", "y'^2 + z'^2)"));
+    assert_eq!(found.iter().map(|(_, kind)| *kind).collect::<Vec<_>>(), [Kind::Position, Kind::Nonlinear]);
+}
+
+/// The definition that is to blame, not the first.
+#[test]
+fn definitions_are_blamed_where_they_stand() {
+    let text = |is: &str| {
+        format!(
+            "[coordinates]\nx = 0\ny = 0\n[quasi_velocities]\nu = {{ is = \"x' + y'\", start = 1 }}\n\
+             w = {{ is = \"{is}\", start = 1 }}\n[lagrangian]\nkinetic = \"x'^2 + y'^2\"\n"
+        )
+    };
+    refuses(
+        &text("x*y"),
+        Category::Text,
+        "m.toml:6:13: [quasi_velocities] w.is: `x*y` contains no velocity, so it defines no quasi-velocity\n    \
+         w = { is = \"x*y\", start = 1 }\n                ^^^\n  \
+         help: write a sum of terms linear in the velocities, such as \"x'\"",
+    );
+    refuses(
+        &text("2*x' + 2*y'"),
+        Category::Inconsistent,
+        "m.toml:6:13: [quasi_velocities] w.is: the definitions of the quasi-velocities are linearly dependent: their matrix is \
+         singular everywhere\n    w = { is = \"2*x' + 2*y'\", start = 1 }\n                ^^^^^^^^^^^\n  \
+         help: give as many independent definitions (and constraints) as there are coordinates",
     );
 }

@@ -26,11 +26,12 @@ impl<'g> Adapted<'g> {
     /// singular where these are not determined.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`], of which [`MechError::SingularConstraint`] says
+    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], of which [`MechError::SingularConstraint`] says
     /// that the constraints are dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let eta = system.quasi_velocities();
+        affine(multipliers, "adapted frames")?;
         let dependent = match vanishing(eta, multipliers.velocities()) {
             Some(places) => places,
             None => multipliers.dependent_at(at)?,
@@ -75,6 +76,17 @@ impl<'g> Adapted<'g> {
     /// no inertia.
     pub fn constrained(&self) -> Result<Constrained<'g>, NonholoError> {
         Constrained::new(&self.system, &self.system.quasi_velocities()[self.free..])
+    }
+}
+
+/// That all constraints are affine in the velocities, as the form needs them.
+///
+/// # Errors
+/// [`NonholoError::Nonlinear`]
+pub(crate) fn affine(multipliers: &Multipliers<'_>, form: &'static str) -> Result<(), NonholoError> {
+    match multipliers.constraints().iter().find(|constraint| constraint.is_nonlinear()) {
+        None => Ok(()),
+        Some(constraint) => Err(NonholoError::Nonlinear { form, constraint: constraint.name().to_owned() }),
     }
 }
 

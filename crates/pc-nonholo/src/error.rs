@@ -20,6 +20,14 @@ pub enum NonholoError {
     /// Voronets' equations asked for in quasi-velocities.
     #[error("Voronets' equations are those of a system in the velocities of its coordinates")]
     NotInVelocities,
+    /// A form of the equations that there is under constraints affine in the velocities only.
+    #[error("{form} need constraints that are affine in the velocities; `{constraint}` is not")]
+    Nonlinear {
+        /// What was asked for.
+        form: &'static str,
+        /// The name of the first that is not.
+        constraint: String,
+    },
     /// A constraint that no velocity satisfies together with others.
     #[error("the constraint `{constraint}` contradicts {}", quoted(others))]
     Contradictory {

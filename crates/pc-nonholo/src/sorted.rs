@@ -18,6 +18,8 @@ pub enum Kind {
         /// The largest component along it of the commutators of the velocities allowed, where it was tried.
         residual: f64,
     },
+    /// It binds velocities and is not affine in them. Frobenius' test is for those that are.
+    Nonlinear,
 }
 
 /// A constraint that says nothing new.
@@ -47,6 +49,9 @@ impl<'g> Sorted<'g> {
     /// along it: then it vanishes on the least involutive family of fields that contains X'_0..X'_l.
     /// Positions come first: a condition on velocities may follow from them, but never the other way round.
     ///
+    /// [Nonlinear](Constraint::nonlinear) constraints come last and count neither for the rank nor for the test of the
+    /// others; of one that restricts no velocity at almost all states it is not said whether it follows.
+    ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
     /// # Errors
@@ -57,9 +62,11 @@ impl<'g> Sorted<'g> {
         constraints: &[Constraint<'g>],
         at: &[(Expr<'g>, f64)],
     ) -> Result<Sorted<'g>, NonholoError> {
+        let (nonlinear, affine): (Vec<usize>, Vec<usize>) =
+            (0..constraints.len()).partition(|&a| constraints[a].is_nonlinear());
         let (positions, velocities): (Vec<usize>, Vec<usize>) =
-            (0..constraints.len()).partition(|&a| constraints[a].is_holonomic(system));
-        let (mut binding, mut redundant) = (Vec::new(), Vec::new());
+            affine.into_iter().partition(|&a| constraints[a].is_holonomic(system));
+        let (mut binding, mut redundant) = (nonlinear, Vec::new());
         let mut rows = Rows::default();
         for a in positions.into_iter().chain(velocities) {
             let constraint = &constraints[a];
@@ -101,11 +108,30 @@ impl<'g> Sorted<'g> {
 
     /// Whether all constraints bind positions or could.
     pub fn is_holonomic(&self) -> bool {
-        !self.kinds.iter().any(|kind| matches!(kind, Kind::Nonholonomic { .. }))
+        self.kinds.iter().all(|kind| matches!(kind, Kind::Position | Kind::Integrable))
     }
 }
 
+/// The kind of each constraint, of the affine ones as if there were no others.
 fn kinds<'g>(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Vec<Kind>, NonholoError> {
+    let all = multipliers.constraints();
+    let affine: Vec<usize> = (0..all.len()).filter(|&a| !all[a].is_nonlinear()).collect();
+    let mut kinds = vec![Kind::Nonlinear; all.len()];
+    if affine.is_empty() {
+        return Ok(kinds);
+    }
+    let without: Vec<Constraint<'g>> = affine.iter().map(|&a| all[a].clone()).collect();
+    let without = multipliers.equations().system().with_multipliers(&without)?;
+    for (a, kind) in affine.into_iter().zip(kinds_of_affine(&without, at)?) {
+        kinds[a] = kind;
+    }
+    Ok(kinds)
+}
+
+fn kinds_of_affine<'g>(
+    multipliers: &Multipliers<'g>,
+    at: &[(Expr<'g>, f64)],
+) -> Result<Vec<Kind>, NonholoError> {
     let m = multipliers.constraints().len();
     if (0..m).all(|a| multipliers.is_holonomic(a)) {
         return Ok(vec![Kind::Position; m]);

@@ -2,6 +2,7 @@
 
 use pc_mech::{Expr, Graph, Matrix, Multipliers, System};
 
+use crate::adapted::affine;
 use crate::error::NonholoError;
 
 /// A system in the velocities of its coordinates whose constraints are solved for some of them,
@@ -35,7 +36,7 @@ impl<'g> Voronets<'g> {
     /// solved for the velocities that they determine best at the values `at` of time, coordinates and velocities.
     ///
     /// # Errors
-    /// [`NonholoError::NotInVelocities`];
+    /// [`NonholoError::NotInVelocities`]; [`NonholoError::Nonlinear`];
     /// [`MechError::SingularConstraint`](pc_mech::MechError::SingularConstraint) if the constraints are dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Voronets<'g>, NonholoError> {
         let system = multipliers.equations().system();
@@ -43,6 +44,7 @@ impl<'g> Voronets<'g> {
         if system.frame().velocities(v) != v {
             return Err(NonholoError::NotInVelocities);
         }
+        affine(multipliers, "Voronets' equations")?;
         let dependent = multipliers.dependent_at(at)?;
         let independent: Vec<usize> = (0..x.len()).filter(|i| !dependent.contains(i)).collect();
         let solved = multipliers.solved_for(&dependent)?;

@@ -12,6 +12,17 @@ fn turn(q: &[f64], omega: Vector, side: f64, dq: &mut [f64]) {
     }
 }
 
+/// Appell's and Hamel's machine, k = ¾, g = 10. y = (x, y, z, ẋ, ẏ, ż): ẍ = λ ẋ, ÿ = λ ẏ, z̈ = −g − λ k² ż, where λ is such
+/// that ẋ² + ẏ² − k² ż² keeps its value [Hamel 1949].
+pub fn appell_hamel(y: &[f64], dy: &mut [f64]) {
+    let (k2, g) = (0.5625, 10.0);
+    let lambda = -k2 * g * y[5] / (y[3] * y[3] + y[4] * y[4] + k2 * k2 * y[5] * y[5]);
+    dy[..3].copy_from_slice(&y[3..]);
+    dy[3] = lambda * y[3];
+    dy[4] = lambda * y[4];
+    dy[5] = -g - lambda * k2 * y[5];
+}
+
 /// Chaplygin's sleigh, m = J = 1, a = ½, under a force along the blade and a moment. y = (X, Y, φ, v, ω):
 /// m v̇ = m a ω² + F, (J + m a²) ω̇ = −m a v ω + N [Chaplygin 1911].
 fn sleigh(force: f64, moment: f64, y: &[f64], dy: &mut [f64]) {

@@ -1,5 +1,25 @@
 //! Motions of systems with nonholonomic constraints.
 
+/// State (x, y, z; ẋ, ẏ, ż) of Appell's and Hamel's machine, k = ¾, g = 10, from the origin with ż = −1 in the direction
+/// (0.6, 0.8): v̇ = k g/(1 + k²), z̈ = −g/(1 + k²) [Hamel 1949].
+pub fn appell_hamel(t: f64) -> [f64; 6] {
+    let (k, g) = (0.75, 10.0);
+    let fall = g / (1.0 + k * k);
+    let (way, speed) = (k * (t + fall * t * t / 2.0), k * (1.0 + fall * t));
+    [0.6 * way, 0.8 * way, -way / k, 0.6 * speed, 0.8 * speed, -speed / k]
+}
+
+/// Velocity (ẋ, ẏ) and way (x, y) of a particle that keeps the speed v under the gravity g, from (0, 0) with ẋ > 0 and
+/// ẏ = −v tanh τ_0: with τ = τ_0 + g t/v, ẋ = v sech τ, ẏ = −v tanh τ, x = (v²/g)(gd τ − gd τ_0),
+/// y = −(v²/g) ln(cosh τ/cosh τ_0), gd τ = 2 arctan tanh(τ/2).
+pub fn constant_speed(v: f64, g: f64, tau_0: f64, t: f64) -> [f64; 4] {
+    let tau = tau_0 + g * t / v;
+    let gd = |tau: f64| 2.0 * (tau / 2.0).tanh().atan();
+    let length = v * v / g;
+    let fall = (tau.cosh() / tau_0.cosh()).ln();
+    [length * (gd(tau) - gd(tau_0)), -length * fall, v / tau.cosh(), -v * tau.tanh()]
+}
+
 /// State (X, Y, φ, v, ω) of Chaplygin's sleigh, m = J = 1, a = ½, from v = 0, ω = 1 at the origin: v = W tanh kt,
 /// ω = sech kt, φ = (2/k) arctan tanh(kt/2), W = √5/2, k = 1/√5 [Chaplygin 1911]; X and Y by Simpson's rule.
 pub fn chaplygin_sleigh(t: f64) -> [f64; 5] {

@@ -5,6 +5,14 @@ use super::Reference;
 /// Their reference states, in the order of the models' names.
 pub(super) const NONHOLONOMIC: &[Reference] = &[
     Reference {
+        model: "appell-hamel",
+        t_end: 2.0,
+        columns: &["x", "y", "z", "x'", "y'", "z'"],
+        start: &[0.0, 0.0, 0.0, 0.45, 0.6, -1.0],
+        state: &[6.66, 8.88, -14.8, 6.21, 8.28, -13.8],
+        conserved: &["energy", "direction"],
+    },
+    Reference {
         model: "ball-in-cylinder",
         t_end: 5.0,
         columns: &["q0", "q1", "q2", "q3", "φ", "z", "ωr", "ωφ", "ωz"],

@@ -143,6 +143,7 @@ fn reference_states_lie_on_the_closed_forms() {
     assert!((state("heavy-top-euler-symmetric")[1] - nutation).abs() < 1e-13); // an arccosine and two of K
     let fall = closed_form::relativistic_fall(2.0, 3.0, 2.0);
     assert!((state("relativistic-constant-force")[0] - fall).abs() < 1e-15);
+    assert!(distance(state("appell-hamel"), &closed_form::appell_hamel(2.0)) < 1e-14);
     assert!(distance(state("chaplygin-sleigh"), &closed_form::chaplygin_sleigh(5.0)) < 1e-13); // a sum of 4000
     assert!(distance(state("vertical-disk-driven"), &closed_form::vertical_disk(0.3, 4.0)) < 1e-14);
     assert!(distance(&state("vertical-disk")[..4], &closed_form::vertical_disk(0.0, 4.0)[..4]) < 1e-14);

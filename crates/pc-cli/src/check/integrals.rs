@@ -41,6 +41,7 @@ enum Verdict<'g> {
 const DECLARED: &str = "declared";
 const DECLARED_CASIMIR: &str = "declared; a Casimir";
 const ENERGY: &str = "energy";
+const ENERGY_OF_ALL: &str = "energy of all velocities";
 const CYCLIC: &str = "cyclic displacement";
 const CASIMIR: &str = "Casimir";
 const FOUND: &str = "found";
@@ -54,6 +55,27 @@ pub(super) fn integrals<'g>(equations: &Equations<'g>, near: &Neighbourhood<'g>)
     search.add_casimirs(&mut list);
     search.add_found(&mut list);
     list
+}
+
+/// Says that the energy is proved to be kept, where its rate vanishes on constraints that the equations do not know.
+pub(super) fn say_energy_is_kept(list: &mut [Integral<'_>]) {
+    for integral in list.iter_mut().filter(|integral| integral.is_energy()) {
+        integral.verdict = Verdict::Conserved;
+    }
+}
+
+/// Adds the energy of all velocities, that of a run; y·η − L of the independent ones is called Jacobi's then.
+pub(super) fn add_energy_of_all<'g>(
+    list: &mut Vec<Integral<'g>>,
+    equations: &Equations<'g>,
+    near: &Neighbourhood<'g>,
+    value: Expr<'g>,
+) {
+    for integral in list.iter_mut().filter(|integral| integral.is_energy()) {
+        integral.name = "Jacobi's".to_owned();
+    }
+    let verdict = Search::new(equations, near).verdict(value);
+    list.push(Integral { name: "energy".to_owned(), value, how: ENERGY_OF_ALL, verdict });
 }
 
 /// Where integrals are looked for.

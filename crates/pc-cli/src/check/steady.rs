@@ -41,6 +41,8 @@ pub(super) enum Search {
     NotAutonomous,
     /// Not as many functions of the coordinates are known as the frame keeps: a solution might not be reached.
     SurfaceUnknown,
+    /// The constraints leave no velocities that are independent of each other.
+    Nonlinear,
     /// Newton's method ended nowhere, or far away.
     None,
     /// It is there.
@@ -302,6 +304,9 @@ impl Search {
                     "not looked for: the functions of the coordinates that the frame keeps are unknown"
                         .to_owned(),
                 ]
+            }
+            Search::Nonlinear => {
+                vec!["not looked for: a constraint is not affine in the velocities".to_owned()]
             }
             Search::None => vec!["none found near the start".to_owned()],
             Search::Found(steady) => steady.lines(width),

@@ -72,8 +72,9 @@ fn letters(text: &str) -> String {
         let named = GREEK.iter().find(|(greek, _)| *greek == letter);
         return named.map_or_else(|| letter.to_string(), |(_, name)| format!("\\{name}"));
     }
+    let spoken = if text == "th" { "theta" } else { text };
     if let Some((_, name)) =
-        GREEK.iter().find(|(_, name)| *name == text || name.strip_prefix("var") == Some(text))
+        GREEK.iter().find(|(_, name)| *name == spoken || name.strip_prefix("var") == Some(spoken))
     {
         return format!("\\{name}");
     }
@@ -83,12 +84,12 @@ fn letters(text: &str) -> String {
     let spelt: String = text
         .chars()
         .map(|c| match GREEK.iter().find(|(greek, _)| *greek == c) {
-            Some((_, name)) => format!("$\\{name}$"),
+            Some((_, name)) => format!("{{\\{name}}}"),
             None if c == '_' => "\\_".to_owned(),
             None => c.to_string(),
         })
         .collect();
-    format!("\\text{{{spelt}}}")
+    format!("\\mathrm{{{spelt}}}")
 }
 
 pub(super) fn number(c: Number) -> Piece {

@@ -32,6 +32,7 @@ pub struct Particle<'g> {
     mass: Expr<'g>,
     position: Vec<Expr<'g>>,
     force: Option<Vec<Expr<'g>>>,
+    name: Option<String>,
 }
 
 impl<'g> Particle<'g> {
@@ -40,13 +41,24 @@ impl<'g> Particle<'g> {
         mass: impl Into<Expr<'g>>,
         position: impl IntoIterator<Item = impl Into<Expr<'g>>>,
     ) -> Particle<'g> {
-        Particle { mass: mass.into(), position: position.into_iter().map(Into::into).collect(), force: None }
+        let position = position.into_iter().map(Into::into).collect();
+        Particle { mass: mass.into(), position, force: None, name: None }
     }
 
     /// The same particle with the force F on it, as long as the position.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> Particle<'g> {
         Particle { force: Some(force.into_iter().map(Into::into).collect()), ..self }
+    }
+
+    /// The same particle with a name, by which its [reactions](crate::Multipliers::body_reactions) are known.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Particle<'g> {
+        Particle { name: Some(name.into()), ..self }
+    }
+
+    pub(crate) fn name(&self) -> Option<&str> {
+        self.name.as_deref()
     }
 
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
@@ -62,6 +74,6 @@ impl<'g> Particle<'g> {
                 moving.work(&moving.in_quasi_velocities(force), &displacements)
             }
         };
-        Ok(Share { kinetic, forces })
+        Ok(Share { kinetic, forces, velocity, angular_velocity: None })
     }
 }

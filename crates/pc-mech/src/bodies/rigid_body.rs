@@ -133,21 +133,32 @@ impl<'g> RigidBody<'g> {
         RigidBody { torque: Some(torque.map(Into::into)), ..self }
     }
 
+    /// The same body with a name, by which its [reactions](crate::Multipliers::body_reactions) are known.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> RigidBody<'g> {
+        RigidBody { centre: self.centre.named(name), ..self }
+    }
+
+    pub(crate) fn name(&self) -> Option<&str> {
+        self.centre.name()
+    }
+
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         moving.check_at_rest("the inertia", &self.inertia.0)?;
-        let Share { kinetic, mut forces } = self.centre.share(moving)?;
+        let Share { kinetic, mut forces, velocity, .. } = self.centre.share(moving)?;
         let turning = match &self.orientation {
             Orientation::Rotation(rotation) => angular_velocities(rotation, moving)?,
             Orientation::AngularVelocity(omega) => affine_parts(omega, moving)?,
         };
-        let rotational = self.inertia.twice_the_energy(&moving.combine(&turning)) / 2.0;
+        let omega = moving.combine(&turning);
+        let rotational = self.inertia.twice_the_energy(&omega) / 2.0;
         if let Some(torque) = &self.torque {
             let torque = moving.in_quasi_velocities(torque);
             for (force, turn) in forces.iter_mut().zip(moving.work(&torque, &turning)) {
                 *force += turn;
             }
         }
-        Ok(Share { kinetic: kinetic + rotational, forces })
+        Ok(Share { kinetic: kinetic + rotational, forces, velocity, angular_velocity: Some(omega) })
     }
 }
 

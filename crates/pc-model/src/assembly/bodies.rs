@@ -36,7 +36,7 @@ impl<'g> Assembler<'g, '_> {
         let position = self.resolved(&body.position)?;
         let force = body.force.as_ref().map(|force| self.all_dynamic(force, x_dot)).transpose()?;
         let Some(orientation) = &body.orientation else {
-            let particle = Particle::new(mass, position);
+            let particle = Particle::new(mass, position).named(&body.name.text);
             return Ok(Body::Particle(match force {
                 Some(force) => particle.force(force),
                 None => particle,
@@ -58,6 +58,7 @@ impl<'g> Assembler<'g, '_> {
                 RigidBody::turning(mass, position, inertia, omega)
             }
         };
+        rigid = rigid.named(&body.name.text);
         if let Some(force) = force {
             rigid = rigid.force(force);
         }

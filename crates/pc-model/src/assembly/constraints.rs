@@ -37,7 +37,7 @@ impl<'g> Written<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The entries of `[constraints]`. Where quasi-velocities are defined by `is`, each constraint that contains an x'
+    /// The entries of `[constraints]`. Where quasi-velocities are defined by `is`, each constraint that is affine in some x'
     /// defines one more.
     pub(super) fn constraints(&mut self) -> Result<Vec<Written<'g>>, ModelError> {
         let document = self.model.document();
@@ -46,7 +46,8 @@ impl<'g> Assembler<'g, '_> {
         let mut written = Vec::new();
         for (place, constraint) in document.constraints.iter().enumerate() {
             let value = self.scope.resolve(&constraint.expression, Stage::Constraint)?;
-            let moves = defining && velocities.iter().any(|&v| value.depends_on(v));
+            let linear = !is_called_nonlinear(constraint);
+            let moves = linear && defining && velocities.iter().any(|&v| value.depends_on(v));
             let defines = moves.then(|| self.graph.symbol(&self.unused(&constraint.name.text)));
             written.push(Written { place, value, defines });
         }
@@ -79,13 +80,8 @@ impl<'g> Assembler<'g, '_> {
         if written.is_empty() {
             return Ok(Bound::free());
         }
-        let constraints: Vec<Constraint<'g>> = written
-            .iter()
-            .map(|w| {
-                let value = self.graph.substitute(&[w.value], x_dot)[0];
-                Constraint::new(self.text_of(w).name.text.clone(), w.defines.unwrap_or(value))
-            })
-            .collect();
+        let constraints: Vec<Constraint<'g>> = written.iter().map(|w| self.constraint(w, x_dot)).collect();
+        self.check_nonlinear(system, &constraints)?;
         let trial = Trial { model: self.model, system, constraints: &constraints, t: t_start };
         trial.check_finite(start)?;
         let refused = |error| self.model.constraint_error(error);
@@ -114,15 +110,18 @@ impl<'g> Assembler<'g, '_> {
         let none =
             |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
         let system = system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
+        let (system, undetermined) = self.with_resultants(system, multipliers, &redundant)?;
         let multipliers =
             system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
         let Some(vanishing) = vanishing else {
             let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
-            return Ok(Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant));
+            let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);
+            return Ok(bound.with_undetermined(undetermined));
         };
         let constrained = |system: &System<'g>| Constrained::new(system, &vanishing).map_err(refused);
         let form = Form::Vanishing(Box::new(constrained(&system)?));
         let bound = Bound::new(form, multipliers.clone(), verdicts.clone(), redundant.clone());
+        let bound = bound.with_undetermined(undetermined.clone());
         let observed = system.integrals().iter().chain(system.outputs());
         let reactions = multipliers.reactions();
         if !observed.into_iter().any(|(_, f)| reactions.iter().any(|&reaction| f.depends_on(reaction))) {
@@ -130,7 +129,34 @@ impl<'g> Assembler<'g, '_> {
         }
         let known = bound.reactions(at).map_err(refused)?;
         let form = Form::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
-        Ok(Bound::new(form, multipliers, verdicts, redundant))
+        Ok(Bound::new(form, multipliers, verdicts, redundant).with_undetermined(undetermined))
+    }
+
+    /// The constraint, in quasi-velocities.
+    fn constraint(&self, written: &Written<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Constraint<'g> {
+        let value = self.graph.substitute(&[written.value], x_dot)[0];
+        let (text, value) = (self.text_of(written), written.defines.unwrap_or(value));
+        match is_called_nonlinear(text) {
+            true => Constraint::nonlinear(text.name.text.clone(), value),
+            false => Constraint::new(text.name.text.clone(), value),
+        }
+    }
+
+    /// That what is called nonlinear is so: what is affine has more forms and Frobenius' test.
+    fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
+        for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {
+            let what = match constraint.coefficients(system) {
+                _ if constraint.is_holonomic(system) => "contains no velocity",
+                Ok(_) => "is affine in the velocities",
+                Err(_) => continue,
+            };
+            let text = self.model.constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
+            if let Some(kind) = text {
+                let constraint = constraint.name().to_owned();
+                return Err(self.model.error(&kind.place, Fault::NotNonlinear { constraint, what }));
+            }
+        }
+        Ok(())
     }
 
     fn text_of(&self, written: &Written<'g>) -> &document::Constraint {
@@ -156,4 +182,9 @@ impl<'g> Assembler<'g, '_> {
             })
             .collect()
     }
+}
+
+/// Whether the text says that it is not affine in the velocities.
+fn is_called_nonlinear(constraint: &document::Constraint) -> bool {
+    constraint.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
 }

@@ -90,26 +90,45 @@ impl<'g> Assembler<'g, '_> {
         let velocities = self.scope.velocities();
         Frame::from_definitions(self.graph, time, x, &velocities, &definitions).map_err(|error| match error {
             AlgebraError::DefinitionNotAffine { row, .. } => match self.definition(row - 1, constraints) {
-                Some(is) => {
+                Some((is, None)) => {
                     let fault = |text| Fault::NotAffine { text, variables: "velocities" };
+                    self.scope.error(is, is.ast.span, fault)
+                }
+                Some((is, Some(constraint))) => {
+                    let fault = |text| Fault::ConstraintNotAffine { constraint: constraint.to_owned(), text };
                     self.scope.error(is, is.ast.span, fault)
                 }
                 None => self.model.error(place, Fault::DependentDefinitions),
             },
-            AlgebraError::SingularDefinitions => self.model.error(place, Fault::DependentDefinitions),
+            AlgebraError::SingularDefinitions => self.dependent(&definitions, constraints),
             other => self.model.algebra_error(other),
         })
     }
 
-    /// The text of a definition: of a quasi-velocity, or after these of a constraint that defines one.
-    fn definition(&self, row: usize, constraints: &[Written<'g>]) -> Option<&Expression> {
+    /// The first definition that adds nothing to those before it: it may contain no velocity.
+    fn dependent(&self, definitions: &[Expr<'g>], constraints: &[Written<'g>]) -> ModelError {
+        let velocities = self.scope.velocities();
+        let slopes = |&definition: &Expr<'g>| self.graph.gradient(definition, &velocities);
+        let rows: Vec<Vec<Expr<'g>>> = definitions.iter().map(slopes).collect();
+        let row = (0..rows.len()).find(|&r| self.graph.generic_rank(&rows[..=r]) <= r).unwrap_or(0);
+        let at_rest = rows[row].iter().all(|slope| slope.is_zero());
+        let fault = |text| if at_rest { Fault::NoVelocity { text } } else { Fault::DependentDefinitions };
+        match self.definition(row, constraints) {
+            Some((is, _)) => self.scope.error(is, is.ast.span, fault),
+            None => self.model.error(&self.model.document().end(), Fault::DependentDefinitions),
+        }
+    }
+
+    /// The text of a definition: of a quasi-velocity, or after these of a constraint that defines one, with its name.
+    fn definition(&self, row: usize, constraints: &[Written<'g>]) -> Option<(&Expression, Option<&str>)> {
         let document = self.model.document();
         let defined = document.quasi_velocities.len();
         match document.quasi_velocities.get(row) {
-            Some(quasi_velocity) => quasi_velocity.is.as_ref(),
+            Some(quasi_velocity) => quasi_velocity.is.as_ref().map(|is| (is, None)),
             None => {
                 let defining = constraints.iter().filter(|c| c.defines().is_some()).nth(row - defined)?;
-                Some(&document.constraints[defining.place()].expression)
+                let constraint = &document.constraints[defining.place()];
+                Some((&constraint.expression, Some(constraint.name.text.as_str())))
             }
         }
     }

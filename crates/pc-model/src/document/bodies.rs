@@ -5,6 +5,7 @@ use super::{Body, Inertia, Orientation};
 use crate::error::{ErrorKind, ModelError};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
+const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";
 const POSITION: &str = "position = [\"x\", \"y\", \"z\"]";
 
 pub(super) fn bodies(table: &Table<'_>) -> Result<Vec<Body>, ModelError> {
@@ -15,7 +16,7 @@ fn body(item: &Item<'_>) -> Result<Body, ModelError> {
     let name = item.label();
     let table = item.section(&format!("bodies.{}", name.text), "[bodies.NAME]")?;
     let (mut mass, mut position, mut inertia, mut force, mut torque) = (None, None, None, None, None);
-    let mut orientation = None;
+    let (mut orientation, mut turning) = (None, None);
     for part in table.items() {
         match part.key() {
             "mass" => mass = Some(part.expression()?),
@@ -25,6 +26,7 @@ fn body(item: &Item<'_>) -> Result<Body, ModelError> {
             "torque" => torque = Some(part.array("3 expressions", "torque = [\"0\", \"0\", \"M\"]")?),
             "rotation" | "angular_velocity" => {
                 let this = self::orientation(&part)?;
+                turning = Some(part.clone());
                 if orientation.replace(this).is_some() {
                     return Err(part.key_error(ErrorKind::Exclusive {
                         first: "rotation",
@@ -42,11 +44,15 @@ fn body(item: &Item<'_>) -> Result<Body, ModelError> {
     if orientation.is_none() && (inertia.is_some() || torque.is_some()) {
         return Err(missing("angular_velocity", "angular_velocity = [\"w1\", \"w2\", \"w3\"]"));
     }
+    if let Some(turning) = turning.filter(|_| inertia.is_none() && torque.is_none()) {
+        let key = turning.key().to_owned();
+        return Err(turning.key_error(ErrorKind::NoEffect { key, without: "inertia", example: INERTIA }));
+    }
     Ok(Body { name, place: table.place.clone(), mass, position, inertia, orientation, force, torque })
 }
 
 fn inertia(item: &Item<'_>) -> Result<Inertia, ModelError> {
-    let (expected, example) = ("3 or 6 expressions", "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]");
+    let (expected, example) = ("3 or 6 expressions", INERTIA);
     let list = item.list(&[3, 6], expected, example)?;
     let list = match <[_; 3]>::try_from(list) {
         Ok(principal) => return Ok(Inertia::Principal(Box::new(principal))),

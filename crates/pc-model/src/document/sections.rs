@@ -123,6 +123,7 @@ fn constraint(item: &Item<'_>) -> Result<Constraint, ModelError> {
                 kind = Some(part.choice(&[
                     ("holonomic", ConstraintKind::Holonomic),
                     ("nonholonomic", ConstraintKind::Nonholonomic),
+                    ("nonlinear", ConstraintKind::Nonlinear),
                 ])?);
             }
             _ => return Err(part.unknown(&["expr", "kind"])),

@@ -1,0 +1,48 @@
+//! The velocities of bodies, kept with the system that they move with.
+
+use pc_expr::Expr;
+
+/// How a body moves: ṙ of its point and ω, affine functions of η.
+#[derive(Clone, Debug)]
+pub struct BodyVelocity<'g> {
+    pub(crate) name: String,
+    pub(crate) velocity: Vec<Expr<'g>>,
+    pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
+}
+
+impl<'g> BodyVelocity<'g> {
+    /// The name it was given, else `body` and its number.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// ṙ(t, x, η), along the axes of its position.
+    pub fn velocity(&self) -> &[Expr<'g>] {
+        &self.velocity
+    }
+
+    /// ω(t, x, η), along the axes of its inertia; none of a particle.
+    pub fn angular_velocity(&self) -> Option<&[Expr<'g>]> {
+        self.angular_velocity.as_deref()
+    }
+}
+
+/// The bodies of a system, and what its Lagrangian has beside them.
+#[derive(Clone, Debug)]
+pub(crate) struct Bodies<'g> {
+    pub(crate) list: Vec<BodyVelocity<'g>>,
+    /// L without the kinetic energy of the bodies.
+    pub(crate) rest: Expr<'g>,
+}
+
+impl<'g> Bodies<'g> {
+    /// The same with `put` applied to every expression, as to the Lagrangian.
+    pub(crate) fn map(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> Bodies<'g> {
+        let moved = |body: &BodyVelocity<'g>| BodyVelocity {
+            name: body.name.clone(),
+            velocity: put(&body.velocity),
+            angular_velocity: body.angular_velocity.as_deref().map(&put),
+        };
+        Bodies { list: self.list.iter().map(moved).collect(), rest: put(&[self.rest])[0] }
+    }
+}

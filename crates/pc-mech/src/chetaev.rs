@@ -1,0 +1,96 @@
+//! Reactions as functions of the state: constraints of any kind, put into the equations of all velocities.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::compiled::ldl::Factors;
+use crate::error::MechError;
+use crate::multipliers::{Constraint, Multipliers};
+use crate::system::System;
+
+impl<'g> Constraint<'g> {
+    /// Whether its reaction does no work on the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, and this vanishes
+    /// with g if it is a multiple of g. By Euler's theorem that is so where g is homogeneous in η; of an affine
+    /// g = C η + c_0 it is so if c_0 = 0.
+    pub fn is_workless(&self, system: &System<'g>) -> bool {
+        if !self.is_nonlinear() {
+            return self.coefficients(system).is_ok_and(|(_, drift)| drift.is_zero());
+        }
+        let (graph, eta) = (system.graph(), system.quasi_velocities());
+        let g = self.velocity(system);
+        let power = graph.dot(graph.gradient(g, eta), eta.iter().copied());
+        let multiple = || graph.linear_relations(&[vec![power], vec![g]]);
+        power.is_zero() || multiple().iter().any(|relation| !relation[0].is_zero())
+    }
+}
+
+impl<'g> Multipliers<'g> {
+    /// Whether one of the constraints is [nonlinear](Constraint::nonlinear) in the velocities.
+    pub fn is_nonlinear(&self) -> bool {
+        self.constraints().iter().any(Constraint::is_nonlinear)
+    }
+
+    /// The reactions as functions of the state: from M η̇ = r + Cᵀ λ and C η̇ = −ċ, the constraints being held by both,
+    ///
+    ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
+    ///
+    /// length m, in terms of (t, x, η). They keep g constant, whatever its value.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System};
+    ///
+    /// // A particle that keeps its speed under gravity: λ = g ẏ/(2 |ṙ|²).
+    /// let graph = Graph::new();
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
+    ///     .build()?;
+    /// let [vx, vy] = graph.symbols(["x'", "y'"]);
+    /// let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 25.0);
+    /// let held = particle.with_multipliers(&[speed])?;
+    /// assert!((held.reactions_of_state()?[0] - 5.0 * vy / (vx.square() + vy.square())).is_zero());
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MechError::DegenerateLagrangian`] if M is singular everywhere, [`MechError::DependentConstraint`] if C M⁻¹ Cᵀ is.
+    pub fn reactions_of_state(&self) -> Result<Vec<Expr<'g>>, MechError> {
+        let (system, mass, c) = (&self.equations.system, &self.equations.mass, &self.coefficients);
+        let graph = system.graph();
+        system.check_regular(mass)?;
+        let factors = Factors::of(graph, mass);
+        let dot =
+            |row: &[Expr<'g>], column: &[Expr<'g>]| graph.dot(row.iter().copied(), column.iter().copied());
+        let pushed: Vec<Vec<Expr<'g>>> = (0..c.rows()).map(|a| factors.solve(graph, c.row(a))).collect();
+        let gram = Matrix::from_fn(c.rows(), c.rows(), |a, b| dot(c.row(a.max(b)), &pushed[a.min(b)]));
+        if let Some(constraint) = self.first_dependent(&gram) {
+            return Err(MechError::DependentConstraint { constraint });
+        }
+        let free = factors.solve(graph, &self.equations.right);
+        let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(c.row(a), &free)).collect();
+        let reactions = Factors::of(graph, &gram).solve(graph, &gaps);
+        graph.check(&reactions)?;
+        Ok(graph.shorten(&reactions, &system.collecting_order()))
+    }
+
+    /// The name of the first constraint whose row adds nothing to the rank of those before it.
+    fn first_dependent(&self, gram: &Matrix<Expr<'g>>) -> Option<String> {
+        let (graph, rows) = (self.equations.system.graph(), gram.to_rows());
+        let dependent = (0..rows.len()).find(|&a| graph.generic_rank(&rows[..=a]) <= a)?;
+        Some(self.constraints()[dependent].name().to_owned())
+    }
+
+    /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces
+    /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form there is of them, and the
+    /// constraints are integrals. Nothing takes numerical errors of these back.
+    ///
+    /// # Errors
+    /// As for [`reactions_of_state`](Multipliers::reactions_of_state).
+    pub fn with_reactions_put_in(&self) -> Result<System<'g>, MechError> {
+        let system = &self.equations.system;
+        let values = self.reactions_of_state()?;
+        let known: Vec<(Expr<'g>, Expr<'g>)> = self.reactions.iter().copied().zip(values).collect();
+        let forces = system.graph().substitute(&self.reaction_forces(), &known);
+        system.with_observed(&known).with_added_forces(&forces)
+    }
+}

@@ -1,0 +1,156 @@
+//! Reactions of constraints as forces and torques on bodies.
+
+use pc_algebra::Matrix;
+use pc_expr::{Expr, Graph};
+
+use crate::bodies::velocity::BodyVelocity;
+use crate::compiled::ldl::Factors;
+use crate::multipliers::Multipliers;
+use crate::system::System;
+
+/// What the reactions of constraints are on one body: of each constraint a force at the body's point, along the axes of
+/// its position, and a torque about this, along the axes of its angular velocity.
+#[derive(Clone, Debug)]
+pub struct BodyReaction<'g> {
+    name: String,
+    turns: bool,
+    forces: Option<Vec<Vec<Expr<'g>>>>,
+    torques: Option<Vec<Vec<Expr<'g>>>>,
+}
+
+impl<'g> BodyReaction<'g> {
+    /// The name of the body.
+    pub fn body(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether the body has an angular velocity.
+    pub fn turns(&self) -> bool {
+        self.turns
+    }
+
+    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η); as long as the
+    /// position. None if it is not determined.
+    pub fn force(&self, constraint: usize) -> Option<&[Expr<'g>]> {
+        self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
+    }
+
+    /// The torque λ_α n_α likewise, 3 components. None if it is not determined, or the body does not turn.
+    pub fn torque(&self, constraint: usize) -> Option<&[Expr<'g>]> {
+        self.torques.as_ref()?.get(constraint).map(Vec::as_slice)
+    }
+}
+
+impl<'g> System<'g> {
+    /// The bodies it was built of, in this order, with their velocities.
+    pub fn bodies(&self) -> &[BodyVelocity<'g>] {
+        &self.bodies.list
+    }
+}
+
+impl<'g> Multipliers<'g> {
+    /// The reactions on each body, by virtual work: forces F at the points r of the bodies and torques N with
+    ///
+    ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
+    ///
+    /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all other bodies,
+    /// of its own ω, and of what has kinetic energy without being a body: if the rank of all these derivatives is that of
+    /// ∂ṙ/∂η and that of the others together. Then it is so but for what is normal to all ṙ that the coordinates
+    /// allow, which is no part of it: that belongs to what holds the coordinates. For torques likewise, with ω.
+    ///
+    /// Where velocities are tied together by the choice of coordinates, as those of two masses on a rod by its angle, the forces
+    /// between them are not those of constraints and share the load in a way that virtual work does not tell.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, Particle, System};
+    ///
+    /// // A pendulum in the plane: the rod pulls with 2λ r, λ = −½ m (|ṙ|² + g l cos θ)/l².
+    /// let graph = Graph::new();
+    /// let pendulum = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .particle(|_, x, _| Particle::new(3, [x[0], x[1]]).force([0, -30]).named("bob"))
+    ///     .build()?;
+    /// let [x, y, reaction] = graph.symbols(["x", "y", "λ_length"]);
+    /// let length = Constraint::new("length", x.square() + y.square() - 1.0);
+    /// let bob = &pendulum.with_multipliers(&[length])?.body_reactions()[0];
+    /// assert_eq!(bob.body(), "bob");
+    /// assert_eq!(bob.force(0), Some(&[2.0 * x * reaction, 2.0 * y * reaction][..]));
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn body_reactions(&self) -> Vec<BodyReaction<'g>> {
+        let system = &self.equations.system;
+        let velocities = Velocities::of(system);
+        let displacements = velocities.of_reactions(&self.coefficients);
+        let along = |block: usize| -> Option<Vec<Vec<Expr<'g>>>> {
+            let displacements = displacements.as_ref().filter(|_| velocities.is_independent(block))?;
+            let pairs = displacements.iter().zip(&self.reactions);
+            Some(pairs.map(|(z, &reaction)| velocities.component(block, z, reaction)).collect())
+        };
+        let mut block = 0;
+        let mut next = || {
+            block += 1;
+            along(block - 1)
+        };
+        let reaction = |body: &BodyVelocity<'g>| BodyReaction {
+            name: body.name.clone(),
+            turns: body.angular_velocity.is_some(),
+            forces: next(),
+            torques: body.angular_velocity.as_ref().and_then(|_| next()),
+        };
+        system.bodies().iter().map(reaction).collect()
+    }
+}
+
+/// The derivatives by η of what moves, in blocks: ṙ and ω of the bodies, in their order, then what L has beside them.
+struct Velocities<'a, 'g> {
+    system: &'a System<'g>,
+    blocks: Vec<Vec<Vec<Expr<'g>>>>,
+}
+
+impl<'a, 'g> Velocities<'a, 'g> {
+    fn of(system: &'a System<'g>) -> Velocities<'a, 'g> {
+        let (graph, eta) = (system.graph(), system.quasi_velocities());
+        let rows = |list: &[Expr<'g>]| list.iter().map(|&v| graph.gradient(v, eta)).collect::<Vec<_>>();
+        let bodies = system.bodies().iter();
+        let of_bodies = bodies.flat_map(|body| std::iter::once(&body.velocity).chain(&body.angular_velocity));
+        let mut blocks: Vec<Vec<Vec<Expr<'g>>>> = of_bodies.map(|v| rows(v)).collect();
+        blocks.push(rows(&graph.gradient(system.bodies.rest, eta)));
+        Velocities { system, blocks }
+    }
+
+    fn graph(&self) -> &'g Graph {
+        self.system.graph()
+    }
+
+    /// Whether block number `b` varies independently of the others.
+    fn is_independent(&self, b: usize) -> bool {
+        let rank = |rows: &[Vec<Expr<'g>>]| self.graph().generic_rank(rows);
+        let others = [&self.blocks[..b], &self.blocks[b + 1..]].concat().concat();
+        rank(&self.blocks.concat()) == rank(&self.blocks[b]) + rank(&others)
+    }
+
+    /// z_α with J z_α the least forces J F_α = C_α: (JᵀJ) z_α = C_α, J all blocks. None if they do not determine
+    /// all velocities.
+    fn of_reactions(&self, coefficients: &Matrix<Expr<'g>>) -> Option<Vec<Vec<Expr<'g>>>> {
+        let (graph, rows, k) = (self.graph(), self.blocks.concat(), coefficients.columns());
+        if graph.generic_rank(&rows) < k {
+            return None;
+        }
+        let product = |r: usize, s: usize| graph.dot(rows.iter().map(|j| j[r]), rows.iter().map(|j| j[s]));
+        let order = self.system.collecting_order();
+        let entries: Vec<Expr<'g>> =
+            (0..k * k).map(|i| product((i / k).max(i % k), (i / k).min(i % k))).collect();
+        let entries = graph.shorten(&entries, &order);
+        let factors = Factors::of(graph, &Matrix::from_fn(k, k, |r, s| entries[r * k + s]));
+        Some((0..coefficients.rows()).map(|a| factors.solve(graph, coefficients.row(a))).collect())
+    }
+
+    /// λ J_b z
+    fn component(&self, b: usize, z: &[Expr<'g>], reaction: Expr<'g>) -> Vec<Expr<'g>> {
+        let graph = self.graph();
+        let forces = self.blocks[b].iter().map(|j| graph.dot(j.iter().copied(), z.iter().copied()));
+        let forces: Vec<Expr<'g>> = forces.collect();
+        let short = graph.shorten(&forces, &self.system.collecting_order());
+        short.into_iter().map(|force| reaction * force).collect()
+    }
+}

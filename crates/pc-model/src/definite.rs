@@ -1,0 +1,98 @@
+//! The sign of the kinetic energy at the start.
+
+use pc_mech::Expr;
+
+use crate::model::Assembly;
+
+/// What is this small against the largest entry of a matrix is rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl<'g> Assembly<'g> {
+    /// Whether at the start some velocity that the constraints allow has δη·M δη < 0, M = ∂²L/∂η∂η: a mass or a moment
+    /// of inertia has the wrong sign then.
+    pub fn has_negative_energy(&self) -> bool {
+        let (system, graph) = (&self.system, self.system.graph());
+        let eta = system.quasi_velocities();
+        let k = eta.len();
+        let hessian = system.momenta().into_iter().flat_map(|p| graph.gradient(p, eta));
+        let bound = self.bound.multipliers().map(|multipliers| multipliers.coefficients().entries());
+        let expressions: Vec<Expr<'g>> = hessian.chain(bound.into_iter().flatten().copied()).collect();
+        let at = [system.parameters(), &self.at_start()].concat();
+        let Ok(values) = graph.evaluate(&expressions, &at) else { return false };
+        let (mass, constraints) = values.split_at(k * k);
+        let allowed = complement(constraints.chunks(k.max(1)), k);
+        let entry =
+            |u: &[f64], v: &[f64]| (0..k).map(|r| u[r] * dot(&mass[r * k..(r + 1) * k], v)).sum::<f64>();
+        is_negative_somewhere(allowed.iter().map(|u| allowed.iter().map(|v| entry(u, v)).collect()).collect())
+    }
+}
+
+fn dot(u: &[f64], v: &[f64]) -> f64 {
+    u.iter().zip(v).map(|(u, v)| u * v).sum()
+}
+
+/// An orthonormal basis of the vectors of k components that are normal to all rows (Gram–Schmidt).
+fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut add = |vector: &[f64]| {
+        let mut rest = vector.to_vec();
+        // Twice is enough.
+        for _ in 0..2 {
+            for known in &basis {
+                let share = dot(&rest, known);
+                rest.iter_mut().zip(known).for_each(|(x, known)| *x -= share * known);
+            }
+        }
+        let (length, before) = (dot(&rest, &rest).sqrt(), dot(vector, vector).sqrt());
+        if length > ROUNDING.sqrt() * before {
+            basis.push(rest.iter().map(|x| x / length).collect());
+        }
+    };
+    let mut normals = 0;
+    for row in rows {
+        add(row);
+        normals += 1;
+    }
+    for i in 0..k {
+        add(&(0..k).map(|j| f64::from(u8::from(i == j))).collect::<Vec<_>>());
+    }
+    basis.split_off(normals.min(basis.len()))
+}
+
+/// Whether Gauss's elimination meets a negative pivot before one that vanishes.
+fn is_negative_somewhere(mut form: Vec<Vec<f64>>) -> bool {
+    let size = form.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+    for p in 0..form.len() {
+        let pivot = form[p][p];
+        if pivot.is_nan() || pivot.abs() <= ROUNDING * size {
+            continue;
+        }
+        if pivot < 0.0 {
+            return true;
+        }
+        for i in p + 1..form.len() {
+            let share = form[i][p] / pivot;
+            for j in p..form.len() {
+                form[i][j] -= share * form[p][j];
+            }
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_those_of_the_allowed_velocities() {
+        let indefinite = vec![vec![1.0, 2.0], vec![2.0, 1.0]];
+        assert!(is_negative_somewhere(indefinite));
+        assert!(!is_negative_somewhere(vec![vec![2.0, 1.0], vec![1.0, 2.0]]));
+        assert!(!is_negative_somewhere(vec![vec![1.0, 0.0], vec![0.0, 0.0]]), "degenerate is another matter");
+        let rows = [3.0, 0.0, 4.0];
+        let basis = complement([&rows[..]].into_iter(), 3);
+        assert_eq!(basis.len(), 2);
+        assert!(basis.iter().all(|v| dot(v, &rows).abs() < 1e-15));
+    }
+}
