@@ -1,7 +1,5 @@
 //! `[events.NAME]`: what becomes of it, and every refusal in full.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_mech::Graph;
 use pc_model::document::Direction;
 use pc_model::{Category, Document, Model, ModelError, Source};

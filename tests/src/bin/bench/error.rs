@@ -7,6 +7,7 @@ use pc_expr::{ExprError, Failure};
 use pc_mech::MechError;
 use pc_model::ModelError;
 use pc_nonholo::NonholoError;
+use pc_solve::SolveFailure;
 
 /// Why a benchmark could not be run.
 #[derive(Debug, thiserror::Error)]
@@ -53,6 +54,18 @@ pub(crate) enum Error {
     /// A program could not be started.
     #[error("cannot start `{command}`")]
     Start { command: String, source: io::Error },
+    /// A motion could not be integrated.
+    #[error(transparent)]
+    Solve(#[from] Box<SolveFailure>),
+    /// A program answered what cannot be read.
+    #[error("`{command}` answered `{answer}`")]
+    Answer { command: String, answer: String },
+    /// The C library that was built for us was not found.
+    #[error("no SUNDIALS among what `cargo build` says it has built")]
+    NoSundials,
+    /// Two integrations of one motion end apart.
+    #[error("{system}, rtol {rtol:e}: ours ends {distance:e} from that of plain C")]
+    Apart { system: &'static str, rtol: f64, distance: f64 },
     /// The report could not be written.
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },

@@ -9,6 +9,7 @@ mod hand;
 mod measure;
 mod report;
 mod rhs;
+mod solve;
 mod start;
 mod systems;
 
@@ -32,6 +33,7 @@ const BENCHMARKS: &[Benchmark] = &[
         run: rhs::run,
     },
     Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
+    Benchmark { name: "solve", about: "a whole integration, by us and by plain C", run: solve::run },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];
 
