@@ -12,6 +12,7 @@ use sundials_sys as sys;
 use crate::error::NonFinite;
 use crate::linear::Work;
 use crate::offset::Offset;
+use crate::variation::Variation;
 
 pub(crate) const SUCCESS: c_int = 0;
 const RECOVERABLE: c_int = 1;
@@ -27,6 +28,8 @@ pub(crate) struct Callbacks<F> {
     /// The last failure since it was taken.
     failure: Option<Failure>,
     panic: Option<Box<dyn Any + Send>>,
+    /// The equations of variation, if sensitivities are asked for.
+    pub(crate) variation: Variation,
 }
 
 impl<F: VectorField> Callbacks<F> {
@@ -79,7 +82,15 @@ impl<F> UserData<F> {
         F: VectorField,
     {
         let offset = field.has_projection().then(|| Offset::new(dim));
-        let callbacks = Callbacks { field, dim, linear: Work::default(), offset, failure: None, panic: None };
+        let callbacks = Callbacks {
+            field,
+            dim,
+            linear: Work::default(),
+            offset,
+            failure: None,
+            panic: None,
+            variation: Variation::default(),
+        };
         UserData(NonNull::from(Box::leak(Box::new(callbacks))))
     }
 
@@ -129,6 +140,17 @@ impl<F> UserData<F> {
         // SAFETY: owned and live, borrowed exclusively.
         let callbacks = unsafe { self.0.as_mut() };
         callbacks.offset.as_mut().map(|offset| (&mut callbacks.field, offset))
+    }
+
+    /// The field, to be called when CVODES is not.
+    pub(crate) fn field_mut(&mut self) -> &mut F {
+        // SAFETY: owned and live, borrowed exclusively.
+        &mut unsafe { self.0.as_mut() }.field
+    }
+
+    pub(crate) fn set_variation(&mut self, variation: Variation) {
+        // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.variation = variation;
     }
 
     pub(crate) fn take_failure(&mut self) -> Option<Failure> {

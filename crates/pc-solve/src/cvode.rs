@@ -2,8 +2,12 @@
 
 mod dense;
 mod hybrid;
+mod quadrature;
 mod restart;
+mod sensitivity;
 mod setup;
+
+pub(crate) use quadrature::Quadratures;
 
 use std::ffi::{c_int, c_void};
 use std::fmt;
@@ -37,6 +41,7 @@ pub struct Cvode<F> {
     memory: Memory,
     _nonlinear_iteration: NonlinearIteration,
     linear: Option<Linear>,
+    sensitivity: Option<sensitivity::Forward>,
     /// y(`step_time`).
     step_state: Vector,
     /// y(`time`), unless `time` is `step_time`.

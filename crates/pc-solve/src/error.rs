@@ -38,15 +38,7 @@ impl SolveError {
     /// The return code of CVODES, if that is the reason.
     pub fn code(&self) -> Option<Code> {
         match self {
-            SolveError::Integration(error) => match error.reason {
-                Reason::Cvode { code, .. } => Some(code),
-                Reason::Overflow { .. }
-                | Reason::Projection { .. }
-                | Reason::Stalled
-                | Reason::Event { .. }
-                | Reason::Reset { .. }
-                | Reason::Accumulation { .. } => None,
-            },
+            SolveError::Integration(error) => error.reason.code(),
             SolveError::Input(_) | SolveError::Setup { .. } => None,
         }
     }
@@ -78,9 +70,41 @@ pub struct IntegrationError {
 
 impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let time = self.time;
-        match &self.reason {
+        self.reason.write(self.time, f)
+    }
+}
+
+impl Reason {
+    /// The return code of CVODES, if that is the reason.
+    fn code(&self) -> Option<Code> {
+        match self {
+            Reason::Cvode { code, .. } => Some(*code),
+            Reason::Adjoint(reason) => reason.code(),
+            Reason::Overflow { .. }
+            | Reason::Projection { .. }
+            | Reason::Functional
+            | Reason::Collapsed { .. }
+            | Reason::Stalled
+            | Reason::Event { .. }
+            | Reason::Reset { .. }
+            | Reason::Accumulation { .. } => None,
+        }
+    }
+
+    /// The message, after reaching `time`.
+    fn write(&self, time: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),
+            Reason::Adjoint(reason) => {
+                f.write_str("the adjoint equations, from the end back: ")?;
+                reason.write(time, f)
+            }
+            Reason::Functional => write!(f, "the functional has no value at the end, t = {time}"),
+            Reason::Collapsed { vector } => write!(
+                f,
+                "tangent vector number {vector} (from 0) has lost its direction at t = {time}: shorter intervals keep \
+                 it"
+            ),
             Reason::Overflow { component, value, t } => {
                 write!(f, "{component} is {value} at t = {t}, after reaching t = {time}")
             }
@@ -117,6 +141,19 @@ pub enum Reason {
         code: Code,
         /// What it said.
         message: String,
+    },
+
+    /// The integration of the adjoint equations, from the end back, could not go on; time and state reached are those of
+    /// the motion there.
+    Adjoint(Box<Reason>),
+
+    /// The end term of a [functional](crate::Functional) failed.
+    Functional,
+
+    /// A tangent vector became a combination of those before it, to rounding, in the course of one interval.
+    Collapsed {
+        /// Its number.
+        vector: usize,
     },
 
     /// A component grew beyond the largest number in a step that CVODES accepted.
@@ -205,6 +242,34 @@ pub enum NonFinite {
         t: f64,
     },
 
+    /// An entry of ∂f/∂p.
+    #[error("the derivative of the rate of {row} by parameter {parameter} (from 0) is {value} at t = {t}")]
+    ParameterJacobian {
+        /// Name of the component of f.
+        row: String,
+        /// Number of the parameter.
+        parameter: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the derivative was evaluated.
+        t: f64,
+    },
+
+    /// An entry of (∂f/∂y) s.
+    #[error(
+        "the rate of {component} has a derivative along column {column} (from 0) that is {value} at t = {t}"
+    )]
+    Variation {
+        /// Name of the component of f.
+        component: String,
+        /// Number of the column s.
+        column: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the product was evaluated.
+        t: f64,
+    },
+
     /// A component of what a [preconditioner](crate::Preconditioner) wrote.
     #[error("the preconditioner makes {component} {value} at t = {t}")]
     Preconditioned {
@@ -221,6 +286,17 @@ pub enum NonFinite {
     Event {
         /// Its name.
         event: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
+    /// A value or derivative of a [functional](crate::Functional).
+    #[error("{what} is {value} at t = {t}")]
+    Functional {
+        /// Which.
+        what: String,
         /// NaN or an infinity.
         value: f64,
         /// Where it was evaluated.
@@ -419,6 +495,41 @@ pub enum InputError {
         /// Where it ends.
         end: f64,
     },
+
+    /// Derivatives by parameters are asked for of a vector field that has none.
+    #[error("the vector field has no derivative by its parameters")]
+    NoParameterJacobian,
+
+    /// There is no such parameter.
+    #[error("the vector field has {len} parameters, but number {index} (from 0) is asked for")]
+    NoParameter {
+        /// The number asked for.
+        index: usize,
+        /// Number of parameters.
+        len: usize,
+    },
+
+    /// There is no such component.
+    #[error("the vector field has {dim} components, but number {index} (from 0) is asked for")]
+    NoComponent {
+        /// The number asked for.
+        index: usize,
+        /// Dimension of the vector field.
+        dim: usize,
+    },
+
+    /// More Lyapunov exponents are asked for than there are, or none.
+    #[error("{count} exponents are asked for, but a flow in {dim} dimensions has 1 to {dim}")]
+    Exponents {
+        /// The number asked for.
+        count: usize,
+        /// Dimension of the vector field.
+        dim: usize,
+    },
+
+    /// A new start of an integration with sensitivities: the derivatives of the new state are not known.
+    #[error("an integration with sensitivities cannot be started anew, as a reset by an event does")]
+    Restart,
 
     /// Interpolation before the first step.
     #[error("no step has been taken to interpolate in")]

@@ -87,6 +87,26 @@ impl NonlinearIteration {
         context.check_new("SUNNonlinSol_FixedPoint", raw).map(NonlinearIteration)
     }
 
+    /// Newton's iteration for `count` vectors at a time.
+    pub(crate) fn newton_of(context: &mut Context, count: c_int, y: &Vector) -> Result<Self, SolveError> {
+        // SAFETY: both are live and of one context; `y` is only a template to clone.
+        let raw = unsafe { sys::SUNNonlinSol_NewtonSens(count, y.raw(), context.raw()) };
+        context.check_new("SUNNonlinSol_NewtonSens", raw).map(NonlinearIteration)
+    }
+
+    /// The fixed-point iteration for `count` vectors at a time.
+    pub(crate) fn fixed_point_of(
+        context: &mut Context,
+        count: c_int,
+        y: &Vector,
+    ) -> Result<Self, SolveError> {
+        let acceleration_vectors = 0;
+        // SAFETY: both are live and of one context; `y` is only a template to clone.
+        let raw =
+            unsafe { sys::SUNNonlinSol_FixedPointSens(count, y.raw(), acceleration_vectors, context.raw()) };
+        context.check_new("SUNNonlinSol_FixedPointSens", raw).map(NonlinearIteration)
+    }
+
     pub(crate) fn raw(&self) -> sys::SUNNonlinearSolver {
         self.0.as_ptr()
     }

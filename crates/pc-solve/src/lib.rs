@@ -25,6 +25,8 @@
 
 #![expect(unsafe_code, reason = "calls of the C library SUNDIALS")]
 
+mod adjoint;
+mod adjoint_field;
 mod callback;
 mod code;
 mod context;
@@ -37,12 +39,20 @@ mod fn_field;
 mod handles;
 mod inequality;
 mod linear;
+mod linearisation;
+mod lyapunov;
+mod motion_record;
 mod offset;
 mod options;
+mod orthonormal;
+mod sensitivity;
+mod sensitivity_trajectory;
 mod solve;
 mod statistics;
 mod trajectory;
+mod variation;
 
+pub use adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
 pub use code::Code;
 pub use cvode::{Cvode, Ending, Hybrid};
 pub use dense::{DenseOutput, Segment};
@@ -51,8 +61,11 @@ pub use events::{Accumulation, Direction, Event, Events, FnEvents, Occurrence};
 pub use fn_field::{FnField, from_fn};
 pub use inequality::Inequality;
 pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
+pub use lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use options::{Method, NonlinearSolver, Options, Tolerance};
 pub use pc_expr::{Failure, Pattern, VectorField};
+pub use sensitivity::{Correction, Sensitivities, SensitivityStatistics};
+pub use sensitivity_trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};
 pub use solve::{
     HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,
     solve_with_events_observed,

@@ -14,7 +14,7 @@ impl<F: VectorField> Cvode<F> {
     /// next step may go either way.
     ///
     /// # Errors
-    /// [`SolveError::Input`] unless all is finite and of the right length; [`SolveError::Setup`] if CVODES refuses. The
+    /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities; [`SolveError::Setup`] if CVODES refuses. The
     /// integration is then where it was.
     pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         finite("the start time", t)?;
@@ -22,6 +22,9 @@ impl<F: VectorField> Cvode<F> {
         if let Some(i) = y.iter().position(|value| !value.is_finite()) {
             let what = format!("{} at the start", self.field().component_name(i));
             return Err(InputError::NotFinite { what, value: y[i] }.into());
+        }
+        if self.sensitivity.is_some() {
+            return Err(InputError::Restart.into());
         }
         let before = self.statistics();
         self.work.as_mut_slice().copy_from_slice(y);

@@ -67,6 +67,7 @@ impl<F: VectorField> Cvode<F> {
             memory,
             _nonlinear_iteration: nonlinear_iteration,
             linear,
+            sensitivity: None,
             step_state,
             output,
             work,

@@ -1,0 +1,171 @@
+//! The adjoint equations of a motion as a vector field.
+
+use pc_expr::{Failure, VectorField};
+
+use crate::adjoint::Functional;
+use crate::cvode::Quadratures;
+use crate::error::{NonFinite, SolveError};
+use crate::linearisation::Linearisation;
+use crate::motion_record::MotionRecord;
+use crate::options::Options;
+
+/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals that the gradient takes.
+pub(crate) struct AdjointField<F, G> {
+    pub(crate) field: F,
+    functional: G,
+    linearisation: Linearisation,
+    motion: MotionRecord,
+    /// y(t)
+    state: Vec<f64>,
+    by_state: Vec<f64>,
+    by_parameters: Vec<f64>,
+}
+
+/// The two terms of a functional.
+#[derive(Clone, Copy)]
+enum Term {
+    Density,
+    End,
+}
+
+impl<F: VectorField, G: Functional> AdjointField<F, G> {
+    pub(crate) fn new(field: F, functional: G, options: &Options) -> Self {
+        let linearisation = Linearisation::new(&field, options);
+        let parameters = if field.has_parameter_jacobian() { field.parameters_len() } else { 0 };
+        let dim = field.dim();
+        AdjointField {
+            field,
+            functional,
+            linearisation,
+            motion: MotionRecord::default(),
+            state: vec![0.0; dim],
+            by_state: vec![0.0; dim],
+            by_parameters: vec![0.0; parameters],
+        }
+    }
+
+    /// Records the motion from y(t0) = y0 to `t1`.
+    pub(crate) fn record(
+        &mut self,
+        t0: f64,
+        y0: &[f64],
+        t1: f64,
+        options: &Options,
+    ) -> Result<(), SolveError> {
+        self.motion = MotionRecord::of(&mut self.field, t0, y0, t1, options)?;
+        Ok(())
+    }
+
+    /// y(t) of the recorded motion.
+    pub(crate) fn motion(&mut self, t: f64) -> &[f64] {
+        self.motion.state(t, &mut self.state);
+        &self.state
+    }
+
+    /// h(t, y), and its derivatives by the state and by the parameters.
+    pub(crate) fn end(&mut self, t: f64, y: &[f64]) -> Result<(f64, Vec<f64>, Vec<f64>), Failure> {
+        self.state.copy_from_slice(y);
+        let value = self.term(Term::End, t)?;
+        Ok((value, self.by_state.clone(), self.by_parameters.clone()))
+    }
+
+    /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its derivatives.
+    fn term(&mut self, term: Term, t: f64) -> Result<f64, Failure> {
+        let AdjointField { field, functional, state, by_state, by_parameters, .. } = self;
+        by_state.fill(f64::NAN);
+        by_parameters.fill(f64::NAN);
+        let (value, name) = match term {
+            Term::Density => (functional.density(t, state, by_state, by_parameters)?, "density"),
+            Term::End => (functional.end(t, state, by_state, by_parameters)?, "end term"),
+        };
+        let (what, value) = if !value.is_finite() {
+            (format!("the {name} of the functional"), value)
+        } else if let Some(i) = not_finite(by_state) {
+            let component = field.component_name(i);
+            (format!("the derivative by {component} of the {name} of the functional"), by_state[i])
+        } else if let Some(j) = not_finite(by_parameters) {
+            let what = format!("the derivative by parameter {j} (from 0) of the {name} of the functional");
+            (what, by_parameters[j])
+        } else {
+            return Ok(value);
+        };
+        Err(Failure::recoverable(NonFinite::Functional { what, value, t }))
+    }
+}
+
+impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
+    fn dim(&self) -> usize {
+        self.state.len()
+    }
+
+    fn rhs(&mut self, t: f64, adjoint: &[f64], rate: &mut [f64]) -> Result<(), Failure> {
+        self.motion.state(t, &mut self.state);
+        self.term(Term::Density, t)?;
+        let jacobian = self.linearisation.jacobian(&mut self.field, t, &self.state)?;
+        for ((rate, column), by_state) in
+            rate.iter_mut().zip(jacobian.chunks_exact(adjoint.len())).zip(&self.by_state)
+        {
+            *rate = -dot(column, adjoint) - by_state;
+        }
+        Ok(())
+    }
+
+    fn has_jacobian(&self) -> bool {
+        true
+    }
+
+    /// −(∂f/∂y)ᵀ
+    fn jacobian(&mut self, t: f64, adjoint: &[f64], matrix: &mut [f64]) -> Result<(), Failure> {
+        self.motion.state(t, &mut self.state);
+        let jacobian = self.linearisation.jacobian(&mut self.field, t, &self.state)?;
+        let dim = adjoint.len();
+        for (j, column) in matrix.chunks_exact_mut(dim).enumerate() {
+            for (i, entry) in column.iter_mut().enumerate() {
+                *entry = -jacobian[j + i * dim];
+            }
+        }
+        Ok(())
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        format!("the adjoint of {}", self.field.component_name(i))
+    }
+}
+
+/// What goes from zero at the end to ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt, and ∫ g dt, at the start.
+impl<F: VectorField, G: Functional> Quadratures for AdjointField<F, G> {
+    fn count(&self) -> usize {
+        self.by_parameters.len() + 1
+    }
+
+    fn integrands(&mut self, t: f64, adjoint: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+        self.motion.state(t, &mut self.state);
+        let density = self.term(Term::Density, t)?;
+        let parameters = self.by_parameters.len();
+        rates[parameters] = -density;
+        if parameters == 0 {
+            return Ok(());
+        }
+        let by_parameters = self.linearisation.parameter_jacobian(&mut self.field, t, &self.state)?;
+        for ((rate, column), of_density) in
+            rates.iter_mut().zip(by_parameters.chunks_exact(adjoint.len())).zip(&self.by_parameters)
+        {
+            *rate = -of_density - dot(column, adjoint);
+        }
+        match not_finite(rates) {
+            None => Ok(()),
+            Some(j) => {
+                let what = format!("the rate of the gradient by parameter {j} (from 0)");
+                Err(Failure::recoverable(NonFinite::Functional { what, value: rates[j], t }))
+            }
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub(crate) fn not_finite(values: &[f64]) -> Option<usize> {
+    values.iter().position(|value| !value.is_finite())
+}
