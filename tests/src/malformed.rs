@@ -559,7 +559,7 @@ pub const MALFORMED: &[Malformed] = &[
         file: "reset-of-parameter.toml",
         fault: "a reset of a parameter",
         exit_code: 3,
-        mentions: &["`l` cannot be reset: it is a parameter"],
+        mentions: &["l ="],
         line: Some(23),
         cure: Some(("{ l = ", "{ omega = ")),
     },

@@ -56,7 +56,7 @@ fn equations_with_multipliers_are_the_classical_ones() {
             assert_classical(name, &mut model.compile(&assembly).unwrap().0);
         }
     }
-    assert_eq!(held, ["carriage", "vertical-disk"]);
+    assert_eq!(held, ["appell-hamel", "carriage", "vertical-disk"]);
 }
 
 #[test]

@@ -127,7 +127,7 @@ fn lagranges_equations_are_poincares() {
         }
         Some(())
     });
-    // In these n > k, n = 0, or γ lies on a sphere.
+    // In these n > k, n = 0, or γ lies on a sphere; ṡ = 0 of the place that a block sticks at, of the side it rocks on.
     assert_eq!(
         without,
         [
@@ -150,6 +150,8 @@ fn lagranges_equations_are_poincares() {
             "turntable",
             "turntable-accelerated",
             "ball-in-cylinder",
+            "stick-slip-block",
+            "rocking-block",
         ]
     );
 }

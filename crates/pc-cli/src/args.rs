@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::saving::SavingArguments;
+use crate::sweep::arguments::SweepArguments;
+
 /// The command line of `pc`.
 #[derive(Clone, Debug, Parser)]
 #[command(
@@ -30,6 +33,8 @@ pub enum Command {
     Derive(DeriveArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
     Run(RunArguments),
+    /// Integrate many motions, of other parameters and starts, over all cores; what is finished survives interruptions
+    Sweep(Box<SweepArguments>),
     /// Write the equations as C or Rust source that needs nothing of this program
     Emit(EmitArguments),
     /// List the models that come with the program
@@ -120,6 +125,9 @@ pub struct RunArguments {
     /// Draw the motion into FILE.svg or FILE.png
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Checkpoints.
+    #[command(flatten)]
+    pub saving: SavingArguments,
 }
 
 /// Arguments of `pc emit`.
@@ -215,11 +223,11 @@ fn form(text: &str) -> Result<Form, String> {
     choice(text, &[])
 }
 
-fn run_form(text: &str) -> Result<RunForm, String> {
+pub(crate) fn run_form(text: &str) -> Result<RunForm, String> {
     choice(text, &["lagrange", "voronets"])
 }
 
-fn method(text: &str) -> Result<Method, String> {
+pub(crate) fn method(text: &str) -> Result<Method, String> {
     choice(text, &["auto", "taylor", "dop853"])
 }
 
@@ -251,14 +259,14 @@ fn setting(text: &str) -> Result<Setting, String> {
     }
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err("write a finite number, such as 10 or 1e-3".to_owned()),
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
         _ => Err("it must be positive".to_owned()),
@@ -268,7 +276,7 @@ fn positive(text: &str) -> Result<f64, String> {
 /// More rows than this are a slip of the pen: each is held in memory.
 const MOST_SAMPLES: usize = 10_000_000;
 
-fn samples(text: &str) -> Result<usize, String> {
+pub(crate) fn samples(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(count) if (2..=MOST_SAMPLES).contains(&count) => Ok(count),
         _ => Err(format!("write a whole number from 2 (start and end) to {MOST_SAMPLES}")),

@@ -8,6 +8,8 @@ use pc_model::{ModelError, UnknownIntegral, UnknownParameter};
 use pc_solve::SolveError;
 
 use crate::plot::PlotError;
+use crate::saving::SavingError;
+use crate::sweep::error::SweepError;
 use crate::text::short;
 
 /// An error of the program.
@@ -87,6 +89,12 @@ pub enum CliError {
     /// Something wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// Something wrong with checkpoints.
+    #[error(transparent)]
+    Saving(#[from] SavingError),
+    /// Something wrong with a sweep.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// The integration could not go on.
     #[error("the integration failed{}", at(.cause, names))]
     Integration {
@@ -112,6 +120,7 @@ impl CliError {
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Model(error) => error.category().exit_code(),
+            CliError::Sweep(error) => error.exit_code(),
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }
@@ -123,6 +132,7 @@ impl CliError {
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }
             | CliError::Write { .. }
+            | CliError::Saving(_)
             | CliError::Plot(_) => CliError::USAGE,
         }
     }

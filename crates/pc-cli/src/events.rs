@@ -12,7 +12,7 @@ use crate::flow::{Reading, inputs};
 const OFF: f64 = 1e-8;
 
 /// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FlowEvents {
     events: Vec<Event>,
     reading: Reading,
@@ -23,7 +23,7 @@ pub struct FlowEvents {
 }
 
 /// Components of (x, η) and their new values.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Reset {
     places: Vec<usize>,
     values: Evaluator,
@@ -72,6 +72,15 @@ impl FlowEvents {
             resets: resets.collect::<Result<_, ModelError>>()?,
             constraints: held.then(|| watch.clone()),
         })
+    }
+
+    /// The same with other values of the parameters.
+    pub(crate) fn with_parameters(&self, parameters: &[f64]) -> FlowEvents {
+        let mut events = FlowEvents { reading: self.reading.with_parameters(parameters), ..self.clone() };
+        if let Some(motion) = &mut events.constraints {
+            motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
+        }
+        events
     }
 
     /// Whether there are none.

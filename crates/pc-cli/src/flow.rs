@@ -1,8 +1,14 @@
 //! The vector field that is integrated, and what a table shows of its states.
 
+use std::ops::ControlFlow;
+
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 use pc_mech::{LegendreTransform, MechError, Motion, System};
 use pc_model::{Assembly, Form, Model, ModelError};
+use pc_solve::{
+    Ending, HybridMotion, Options, SolveError, SolveFailure, Trajectory, solve_observed,
+    solve_with_events_observed,
+};
 
 use crate::args::RunForm;
 use crate::events::FlowEvents;
@@ -75,6 +81,11 @@ impl Reading {
             Some(transform) => transform.to_momenta(t, &state),
             None => Ok(state),
         }
+    }
+
+    /// The same with other values of the parameters.
+    pub(crate) fn with_parameters(&self, parameters: &[f64]) -> Reading {
+        Reading { parameters: parameters.to_vec(), ..self.clone() }
     }
 
     /// Values of the parameters.
@@ -157,6 +168,38 @@ impl Flow {
         })
     }
 
+    /// The motion as far as it can be computed, and why not further.
+    pub(crate) fn follow(
+        &mut self,
+        t_start: f64,
+        times: &[f64],
+        options: &Options,
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> (HybridMotion, Option<SolveError>) {
+        let (motion, start) = (&mut self.motion, &self.start);
+        if self.events.is_empty() {
+            return without_events(solve_observed(motion, t_start, start, times, options, step));
+        }
+        match solve_with_events_observed(motion, t_start, start, times, options, &mut self.events, step) {
+            Ok(motion) => (motion, None),
+            Err(failure) => (failure.reached, Some(failure.error)),
+        }
+    }
+
+    /// The same equations in quasi-velocities with other values of the parameters, at another start.
+    pub(crate) fn with_values(&self, parameters: &[f64], start: Vec<f64>) -> Flow {
+        let mut motion = self.motion.clone();
+        motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
+        Flow {
+            motion,
+            start,
+            names: self.names.clone(),
+            events: self.events.with_parameters(parameters),
+            reading: self.reading.with_parameters(parameters),
+            watch: None,
+        }
+    }
+
     /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
@@ -212,5 +255,17 @@ pub fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
         time: Some(system.frame().time()),
         state: state.to_vec(),
         parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+    }
+}
+
+/// A motion on which nothing happens, as far as it could be computed, and why not further.
+pub(crate) fn without_events(
+    solved: Result<Trajectory, Box<SolveFailure>>,
+) -> (HybridMotion, Option<SolveError>) {
+    let motion = |trajectory, ending| HybridMotion { trajectory, occurrences: Vec::new(), ending };
+    match solved {
+        Ok(trajectory) if trajectory.is_complete() => (motion(trajectory, Some(Ending::Completed)), None),
+        Ok(trajectory) => (motion(trajectory, Some(Ending::Stopped)), None),
+        Err(failure) => (motion(failure.reached, None), Some(failure.error)),
     }
 }

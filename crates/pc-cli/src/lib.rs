@@ -3,6 +3,7 @@
 //! ```text
 //! MODEL ─ input ─► Model ─ derive ─► equations, printed
 //!                        ─ check  ─► ranks, residuals, integrals, printed
+//!                        ─ sweep  ─► many motions, a Record of each in a Journal ─► CSV, JSON, npz, Parquet
 //!                        ─ run    ─► Run: a Table and how it came about
 //!                                    ├─ output ─► CSV, JSON, npz
 //!                                    ├─ plot   ─► SVG, PNG
@@ -20,6 +21,7 @@ pub mod emit;
 pub mod error;
 pub mod events;
 pub mod flow;
+mod identity;
 pub mod input;
 mod interrupt;
 pub mod latex;
@@ -29,7 +31,9 @@ pub mod plan;
 pub mod plot;
 mod progress;
 pub mod run;
+pub mod saving;
 pub mod summary;
+pub mod sweep;
 pub mod table;
 pub mod text;
 

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use pc_cli::args::{Arguments, Command};
-use pc_cli::{CliError, check, derive, emit, models, run, text};
+use pc_cli::{CliError, check, derive, emit, models, run, sweep, text};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::command(arguments),
         Command::Derive(arguments) => derive::command(arguments),
         Command::Run(arguments) => run::command(arguments),
+        Command::Sweep(arguments) => sweep::command(arguments),
         Command::Emit(arguments) => emit::command(arguments),
         Command::Models(arguments) => models::command(arguments),
     };

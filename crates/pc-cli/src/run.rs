@@ -15,6 +15,7 @@ use crate::output::Destination;
 use crate::plan::Plan;
 use crate::plot::Picture;
 use crate::progress::Progress;
+use crate::saving::{Saving, SavingArguments};
 use crate::table::Table;
 use crate::{input, interrupt, summary, text};
 
@@ -93,7 +94,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let form = Plan::form(&model, arguments);
-    let run = integrate(&model, form, || Plan::new(&model, arguments))?;
+    let run = integrate_saved(&model, form, &arguments.saving, || Plan::new(&model, arguments))?;
 
     let written = write(&run, &destination, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
@@ -116,6 +117,19 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
+    integrate_saved(model, form, &SavingArguments::default(), plan)
+}
+
+/// As [`integrate`], with checkpoints.
+///
+/// # Errors
+/// As there, and what is wrong with a checkpoint to go on from.
+pub fn integrate_saved(
+    model: &Model,
+    form: RunForm,
+    saving: &SavingArguments,
+    plan: impl FnOnce() -> Result<Plan, CliError>,
+) -> Result<Run, CliError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
     say_moved(&assembly);
@@ -123,6 +137,7 @@ pub fn integrate(
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
+    let mut saving = Saving::new(saving, model, &plan, form)?;
     let free = assembly.free_system().map_err(|error| model.constraint_error(error));
     if let (RunForm::Canonical, Ok(free)) = (form, &free) {
         choice(&assembly, free).iter().for_each(|choice| say_choice(choice));
@@ -135,7 +150,10 @@ pub fn integrate(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let (solved, error) = solve(&mut flow, &plan, observer);
+    let (solved, error) = match &mut saving {
+        Some(saving) => saving.solve(&flow, &plan, observer)?,
+        None => flow.follow(plan.t_start, &plan.times(), &plan.options(), observer),
+    };
     let wall = start.elapsed();
     drop(progress);
 
@@ -162,32 +180,6 @@ pub fn integrate(
         ending,
         wall,
     })
-}
-
-/// The motion as far as it could be computed, and why not further.
-fn solve(
-    flow: &mut Flow,
-    plan: &Plan,
-    observer: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> (HybridMotion, Option<SolveError>) {
-    let (motion, start) = (&mut flow.motion, &flow.start);
-    let (times, options) = (plan.times(), plan.options());
-    if flow.events.is_empty() {
-        let alone = |trajectory, ending| HybridMotion { trajectory, occurrences: Vec::new(), ending };
-        return match solver::solve_observed(motion, plan.t_start, start, &times, &options, observer) {
-            Ok(trajectory) if trajectory.is_complete() => {
-                (alone(trajectory, Some(solver::Ending::Completed)), None)
-            }
-            Ok(trajectory) => (alone(trajectory, Some(solver::Ending::Stopped)), None),
-            Err(failure) => (alone(failure.reached, None), Some(failure.error)),
-        };
-    }
-    let events = &mut flow.events;
-    match solver::solve_with_events_observed(motion, plan.t_start, start, &times, &options, events, observer)
-    {
-        Ok(motion) => (motion, None),
-        Err(failure) => (failure.reached, Some(failure.error)),
-    }
 }
 
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {

@@ -26,6 +26,16 @@ pub(crate) fn assemble<'g>(model: &Model, graph: &'g Graph) -> Result<Assembly<'
     Assembler { model, graph, scope: Scope::new(graph, model.document()) }.assemble()
 }
 
+/// The start values alone: of coordinates, then of the declared quasi-velocities or of the velocities.
+///
+/// # Errors
+/// [`ModelError`] where one is not a number.
+pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
+    let parameters: Vec<(Expr<'_>, f64)> =
+        model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
+    Assembler { model, graph, scope: Scope::new(graph, model.document()) }.start(&parameters)
+}
+
 struct Assembler<'g, 'm> {
     model: &'m Model,
     graph: &'g Graph,
@@ -141,6 +151,9 @@ impl<'g> Assembler<'g, '_> {
                     None => 0.0,
                 });
             }
+        }
+        for &(place, value) in self.model.overridden_starts() {
+            start[place] = value;
         }
         Ok(start)
     }

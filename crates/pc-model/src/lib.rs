@@ -35,6 +35,7 @@ mod model;
 mod resultant;
 mod scope;
 pub mod source;
+mod start;
 
 pub use bound::{Bound, Form, Held, Verdict};
 pub use builtin::{BUILTIN, Builtin};
@@ -44,3 +45,4 @@ pub use event::Event;
 pub use fault::Fault;
 pub use model::{Assembly, Model, UnknownIntegral, UnknownParameter};
 pub use source::Source;
+pub use start::UnknownStart;

@@ -20,6 +20,8 @@ use crate::source::Place;
 pub struct Model {
     document: Document,
     parameters: Vec<f64>,
+    /// Start values that are not those of the document, by their places.
+    starts: Vec<(usize, f64)>,
     projects_start: bool,
     observes_reactions: bool,
     /// The names of the integrals to be kept.
@@ -126,7 +128,14 @@ impl Model {
     pub fn new(document: Document) -> Model {
         let parameters = document.parameters.iter().map(|p| p.value.value).collect();
         let kept = document.simulation.project.iter().map(|name| name.value.clone()).collect();
-        Model { document, parameters, projects_start: false, observes_reactions: false, kept }
+        Model {
+            document,
+            parameters,
+            starts: Vec::new(),
+            projects_start: false,
+            observes_reactions: false,
+            kept,
+        }
     }
 
     /// The document it was made from.
@@ -221,6 +230,11 @@ impl Model {
         Ok((motion, start))
     }
 
+    /// The names of the integrals that the motion is projected to.
+    pub fn kept(&self) -> &[String] {
+        &self.kept
+    }
+
     /// Says that the motion is to be projected to the value that an integral, or `energy`, has at the start.
     ///
     /// # Errors
@@ -252,7 +266,19 @@ impl Model {
         self.observes_reactions
     }
 
-    pub(crate) fn projects_start(&self) -> bool {
+    /// Replaces start value number `place`.
+    pub(crate) fn override_start(&mut self, place: usize, value: f64) {
+        self.starts.retain(|&(known, _)| known != place);
+        self.starts.push((place, value));
+    }
+
+    /// The start values that are not those of the document, by their places.
+    pub(crate) fn overridden_starts(&self) -> &[(usize, f64)] {
+        &self.starts
+    }
+
+    /// Whether the start is to be moved to where the constraints are satisfied.
+    pub fn projects_start(&self) -> bool {
         self.projects_start
     }
 

@@ -210,7 +210,7 @@ impl<F: VectorField> Cvode<F> {
             return self.earlier;
         }
         let linear = self.linear.as_ref().map(|_| self.callbacks.linear());
-        self.earlier.followed_by(Statistics::read(&self.memory, linear))
+        self.earlier.followed_by(&Statistics::read(&self.memory, linear))
     }
 
     /// The linear solver of Newton's iteration, as chosen or as the field made it; none for the fixed-point iteration.

@@ -28,11 +28,13 @@
 mod adjoint;
 mod adjoint_field;
 mod callback;
+mod checkpoint;
 mod code;
 mod context;
 mod crossing;
 mod cvode;
 mod dense;
+mod ensemble;
 mod error;
 mod events;
 mod fn_field;
@@ -53,9 +55,11 @@ mod trajectory;
 mod variation;
 
 pub use adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
+pub use checkpoint::{Checkpoint, CheckpointError, solve_checkpointed};
 pub use code::Code;
 pub use cvode::{Cvode, Ending, Hybrid};
 pub use dense::{DenseOutput, Segment};
+pub use ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
 pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
 pub use events::{Accumulation, Direction, Event, Events, FnEvents, Occurrence};
 pub use fn_field::{FnField, from_fn};

@@ -56,23 +56,25 @@ pub struct Statistics {
 
 impl Statistics {
     /// Those of an integration that went on after these.
-    pub(crate) fn followed_by(self, later: Statistics) -> Statistics {
+    pub(crate) fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
-            steps: self.steps + later.steps,
-            rhs_evaluations: self.rhs_evaluations + later.rhs_evaluations,
-            jacobian_evaluations: self.jacobian_evaluations + later.jacobian_evaluations,
-            error_test_failures: self.error_test_failures + later.error_test_failures,
-            nonlinear_iterations: self.nonlinear_iterations + later.nonlinear_iterations,
-            nonlinear_failures: self.nonlinear_failures + later.nonlinear_failures,
-            step_failures: self.step_failures + later.step_failures,
-            linear_setups: self.linear_setups + later.linear_setups,
-            linear_iterations: self.linear_iterations + later.linear_iterations,
-            linear_failures: self.linear_failures + later.linear_failures,
-            jacobian_products: self.jacobian_products + later.jacobian_products,
-            preconditioner_evaluations: self.preconditioner_evaluations + later.preconditioner_evaluations,
-            preconditioner_solves: self.preconditioner_solves + later.preconditioner_solves,
+            steps: self.steps.saturating_add(later.steps),
+            rhs_evaluations: self.rhs_evaluations.saturating_add(later.rhs_evaluations),
+            jacobian_evaluations: self.jacobian_evaluations.saturating_add(later.jacobian_evaluations),
+            error_test_failures: self.error_test_failures.saturating_add(later.error_test_failures),
+            nonlinear_iterations: self.nonlinear_iterations.saturating_add(later.nonlinear_iterations),
+            nonlinear_failures: self.nonlinear_failures.saturating_add(later.nonlinear_failures),
+            step_failures: self.step_failures.saturating_add(later.step_failures),
+            linear_setups: self.linear_setups.saturating_add(later.linear_setups),
+            linear_iterations: self.linear_iterations.saturating_add(later.linear_iterations),
+            linear_failures: self.linear_failures.saturating_add(later.linear_failures),
+            jacobian_products: self.jacobian_products.saturating_add(later.jacobian_products),
+            preconditioner_evaluations: self
+                .preconditioner_evaluations
+                .saturating_add(later.preconditioner_evaluations),
+            preconditioner_solves: self.preconditioner_solves.saturating_add(later.preconditioner_solves),
             first_step: if self.steps > 0 { self.first_step } else { later.first_step },
-            ..later
+            ..*later
         }
     }
 

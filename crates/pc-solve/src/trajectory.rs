@@ -29,6 +29,12 @@ impl Trajectory {
         self.states.extend_from_slice(y);
     }
 
+    /// The first `len` outputs.
+    pub(crate) fn first(&self, len: usize) -> Trajectory {
+        let (times, states) = (self.times[..len].to_vec(), self.states[..len * self.dim].to_vec());
+        Trajectory { times, states, ..Trajectory::new(self.dim) }
+    }
+
     pub(crate) fn finish(&mut self, complete: bool, statistics: Statistics) {
         self.complete = complete;
         self.statistics = statistics;

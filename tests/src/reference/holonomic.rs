@@ -8,6 +8,15 @@ const POLAR_COLUMNS: &[&str] = &["ρ", "φ", "η1", "η2"];
 /// Their reference states, in the order of the models' names.
 pub(super) const HOLONOMIC: &[Reference] = &[
     Reference {
+        model: "bouncing-ball",
+        t_end: 3.0,
+        columns: &["y", "y'"],
+        start: &[1.0, 0.0],
+        state: &[-43.145, -29.43],
+        conserved: &["energy"],
+    },
+    // Between events: on the edge s = 1 for ever, φ = α − (α − φ₀) cosh t.
+    Reference {
         model: "charged-particle",
         t_end: 5.0,
         columns: POLAR_COLUMNS,
@@ -315,6 +324,15 @@ pub(super) const HOLONOMIC: &[Reference] = &[
         conserved: &["energy", "norm", "Hx", "Hy", "Hz"],
     },
     Reference {
+        model: "rocking-block",
+        t_end: 6.0,
+        columns: &["φ", "s", "ω"],
+        start: &[0.1, 1.0, 0.0],
+        state: &[-19.97156361224559, 1.0, -20.17131573702792],
+        conserved: &["energy"],
+    },
+    // Between events: slipping for ever, V t − x = F_k + (F_s − F_k) cos t + V sin t.
+    Reference {
         model: "rotating-oscillator",
         t_end: 8.0,
         columns: &["X", "Y", "η1", "η2"],
@@ -349,6 +367,14 @@ pub(super) const HOLONOMIC: &[Reference] = &[
             1.34633533781675,
         ],
         conserved: &["energy", "length", "area"],
+    },
+    Reference {
+        model: "stick-slip-block",
+        t_end: 20.0,
+        columns: &["x", "σ", "v"],
+        start: &[-1.0, 1.0, 0.0],
+        state: &[8.83948634372949, 1.0, 0.7524315944571178],
+        conserved: &[],
     },
     Reference {
         model: "toda-chain",
@@ -389,30 +415,4 @@ pub(super) const HOLONOMIC: &[Reference] = &[
         conserved: &["across", "hyperbola"],
     },
     // Between events: a fall without a floor.
-    Reference {
-        model: "bouncing-ball",
-        t_end: 3.0,
-        columns: &["y", "y'"],
-        start: &[1.0, 0.0],
-        state: &[-43.145, -29.43],
-        conserved: &["energy"],
-    },
-    // Between events: on the edge s = 1 for ever, φ = α − (α − φ₀) cosh t.
-    Reference {
-        model: "rocking-block",
-        t_end: 6.0,
-        columns: &["φ", "s", "ω"],
-        start: &[0.1, 1.0, 0.0],
-        state: &[-19.97156361224559, 1.0, -20.17131573702792],
-        conserved: &["energy"],
-    },
-    // Between events: slipping for ever, V t − x = F_k + (F_s − F_k) cos t + V sin t.
-    Reference {
-        model: "stick-slip-block",
-        t_end: 20.0,
-        columns: &["x", "σ", "v"],
-        start: &[-1.0, 1.0, 0.0],
-        state: &[8.83948634372949, 1.0, 0.7524315944571178],
-        conserved: &[],
-    },
 ];

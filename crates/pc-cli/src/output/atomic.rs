@@ -1,6 +1,6 @@
 //! Files that are replaced whole: written beside the old one, then put in its place.
 
-use std::fs::{self, Metadata};
+use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,14 @@ pub(crate) fn look(path: &Path) -> io::Result<()> {
 
 /// Puts what `write` writes at `path`. Until all of it is on disk, `path` is what it was.
 pub(crate) fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    write_file(path, |out| write(out))
+}
+
+/// As [`write()`], for what is not written from its beginning to its end.
+pub(crate) fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+) -> io::Result<()> {
     let path = followed(path);
     let mut builder = Builder::new();
     let builder = builder.prefix(".pc-").suffix(".part");

@@ -1,0 +1,45 @@
+//! What the numbers of a motion depend on: kept with what is left of an interrupted run, to be gone on from by the same
+//! command only.
+
+use pc_model::Model;
+
+use crate::args::RunForm;
+use crate::plan::Plan;
+
+/// Names and values in the order of their importance.
+pub(crate) type Identity = Vec<(String, String)>;
+
+/// Version, parameters, plan and text of a model.
+pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
+    let entry = |name: &str, value: String| (name.to_owned(), value);
+    let mut identity = vec![entry("pc", env!("CARGO_PKG_VERSION").to_owned())];
+    identity.extend(
+        model.parameters().map(|(name, value)| entry(&format!("the parameter {name} ="), value.to_string())),
+    );
+    identity.extend([
+        entry("--project-start", model.projects_start().to_string()),
+        entry("--project", model.kept().join(", ")),
+        entry("--t-end", plan.t_end.to_string()),
+        entry("--rtol", format!("{:e}", plan.rtol)),
+        entry("--atol", format!("{:e}", plan.atol)),
+        entry("--method", plan.method.to_string().to_lowercase()),
+        entry("--form", format!("{form:?}").to_lowercase()),
+        entry("text of the model", format!("{}\n", model.document().source.text())),
+    ]);
+    identity
+}
+
+/// The first thing that is not the same, in words.
+pub(crate) fn difference(then: &Identity, now: &Identity) -> Option<String> {
+    let value = |identity: &Identity, name: &str| {
+        identity.iter().find(|(known, _)| known == name).map_or("(not there)", |(_, value)| value).to_owned()
+    };
+    let name =
+        now.iter().chain(then).map(|(name, _)| name).find(|name| value(then, name) != value(now, name))?;
+    let (then, now) = (value(then, name), value(now, name));
+    Some(if then.contains('\n') || now.contains('\n') {
+        format!("another {name}")
+    } else {
+        format!("{name} {then}, where now it is {now}")
+    })
+}

@@ -1,0 +1,186 @@
+//! Checkpoints of a run: written while it goes on, and gone on from.
+
+use std::fs;
+use std::io;
+use std::num::NonZeroU64;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use pc_model::Model;
+use pc_solve::{Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_checkpointed};
+
+use crate::args::RunForm;
+use crate::error::CliError;
+use crate::flow::{Flow, without_events};
+use crate::identity::{self, Identity};
+use crate::output::atomic;
+use crate::plan::Plan;
+use crate::text;
+
+/// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
+/// against them.
+const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
+
+/// The file is written again after so many times as long as it took the last time; how often does not change the
+/// numbers.
+const PATIENCE: u32 = 20;
+
+/// Arguments of `pc run` for checkpoints.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SavingArguments {
+    /// Keep a checkpoint in FILE, for --resume. The integrator is begun anew at each, which changes the motion within its
+    /// tolerance
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// Internal steps from one checkpoint to the next [default: 1000, or as in the FILE of --resume]
+    #[arg(long, value_name = "N")]
+    pub every: Option<NonZeroU64>,
+    /// Go on from the checkpoint in FILE, of the same model and options; the result is that of a run that was never
+    /// interrupted, to the last bit. Checkpoints go on to be kept there unless --checkpoint names another file
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
+}
+
+/// Why a run cannot go on from a file, or keep checkpoints there.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SavingError {
+    /// The file cannot be read.
+    #[error("--resume {}: it cannot be read", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// What is in the file is no checkpoint, or no longer one.
+    #[error("--resume {}: {source}; begin anew without --resume", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: CheckpointError,
+    },
+    /// The checkpoint is that of another run.
+    #[error("--resume {}: it is of a run with {what}; repeat that command, or begin anew without --resume", path.display())]
+    OtherRun {
+        /// The file.
+        path: PathBuf,
+        /// What is different, then and now.
+        what: String,
+    },
+    /// A model whose motion jumps.
+    #[error("--checkpoint: a run of a model with [events] cannot be saved")]
+    Events,
+    /// `--every` where no checkpoint is kept.
+    #[error("--every says how often; give --checkpoint FILE too")]
+    Nowhere,
+}
+
+/// Checkpoints of one run.
+#[derive(Debug)]
+pub(crate) struct Saving {
+    path: PathBuf,
+    every: NonZeroU64,
+    identity: Identity,
+    /// Where to begin, if not at the start.
+    from: Option<Checkpoint>,
+}
+
+impl Saving {
+    /// What the command line asks for: nothing, a file to write, one to go on from.
+    ///
+    /// # Errors
+    /// [`SavingError`]; [`CliError::Write`] where no file can be.
+    pub(crate) fn new(
+        arguments: &SavingArguments,
+        model: &Model,
+        plan: &Plan,
+        form: RunForm,
+    ) -> Result<Option<Saving>, CliError> {
+        let Some(path) = arguments.checkpoint.as_ref().or(arguments.resume.as_ref()) else {
+            return if arguments.every.is_some() { Err(SavingError::Nowhere.into()) } else { Ok(None) };
+        };
+        if !model.document().events.is_empty() {
+            return Err(SavingError::Events.into());
+        }
+        atomic::look(path).map_err(|source| write_error(path, source))?;
+        let mut identity = identity::of_motion(model, plan, form);
+        identity.insert(1, ("--samples".to_owned(), plan.samples.to_string()));
+        let mut saving =
+            Saving { path: path.clone(), every: arguments.every.unwrap_or(EVERY), identity, from: None };
+        if let Some(path) = &arguments.resume {
+            saving.take_up(path, arguments.every)?;
+        }
+        saving.identity.push((INTERVAL.to_owned(), saving.every.to_string()));
+        Ok(Some(saving))
+    }
+
+    /// Reads the checkpoint to go on from.
+    fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), SavingError> {
+        let bytes = fs::read(path).map_err(|source| SavingError::Read { path: path.to_owned(), source })?;
+        let unusable = |source| SavingError::Unusable { path: path.to_owned(), source };
+        let (checkpoint, label) = Checkpoint::from_bytes(&bytes).map_err(unusable)?;
+        let then: Identity = serde_json::from_str(&label).map_err(|_| unusable(CheckpointError::Foreign))?;
+        let known = then.iter().find(|(name, _)| name == INTERVAL).and_then(|(_, every)| every.parse().ok());
+        self.every = every.or(known).unwrap_or(EVERY);
+        let mut now = self.identity.clone();
+        now.push((INTERVAL.to_owned(), self.every.to_string()));
+        if let Some(what) = identity::difference(&then, &now) {
+            return Err(SavingError::OtherRun { path: path.to_owned(), what });
+        }
+        self.from = Some(checkpoint);
+        Ok(())
+    }
+
+    /// Integrates the motion of `flow` from its start or from the checkpoint.
+    ///
+    /// # Errors
+    /// [`CliError::Write`] if the file cannot be written at the beginning; later that is only said.
+    pub(crate) fn solve(
+        &mut self,
+        flow: &Flow,
+        plan: &Plan,
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<(HybridMotion, Option<SolveError>), CliError> {
+        let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
+        let label = serde_json::to_string(&self.identity);
+        let label = label.map_err(|error| write_error(&self.path, error.into()))?;
+        let write = |checkpoint: &Checkpoint| {
+            atomic::write(&self.path, |out| out.write_all(&checkpoint.to_bytes(&label)))
+                .map_err(|source| write_error(&self.path, source))
+        };
+        let start = Instant::now();
+        write(&from)?;
+        let (mut took, mut written) = (start.elapsed(), Instant::now());
+        let save = |checkpoint: &Checkpoint, last: bool| {
+            if last || written.elapsed() >= took * PATIENCE {
+                let start = Instant::now();
+                if let Err(error) = write(checkpoint) {
+                    text::say(format_args!("{}\n", error.report()));
+                }
+                (took, written) = (start.elapsed(), Instant::now());
+            }
+        };
+        // The equations as they were compiled, without memory of what they were evaluated at.
+        let field = || flow.motion.clone();
+        let solved = solve_checkpointed(field, from, &plan.times(), &plan.options(), self.every, save, step);
+        let (motion, error) = without_events(solved);
+        if motion.ending == Some(Ending::Stopped) {
+            let path = self.path.display();
+            text::say(format_args!(
+                "note: the same command with --resume {path} goes on from the last checkpoint\n"
+            ));
+        }
+        Ok((motion, error))
+    }
+}
+
+/// Name of the number of steps between checkpoints.
+const INTERVAL: &str = "--every";
+
+fn write_error(path: &Path, source: io::Error) -> CliError {
+    CliError::Write { path: path.display().to_string(), source }
+}

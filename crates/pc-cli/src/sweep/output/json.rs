@@ -1,0 +1,29 @@
+//! One JSON object: model, columns, rows.
+
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use super::Out;
+use crate::sweep::journal::Journal;
+use crate::sweep::sheet::{Cell, Sheet};
+
+/// Numbers are as short as gives the same number back; what is not finite is null.
+pub(super) fn write(title: &str, sheet: &Sheet, journal: &Journal, out: &mut Out<'_>) -> io::Result<()> {
+    let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
+    write!(out, "{{\n\"model\": {},\n\"columns\": {},\n\"rows\": [", json!(title), json!(names))?;
+    let mut comma = "";
+    for record in journal.records()? {
+        for row in sheet.rows(&record?) {
+            let cells = row.iter().map(|cell| match *cell {
+                Cell::Integer(value) => json!(value),
+                Cell::Number(value) => json!(value),
+                Cell::Text(text) => json!(text),
+            });
+            writeln!(out, "{comma}")?;
+            serde_json::to_writer(&mut *out, &cells.collect::<Value>())?;
+            comma = ",";
+        }
+    }
+    writeln!(out, "\n]\n}}")
+}

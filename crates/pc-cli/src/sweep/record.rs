@@ -1,0 +1,90 @@
+//! What is kept of a member.
+
+/// How a member ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Status {
+    /// At its end.
+    Completed,
+    /// Its integration failed on the way.
+    Failed,
+    /// It could not start.
+    Refused,
+    /// Its computation panicked.
+    Panicked,
+}
+
+impl Status {
+    const ALL: [Status; 4] = [Status::Completed, Status::Failed, Status::Refused, Status::Panicked];
+
+    /// In a word.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Status::Completed => "completed",
+            Status::Failed => "failed",
+            Status::Refused => "refused",
+            Status::Panicked => "panicked",
+        }
+    }
+}
+
+/// A finished member.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Record {
+    /// Its number, from 0.
+    pub(crate) member: u64,
+    /// How it ended.
+    pub(crate) status: Status,
+    /// Internal steps.
+    pub(crate) steps: u64,
+    /// Why it was not completed, else empty.
+    pub(crate) message: String,
+    /// What was varied.
+    pub(crate) values: Vec<f64>,
+    /// Rows, one after the other.
+    pub(crate) rows: Vec<f64>,
+}
+
+impl Record {
+    /// The record as bytes, all numbers little-endian.
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes =
+            Vec::with_capacity(64 + self.message.len() + 8 * (self.values.len() + self.rows.len()));
+        bytes.extend(self.member.to_le_bytes());
+        bytes.push(Status::ALL.iter().position(|&status| status == self.status).unwrap_or(0) as u8);
+        bytes.extend(self.steps.to_le_bytes());
+        bytes.extend((self.message.len() as u64).to_le_bytes());
+        bytes.extend(self.message.as_bytes());
+        for numbers in [&self.values, &self.rows] {
+            bytes.extend((numbers.len() as u64).to_le_bytes());
+            bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        }
+        bytes
+    }
+
+    /// The record that these bytes are.
+    pub(crate) fn from_bytes(mut bytes: &[u8]) -> Option<Record> {
+        let bytes = &mut bytes;
+        let record = Record {
+            member: integer(bytes)?,
+            status: *Status::ALL.get(usize::from(*bytes.split_off_first()?))?,
+            steps: integer(bytes)?,
+            message: {
+                let length = usize::try_from(integer(bytes)?).ok()?;
+                String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()?
+            },
+            values: numbers(bytes)?,
+            rows: numbers(bytes)?,
+        };
+        bytes.is_empty().then_some(record)
+    }
+}
+
+fn integer(bytes: &mut &[u8]) -> Option<u64> {
+    Some(u64::from_le_bytes(bytes.split_off(..8)?.try_into().ok()?))
+}
+
+fn numbers(bytes: &mut &[u8]) -> Option<Vec<f64>> {
+    let length = usize::try_from(integer(bytes)?).ok()?.checked_mul(8)?;
+    let numbers = bytes.split_off(..length)?.chunks_exact(8);
+    numbers.map(|number| Some(f64::from_le_bytes(number.try_into().ok()?))).collect()
+}

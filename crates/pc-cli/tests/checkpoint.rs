@@ -1,0 +1,205 @@
+//! `pc run --checkpoint` and `--resume`: an interrupted run ends as if it had not been.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+fn pc(arguments: &[String]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
+    command.args(arguments).stdin(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("UTF-8")
+}
+
+/// A run of `model` in a directory of its own.
+struct Run {
+    directory: tempfile::TempDir,
+    options: Vec<String>,
+}
+
+impl Run {
+    fn new(model: &str, options: &[&str]) -> Run {
+        let directory = tempfile::tempdir().expect("a directory");
+        let options = [&["run", model], options].concat();
+        Run { directory, options: options.into_iter().map(str::to_owned).collect() }
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    /// Into the file `output`, `how` (`--checkpoint` or `--resume`) with the file `checkpoint`.
+    fn arguments(&self, output: &str, how: &str, checkpoint: &str, more: &[&str]) -> Vec<String> {
+        let mut arguments = self.options.clone();
+        for (option, file) in [("-o", output), (how, checkpoint)] {
+            arguments.extend([option.to_owned(), self.at(file).display().to_string()]);
+        }
+        arguments.extend(more.iter().map(ToString::to_string));
+        arguments
+    }
+
+    /// The file of a run that ends well.
+    #[track_caller]
+    fn whole(&self, output: &str, how: &str, checkpoint: &str, more: &[&str]) -> Vec<u8> {
+        let output_of = pc(&self.arguments(output, how, checkpoint, more)).output().expect("pc runs");
+        assert!(output_of.status.success(), "{}", stderr(&output_of));
+        fs::read(self.at(output)).expect("a table")
+    }
+
+    #[track_caller]
+    fn refused(&self, checkpoint: &str, more: &[&str], mention: &str) {
+        let before = fs::read(self.at(checkpoint)).ok();
+        let output =
+            pc(&self.arguments("refused.csv", "--resume", checkpoint, more)).output().expect("pc runs");
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains(mention) && !text.contains("panicked"), "{mention}: {text}");
+        assert!(!self.at("refused.csv").exists());
+        assert_eq!(fs::read(self.at(checkpoint)).ok(), before, "it is left as it was");
+    }
+}
+
+/// Signals `child` once `path` has been written after `start`, or ends where the child does.
+fn signalled(mut child: Child, signal: &str, path: &Path, before: &[u8]) -> Output {
+    let start = Instant::now();
+    while fs::read(path).ok().is_none_or(|bytes| bytes == before)
+        && child.try_wait().expect("a child").is_none()
+    {
+        assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // The child may have ended meanwhile.
+    let _ = Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
+    child.wait_with_output().expect("pc ends")
+}
+
+const TOP: [&str; 8] = ["--t-end", "12000", "--samples", "40", "--every", "100", "--rtol", "1e-8"];
+
+#[cfg(unix)]
+#[test]
+fn a_run_killed_again_and_again_gives_the_same_bytes() {
+    let run = Run::new("heavy-top-lagrange", &TOP);
+    let undisturbed = run.whole("a.json", "--checkpoint", "a.check", &[]);
+    let (mut how, mut kills, mut before) = ("--checkpoint", 0, Vec::new());
+    for signal in ["-KILL", "-TERM", "-INT", "-KILL", "-KILL", "-TERM", "-KILL", "-INT"] {
+        let child = pc(&run.arguments("b.json", how, "b.check", &[])).spawn().expect("pc starts");
+        let output = signalled(child, signal, &run.at("b.check"), &before);
+        let interrupted = output.status.code() == Some(130);
+        kills += u32::from(!output.status.success());
+        if interrupted {
+            assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+        }
+        before = fs::read(run.at("b.check")).expect("a checkpoint");
+        how = "--resume";
+    }
+    assert!(kills >= 4, "the run is over too soon for this test: {kills}");
+    assert!(run.whole("b.json", "--resume", "b.check", &[]) == undisturbed);
+    // From the last checkpoint of a complete run, with another place for the next ones.
+    let again =
+        run.whole("b.json", "--resume", "a.check", &["--checkpoint", run.at("c").to_str().expect("UTF-8")]);
+    assert!(again == undisturbed);
+}
+
+/// Momenta are solved for velocities by iterations that begin at the last ones; a projection moves the states.
+#[cfg(unix)]
+#[test]
+fn nothing_but_the_checkpoint_is_remembered() {
+    let held = "[coordinates]\nx = 1.0\ny = 0.0\n[constraints]\nrod = \"x^2 + y^2 - 1\"\n[lagrangian]\n\
+                kinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n";
+    let implicit = "[coordinates]\nx = 1.0\n[lagrangian]\nlagrangian = \"x'^2/2 + x'^4/4 - x^2/2\"\n";
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    let model = file.path().to_str().expect("UTF-8");
+    for (text, form, method) in [
+        (held, "poincare", "adams"),
+        (held, "poincare", "bdf"),
+        (implicit, "canonical", "adams"),
+        (implicit, "canonical", "bdf"),
+    ] {
+        fs::write(model, text).expect("written");
+        let options = [
+            "--t-end",
+            "60",
+            "--samples",
+            "30",
+            "--every",
+            "40",
+            "--form",
+            form,
+            "--method",
+            method,
+            "--rtol",
+            "1e-7",
+        ];
+        let run = Run::new(model, &options);
+        let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &[]);
+        let child = pc(&run.arguments("b.csv", "--checkpoint", "b.check", &[])).spawn().expect("pc starts");
+        let first = signalled(child, "-INT", &run.at("b.check"), &[]);
+        assert!(
+            run.whole("b.csv", "--resume", "b.check", &[]) == undisturbed,
+            "{form} {method}: {}",
+            stderr(&first)
+        );
+        // The last checkpoint lies in the motion.
+        assert!(run.whole("c.csv", "--resume", "a.check", &[]) == undisturbed, "{form} {method}");
+    }
+}
+
+#[test]
+fn checkpoints_change_a_run_within_its_tolerance() {
+    let run = Run::new("heavy-top-lagrange", &["--t-end", "10", "--samples", "11"]);
+    let saved = run.whole("a.csv", "--checkpoint", "a.check", &["--every", "50"]);
+    let plain = run.whole("a.csv", "--plot", "a.svg", &[]);
+    let numbers = |csv: &[u8]| -> Vec<f64> {
+        let text = String::from_utf8(csv.to_vec()).expect("UTF-8");
+        text.lines()
+            .skip(1)
+            .flat_map(|line| line.split(',').map(|cell| cell.parse().expect("a number")))
+            .collect()
+    };
+    let (saved, plain) = (numbers(&saved), numbers(&plain));
+    assert!(saved != plain && saved.len() == plain.len());
+    // Local errors of 1e-9 in a few hundred steps, that grow no faster than the time.
+    assert!(saved.iter().zip(&plain).all(|(a, b)| (a - b).abs() < 1e-5));
+}
+
+#[test]
+fn what_is_not_a_checkpoint_of_this_run_is_refused() {
+    let run = Run::new("heavy-top-lagrange", &["--t-end", "30", "--samples", "5"]);
+    let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &["--every", "60"]);
+    let bytes = fs::read(run.at("a.check")).expect("a checkpoint");
+    for k in 0..50 {
+        let mut damaged = bytes.clone();
+        let place = (k * 7919 + 13) % bytes.len();
+        if k % 2 == 0 {
+            damaged.truncate(place);
+        } else {
+            damaged[place] ^= 1 << (k % 8);
+        }
+        fs::write(run.at("b.check"), &damaged).expect("written");
+        run.refused("b.check", &[], "begin anew without --resume");
+    }
+    fs::write(run.at("b.check"), "t,x\n0,1\n").expect("written");
+    run.refused("b.check", &[], "it is not a checkpoint");
+    run.refused("missing.check", &[], "it cannot be read");
+    for (more, mention) in [
+        (["--rtol", "1e-6"], "--rtol 1e-9, where now it is 1e-6"),
+        (["--every", "61"], "--every 60, where now it is 61"),
+        (["--set", "I3=2"], "the parameter I3 = 0.5, where now it is 2"),
+        (["--form", "canonical"], "--form poincare, where now it is canonical"),
+        (["--method", "bdf"], "--method adams, where now it is bdf"),
+    ] {
+        run.refused("a.check", &more, mention);
+    }
+    let other = Run::new("heavy-top-euler", &["--t-end", "30", "--samples", "5"]);
+    fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");
+    other.refused("a.check", &[], "it is of a run with");
+    let nowhere = Run::new("euler-top", &["--every", "10"]);
+    let output = pc(&nowhere.options).output().expect("pc runs");
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("--checkpoint FILE"));
+    // --every is known from the file.
+    assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
+}

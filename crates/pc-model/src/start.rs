@@ -1,0 +1,55 @@
+//! The start of a motion with other values than those of the file.
+
+use pc_expr::Graph;
+
+use crate::assembly;
+use crate::error::ModelError;
+use crate::model::Model;
+
+/// A name that has no start value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` has no start value in this model; {} have", known.join(", "))]
+pub struct UnknownStart {
+    /// The name asked for.
+    pub name: String,
+    /// The coordinates and quasi-velocities there are; velocities x' where no quasi-velocity is declared.
+    pub known: Vec<String>,
+}
+
+impl Model {
+    /// The names that have a start value: coordinates, then quasi-velocities, or velocities x' where none is declared.
+    pub fn start_names(&self) -> Vec<String> {
+        let document = self.document();
+        let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
+        let quasi_velocities = document.quasi_velocities.iter().map(|eta| eta.name.text.clone());
+        let mut names: Vec<String> = coordinates.chain(quasi_velocities).collect();
+        if document.quasi_velocities.is_empty() {
+            names.extend(document.coordinates.iter().map(|x| format!("{}'", x.name.text)));
+        }
+        names
+    }
+
+    /// Gives a coordinate or quasi-velocity another start value than that of the file.
+    ///
+    /// # Errors
+    /// [`UnknownStart`] with the names there are.
+    pub fn set_start(&mut self, name: &str, value: f64) -> Result<(), UnknownStart> {
+        let known = self.start_names();
+        match known.iter().position(|known| known == name) {
+            Some(place) => {
+                self.override_start(place, value);
+                Ok(())
+            }
+            None => Err(UnknownStart { name: name.to_owned(), known }),
+        }
+    }
+
+    /// The start state (x, η) with the declared η, or (x, x') where none is: the values of [`start_names`](Model::start_names)
+    /// for the parameters as they are, not looked at whether they satisfy the constraints.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a start value is not a number.
+    pub fn start(&self) -> Result<Vec<f64>, ModelError> {
+        assembly::start(self, &Graph::new())
+    }
+}

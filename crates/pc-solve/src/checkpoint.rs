@@ -1,0 +1,97 @@
+//! Where a motion can be taken up again, with the same numbers to the last bit.
+//!
+//! A multistep method rests on its history. So a motion with checkpoints is begun anew at each of them, whether it was
+//! interrupted there or not: everything after a checkpoint depends on nothing but what is in it. That changes the
+//! motion within its tolerance, and costs the steps in which the order grows again.
+//! ```
+//! use pc_solve::{Checkpoint, Cvode, Options, from_fn};
+//!
+//! let field = || from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -y[0].sin(); Ok(()) });
+//! let options = Options::default();
+//! let mut motion = Cvode::new(field(), 0.0, &[1.0, 0.0], &options)?;
+//! motion.advance_to(2.0)?;
+//! let bytes = motion.checkpoint().to_bytes("pendulum");
+//!
+//! let mut motion = Cvode::resume(motion.into_field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
+//! let mut later = Cvode::resume(field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
+//! assert_eq!(motion.advance_to(4.0)?, later.advance_to(4.0)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod encoding;
+mod legs;
+
+use pc_expr::VectorField;
+
+pub use self::encoding::CheckpointError;
+pub use self::legs::solve_checkpointed;
+
+use crate::cvode::Cvode;
+use crate::error::SolveError;
+use crate::options::Options;
+use crate::statistics::Statistics;
+use crate::trajectory::Trajectory;
+
+/// Time and state of a motion, the outputs before it, and the work so far.
+///
+/// The state is y, projected where the field has a projection: the offset d of y = z + d is taken into it, and is zero
+/// again after the restart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checkpoint {
+    pub(crate) time: f64,
+    pub(crate) state: Vec<f64>,
+    pub(crate) outputs: Trajectory,
+    pub(crate) statistics: Statistics,
+    /// Steps since the last output, which are limited.
+    pub(crate) steps_since_output: u64,
+}
+
+impl Checkpoint {
+    /// The start of a motion.
+    pub fn start(t0: f64, y0: &[f64]) -> Checkpoint {
+        Checkpoint {
+            time: t0,
+            state: y0.to_vec(),
+            outputs: Trajectory::new(y0.len()),
+            statistics: Statistics::default(),
+            steps_since_output: 0,
+        }
+    }
+
+    /// Where the motion stands.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Its state there.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// The outputs of [`solve_checkpointed`] up to that time.
+    pub fn outputs(&self) -> &Trajectory {
+        &self.outputs
+    }
+
+    /// The work up to that time.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+}
+
+impl<F: VectorField> Cvode<F> {
+    /// Time, state and work where the integration stands, to be gone on from by [`resume`](Cvode::resume).
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint { statistics: self.statistics(), ..Checkpoint::start(self.time(), self.state()) }
+    }
+
+    /// Begins anew at a checkpoint. Both the motion that was interrupted there and the one that was not go on from here
+    /// with the same numbers, if `field` and `options` are the same; a field that remembers earlier evaluations must be
+    /// as it was when made.
+    ///
+    /// # Errors
+    /// As for [`new`](Cvode::new).
+    pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
+        Cvode::new(field, checkpoint.time, &checkpoint.state, options)
+    }
+}

@@ -1,0 +1,272 @@
+//! Many motions at once: initial states and parameter sets over all cores.
+//!
+//! Each member has its own vector field and its own solver. Results are given to a consumer in the order of the
+//! members, so that what is made of them does not depend on the number of threads. A member that fails is a result as
+//! any other; the others go on.
+//! ```
+//! use std::ops::ControlFlow;
+//! use pc_solve::{Ensemble, Failure, Options, from_fn};
+//!
+//! // φ̈ = −sin φ, let go at ten heights; the amplitude of each is its own.
+//! let pendulum = |member: u64| {
+//!     let field = from_fn(2, |_t, y, ydot| {
+//!         ydot[0] = y[1];
+//!         ydot[1] = -y[0].sin();
+//!         Ok(())
+//!     });
+//!     Ok::<_, Failure>((field, vec![0.1 * member as f64, 0.0]))
+//! };
+//! let mut ends = Vec::new();
+//! Ensemble::new().solve(0..10, pendulum, 0.0, &[1.0], &Options::default(), |member, motion| {
+//!     let motion = motion.expect("pendulums swing");
+//!     ends.push((member, motion.state(0)[0]));
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert!(ends.iter().map(|end| end.0).eq(0..10));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod ordered;
+mod random;
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::error::Error;
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::ops::{ControlFlow, Range};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use pc_expr::VectorField;
+
+pub use self::random::member_stream;
+
+use self::ordered::Queue;
+use crate::cvode::Ending;
+use crate::error::SolveFailure;
+use crate::options::Options;
+use crate::solve::solve_observed;
+use crate::trajectory::Trajectory;
+
+/// Members that may be ahead of the one that is consumed next, for each thread.
+const WINDOW: usize = 64;
+
+/// Bytes of stack of a thread, as the main one usually has: making a member may go deep.
+const STACK: usize = 8 << 20;
+
+/// How the members of an ensemble are computed.
+#[derive(Debug, Clone)]
+pub struct Ensemble<'a> {
+    threads: NonZeroUsize,
+    window: Option<NonZeroUsize>,
+    flag: Option<&'a AtomicBool>,
+}
+
+impl Default for Ensemble<'_> {
+    fn default() -> Self {
+        Ensemble::new()
+    }
+}
+
+impl<'a> Ensemble<'a> {
+    /// A thread for each core.
+    pub fn new() -> Self {
+        let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        Ensemble { threads, window: None, flag: None }
+    }
+
+    /// So many threads. The results are the same for any number.
+    pub fn threads(self, threads: NonZeroUsize) -> Self {
+        Ensemble { threads, ..self }
+    }
+
+    /// How many members may be begun and not yet consumed; 64 for each thread unless given. It bounds the memory:
+    /// results that wait for an earlier one are held.
+    pub fn window(self, members: NonZeroUsize) -> Self {
+        Ensemble { window: Some(members), ..self }
+    }
+
+    /// Stops as soon as `flag` is true: members that are on their way end at their next internal step and are dropped.
+    pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
+        Ensemble { flag: Some(flag), ..self }
+    }
+
+    /// Integrates each member, as [`solve`](crate::solve()) does, and gives the trajectories to `consume` in the order of
+    /// the members.
+    ///
+    /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
+    ///
+    /// # Errors
+    /// [`EnsembleError`] if there can be no threads. What is wrong with a member is its result.
+    pub fn solve<F, E>(
+        &self,
+        members: Range<u64>,
+        make: impl Fn(u64) -> Result<(F, Vec<f64>), E> + Sync,
+        t0: f64,
+        times: &[f64],
+        options: &Options,
+        mut consume: impl FnMut(u64, Result<Trajectory, MemberError<E>>) -> ControlFlow<()>,
+    ) -> Result<Ending, EnsembleError>
+    where
+        F: VectorField,
+        E: Send,
+    {
+        // None where the member was stopped on its way.
+        let work = |member, stop: &Stop<'_>| {
+            let reached = RefCell::new(None);
+            let solved = caught(|| {
+                let (field, start) = make(member).map_err(MemberError::Make)?;
+                let observe = |t, y: &[f64]| {
+                    keep(&mut reached.borrow_mut(), t, y);
+                    if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                };
+                solve_observed(field, t0, &start, times, options, observe).map_err(MemberError::Solve)
+            });
+            match solved {
+                Ok(Ok(motion)) if !motion.is_complete() => None,
+                Ok(solved) => Some(solved),
+                Err(message) => Some(Err(MemberError::Panic { message, reached: reached.into_inner() })),
+            }
+        };
+        self.map(members, work, |member, solved| match solved {
+            Ok(Some(solved)) => consume(member, solved),
+            Ok(None) => ControlFlow::Break(()),
+            Err(Panicked { message }) => consume(member, Err(MemberError::Panic { message, reached: None })),
+        })
+    }
+
+    /// Does any `work` for each member and gives what comes of it to `consume` in the order of the members.
+    ///
+    /// The work should look at [`Stop`] now and then, and end when asked to. `consume` is called on this thread.
+    ///
+    /// # Errors
+    /// [`EnsembleError`] if there can be no threads. A panic of the work is the result of its member.
+    pub fn map<T: Send>(
+        &self,
+        members: Range<u64>,
+        work: impl Fn(u64, &Stop<'_>) -> T + Sync,
+        mut consume: impl FnMut(u64, Result<T, Panicked>) -> ControlFlow<()>,
+    ) -> Result<Ending, EnsembleError> {
+        let threads = self.threads.get();
+        let window = self.window.map_or(WINDOW.saturating_mul(threads), NonZeroUsize::get);
+        let stopped = AtomicBool::new(false);
+        let stop = Stop { own: &stopped, flag: self.flag };
+        let queue = Queue::new(members.clone(), window as u64, &stop);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
+        Ok(pool.in_place_scope(|scope| {
+            // One for each thread; work that is itself parallel cannot begin another of these.
+            scope.spawn_broadcast(|_, _| {
+                while let Some(member) = queue.begin() {
+                    let result = caught(|| work(member, &stop)).map_err(|message| Panicked { message });
+                    queue.finish(member, result);
+                }
+            });
+            // Lets the threads end however this one does.
+            let _closing = queue.closing();
+            for member in members {
+                let Some(result) = queue.take(member) else { return Ending::Stopped };
+                if consume(member, result).is_break() {
+                    return Ending::Stopped;
+                }
+            }
+            Ending::Completed
+        }))
+    }
+}
+
+/// Whether the rest of an ensemble is wanted no longer.
+#[derive(Debug, Clone, Copy)]
+pub struct Stop<'a> {
+    own: &'a AtomicBool,
+    flag: Option<&'a AtomicBool>,
+}
+
+impl Stop<'_> {
+    /// Whether to end now: the consumer has broken off, or the flag of [`Ensemble::stopped_by`] is set.
+    pub fn requested(&self) -> bool {
+        self.own.load(Ordering::Relaxed) || self.flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+}
+
+/// Why a member of an ensemble has no complete trajectory.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum MemberError<E> {
+    /// It could not be made.
+    Make(E),
+    /// Its integration failed; with the outputs reached.
+    Solve(Box<SolveFailure>),
+    /// Its vector field panicked.
+    Panic {
+        /// What the panic said.
+        message: String,
+        /// End of the last internal step, (t, y), if there was one.
+        reached: Option<(f64, Vec<f64>)>,
+    },
+}
+
+impl<E> MemberError<E> {
+    /// The last state reached, (t, y), if the integration had begun.
+    pub fn reached(&self) -> Option<(f64, &[f64])> {
+        match self {
+            MemberError::Make(_) => None,
+            MemberError::Solve(failure) => failure.error.reached(),
+            MemberError::Panic { reached, .. } => reached.as_ref().map(|(t, y)| (*t, &y[..])),
+        }
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for MemberError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MemberError::Make(error) => error.fmt(f),
+            MemberError::Solve(failure) => failure.fmt(f),
+            MemberError::Panic { message, .. } => write!(f, "the vector field panicked: {message}"),
+        }
+    }
+}
+
+impl<E: Error> Error for MemberError<E> {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            MemberError::Make(error) => error.source(),
+            MemberError::Solve(failure) => failure.source(),
+            MemberError::Panic { .. } => None,
+        }
+    }
+}
+
+/// The work of a member panicked.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("panicked: {message}")]
+pub struct Panicked {
+    /// What the panic said.
+    pub message: String,
+}
+
+/// Why there is no ensemble.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EnsembleError {
+    /// The threads cannot be started.
+    #[error("cannot start the threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// What `compute` gives, or what it said when it panicked.
+fn caught<T>(compute: impl FnOnce() -> T) -> Result<T, String> {
+    // Unwind safe: what the computation worked on is dropped with it.
+    catch_unwind(AssertUnwindSafe(compute)).map_err(|panic: Box<dyn Any + Send>| {
+        let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        text.unwrap_or_else(|| "a panic without a message".to_owned())
+    })
+}
+
+/// Overwrites the last (t, y) without asking for memory again.
+fn keep(last: &mut Option<(f64, Vec<f64>)>, t: f64, y: &[f64]) {
+    let (time, state) = last.get_or_insert_with(|| (t, y.to_vec()));
+    *time = t;
+    state.copy_from_slice(y);
+}

@@ -1,0 +1,96 @@
+//! Results of many threads in the order of the members, in bounded memory.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use super::Stop;
+
+/// Hands members out in order and takes their results in any; gives the results in order. No member is begun that is
+/// `window` or more ahead of the one to be taken next.
+pub(super) struct Queue<'a, T> {
+    end: u64,
+    window: u64,
+    stop: &'a Stop<'a>,
+    state: Mutex<State<T>>,
+    /// A result has come, or a thread has ended.
+    finished: Condvar,
+    /// A result was taken, or no more will be.
+    taken: Condvar,
+}
+
+struct State<T> {
+    /// The member to be begun next.
+    next: u64,
+    /// The member to be taken next.
+    wanted: u64,
+    /// Results that wait for an earlier one.
+    results: BTreeMap<u64, T>,
+}
+
+impl<'a, T> Queue<'a, T> {
+    pub(super) fn new(members: Range<u64>, window: u64, stop: &'a Stop<'a>) -> Self {
+        let state = State { next: members.start, wanted: members.start, results: BTreeMap::new() };
+        let state = Mutex::new(state);
+        Queue { end: members.end, window, stop, state, finished: Condvar::new(), taken: Condvar::new() }
+    }
+
+    /// The next member to work on, as soon as the window has room; none if all are begun, or to stop.
+    pub(super) fn begin(&self) -> Option<u64> {
+        let mut state = self.state();
+        let full = |state: &State<T>| state.next < self.end && state.next - state.wanted >= self.window;
+        while full(&state) && !self.stop.requested() {
+            state = self.taken.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        if state.next >= self.end || self.stop.requested() {
+            self.finished.notify_all();
+            return None;
+        }
+        state.next += 1;
+        Some(state.next - 1)
+    }
+
+    /// The result of a member that was begun.
+    pub(super) fn finish(&self, member: u64, result: T) {
+        self.state().results.insert(member, result);
+        self.finished.notify_all();
+    }
+
+    /// The result of the member that comes next; none if it will never be begun.
+    pub(super) fn take(&self, member: u64) -> Option<T> {
+        let mut state = self.state();
+        loop {
+            if let Some(result) = state.results.remove(&member) {
+                state.wanted = member + 1;
+                self.taken.notify_all();
+                return Some(result);
+            }
+            if self.stop.requested() && state.next <= member {
+                return None;
+            }
+            state = self.finished.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Stops everything when dropped.
+    pub(super) fn closing(&self) -> Closing<'_, 'a, T> {
+        Closing(self)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State<T>> {
+        // No code of others runs while it is locked.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+pub(super) struct Closing<'q, 'a, T>(&'q Queue<'a, T>);
+
+impl<T> Drop for Closing<'_, '_, T> {
+    fn drop(&mut self) {
+        let state = self.0.state();
+        self.0.stop.own.store(true, Ordering::Relaxed);
+        self.0.taken.notify_all();
+        drop(state);
+    }
+}
