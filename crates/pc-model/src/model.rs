@@ -353,6 +353,14 @@ impl Model {
                 self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
             }
             MechError::Algebra(error) => self.algebra_error(error),
+            MechError::UnknownIntegral { name, .. }
+                if self.document.integrals.iter().any(|i| i.name.text == name) =>
+            {
+                let message =
+                    format!("`{name}` cannot be kept in momenta where multipliers hold the constraints");
+                let help = "use the form poincare, or keep `energy` alone";
+                self.error(&self.kept_place(&name), Fault::NoForm { message, help })
+            }
             MechError::UnknownIntegral { name, known } => {
                 self.error(&self.kept_place(&name), Fault::UnknownIntegral { name, known })
             }
