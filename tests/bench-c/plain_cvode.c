@@ -1,7 +1,8 @@
 /* CVODES as a C programmer uses it, right-hand sides by hand: what `bench solve` compares our runs with.
  *
- * plain_cvode SYSTEM RTOL ATOL integrates once for each line of standard input and answers with the nanoseconds it
- * took, from creation to destruction of the solver, the numbers of steps and evaluations, and the state at the end. */
+ * plain_cvode SYSTEM RTOL ATOL integrates once for each number of standard input, from its start times that number, and
+ * answers with the nanoseconds it took, from creation to destruction of the solver, the numbers of steps and
+ * evaluations, and the state at the end. */
 #define _POSIX_C_SOURCE 199309L
 
 #include <cvodes/cvodes.h>
@@ -162,7 +163,7 @@ static void check(int code, const char *what) {
     }
 }
 
-static void integrate(const struct system *system, double rtol, double atol) {
+static void integrate(const struct system *system, double rtol, double atol, double scale) {
     SUNContext context;
     SUNMatrix matrix = NULL;
     SUNLinearSolver linear = NULL;
@@ -175,7 +176,7 @@ static void integrate(const struct system *system, double rtol, double atol) {
 
     check(SUNContext_Create(SUN_COMM_NULL, &context), "context");
     y = N_VNew_Serial(system->size, context);
-    memcpy(NV_DATA_S(y), system->start, sizeof(double) * (size_t)system->size);
+    for (i = 0; i < system->size; i++) NV_DATA_S(y)[i] = scale * system->start[i];
     memory = CVodeCreate(system->jacobian ? CV_BDF : CV_ADAMS, context);
     check(CVodeInit(memory, system->rhs, 0.0, y), "CVodeInit");
     check(CVodeSStolerances(memory, rtol, atol), "tolerances");
@@ -210,10 +211,11 @@ static void integrate(const struct system *system, double rtol, double atol) {
 
 int main(int count, char **arguments) {
     size_t i;
+    double scale;
     if (count != 4) return 2;
     for (i = 0; i < sizeof systems / sizeof *systems; i++) {
         if (strcmp(arguments[1], systems[i].name) == 0) {
-            while (getchar() == '\n') integrate(&systems[i], atof(arguments[2]), atof(arguments[3]));
+            while (scanf("%lf", &scale) == 1) integrate(&systems[i], atof(arguments[2]), atof(arguments[3]), scale);
             return 0;
         }
     }

@@ -50,6 +50,7 @@ impl Evaluator {
     }
 
     /// Computes the outputs at (t, state, parameters), as [`Kernel::eval`] does.
+    #[inline]
     pub fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
         let (program, backend) = (&self.program, self.backend);
         let kernel = self.kernel.get_or_insert_with(|| match backend {

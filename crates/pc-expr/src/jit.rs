@@ -180,11 +180,11 @@ impl Kernel for Jit {
     /// # Panics
     /// If a slice has not the length that the program says: the code would read or write beyond it.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
-        assert_eq!(
-            [state.len(), parameters.len(), outputs.len()],
-            self.lengths,
-            "state, parameters, outputs"
-        );
+        // One by one, in registers: this is entered for every evaluation.
+        let [of_state, of_parameters, of_outputs] = self.lengths;
+        assert_eq!(state.len(), of_state, "length of the state");
+        assert_eq!(parameters.len(), of_parameters, "number of parameters");
+        assert_eq!(outputs.len(), of_outputs, "number of outputs");
         let entry = self.code.entry();
         // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked and within
         // `scratch_len` numbers of scratch, and exclusive borrows keep outputs and scratch apart from the rest.

@@ -445,7 +445,7 @@ fn compile_gives_a_kernel_of_the_program() {
 }
 
 #[test]
-#[should_panic(expected = "state, parameters, outputs")]
+#[should_panic(expected = "length of the state")]
 fn wrong_lengths_are_refused() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);

@@ -47,6 +47,9 @@ impl Context {
     pub(crate) fn take_messages(&mut self) -> String {
         // SAFETY: no SUNDIALS call is under way, since it would be made by the owner of `self`.
         let messages = unsafe { self.messages.as_mut() };
+        if messages.is_empty() {
+            return String::new(); // after nearly every step
+        }
         let joined = messages.join(" ");
         messages.clear();
         joined

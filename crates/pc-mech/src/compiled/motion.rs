@@ -251,6 +251,7 @@ impl VectorField for Motion {
         self.names.len()
     }
 
+    #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
