@@ -49,7 +49,8 @@ pub struct ModelArguments {
     /// Give a parameter another value than that of the file (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
-    /// Move the start to where the constraints are satisfied, by the shortest way in the kinetic metric
+    /// Move the start to where the constraints are satisfied, by steps of Newton's method that are the shortest in the
+    /// kinetic metric
     #[arg(long)]
     pub project_start: bool,
 }
@@ -116,7 +117,9 @@ pub struct RunArguments {
     /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints, as λ_NAME
+    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and with [bodies]
+    /// as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as far as
+    /// virtual work determines them
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output

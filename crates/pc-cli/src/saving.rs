@@ -74,6 +74,12 @@ pub enum SavingError {
     /// A model whose motion jumps.
     #[error("--checkpoint: a run of a model with [events] cannot be saved")]
     Events,
+    /// A checkpoint would overwrite something else.
+    #[error("--checkpoint {}: the file is there and is no checkpoint; give another name", path.display())]
+    Occupied {
+        /// The file.
+        path: PathBuf,
+    },
     /// `--every` where no checkpoint is kept.
     #[error("--every says how often; give --checkpoint FILE too")]
     Nowhere,
@@ -105,6 +111,9 @@ impl Saving {
         };
         if !model.document().events.is_empty() {
             return Err(SavingError::Events.into());
+        }
+        if fs::read(path).is_ok_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
+            return Err(SavingError::Occupied { path: path.clone() }.into());
         }
         atomic::look(path).map_err(|source| write_error(path, source))?;
         let mut identity = identity::of_motion(model, plan, form);

@@ -98,7 +98,7 @@ fn drifts(run: &Run) -> Vec<String> {
         let name = &table.columns()[j];
         let drift = table.drift(j);
         let relative = drift.relative.map_or_else(
-            || "(starts no larger)".to_owned(),
+            || "(its start value is no larger)".to_owned(),
             |relative| format!("relative {}", small(relative)),
         );
         let note = if j + 1 == table.conserved().end && !run.keeps_energy {

@@ -219,7 +219,7 @@ fn bounces_that_accumulate_end_a_run_with_their_limit() {
         "rows before the limit at 1.354…"
     );
     let text = said(&output);
-    assert!(text.contains("because: the event bounce occurs infinitely often before t = 1.35457"), "{text}");
+    assert!(text.contains("because: the event bounce occurs without end near t = 1.35457"), "{text}");
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn what_cannot_be_kept_is_refused() {
     let moving = OSCILLATOR.replace("x = 1.0", "x = 1.0\n[quasi_velocities]\n\"x'\" = 0.5");
     assert_eq!(
         said(&pc(&moving, &["--project", "place"]), 4),
-        "pc: <stdin>:9:1: [integrals] place: `place` cannot be kept: it changes along the motion, at the start at the rate \
+        "pc: <stdin>:9:1: [integrals] place: `place` cannot be kept: it changes along the motion, at t = 0 at the rate \
          0.5\n    place = \"x\"\n    ^^^^^\n  \
          help: leave it out of `project`; `pc check` says what the motion keeps\n"
     );

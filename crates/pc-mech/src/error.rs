@@ -93,7 +93,7 @@ pub enum MechError {
         constraint: String,
     },
     /// Constraints that leave nothing to move.
-    #[error("{constraints} constraints leave no freedom to {quasi_velocities} quasi-velocities")]
+    #[error("nothing is left free: constraints {constraints}, quasi-velocities {quasi_velocities}")]
     TooManyConstraints {
         /// Number of constraints.
         constraints: usize,
@@ -150,10 +150,12 @@ pub enum MechError {
         known: Vec<String>,
     },
     /// An integral to be kept that is none.
-    #[error("`{name}` cannot be kept: it changes along the motion, at the start at the rate {rate}")]
+    #[error("`{name}` cannot be kept: it changes along the motion, at t = {t} at the rate {rate}")]
     NotAnIntegral {
         /// The integral.
         name: String,
+        /// When it was seen to change.
+        t: f64,
         /// Its rate of change.
         rate: f64,
     },

@@ -131,7 +131,7 @@ fn what_is_no_integral_is_refused() {
     // 4 ω̇3 = −ω1 ω2 + 2 γ1 − γ2 = 0.3
     assert_eq!(
         refused.to_string(),
-        "`spin` cannot be kept: it changes along the motion, at the start at the rate 0.075"
+        "`spin` cannot be kept: it changes along the motion, at t = 0 at the rate 0.075"
     );
     let unknown = equations.kept(&["norm", "are"]).unwrap_err();
     assert!(matches!(&unknown, MechError::UnknownIntegral { name, .. } if name == "are"));

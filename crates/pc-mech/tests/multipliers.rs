@@ -236,7 +236,7 @@ fn what_cannot_be_held_is_refused() {
     );
     assert_eq!(
         refused(&[circle.clone(), line.clone(), third]),
-        "3 constraints leave no freedom to 3 quasi-velocities"
+        "nothing is left free: constraints 3, quasi-velocities 3"
     );
     assert_eq!(
         refused(&[Constraint::new("speed", vx.square() + vy.square() - 1.0)]),

@@ -305,10 +305,12 @@ pub enum Fault {
         known: Vec<String>,
     },
     /// An integral to be kept that is none.
-    #[error("`{name}` cannot be kept: it changes along the motion, at the start at the rate {}", rounded(*rate))]
+    #[error("`{name}` cannot be kept: it changes along the motion, at t = {} at the rate {}", rounded(*t), rounded(*rate))]
     NotAnIntegral {
         /// The integral.
         name: String,
+        /// When it was seen to change.
+        t: f64,
         /// Its rate of change.
         rate: f64,
     },

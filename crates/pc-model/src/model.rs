@@ -364,8 +364,8 @@ impl Model {
             MechError::UnknownIntegral { name, known } => {
                 self.error(&self.kept_place(&name), Fault::UnknownIntegral { name, known })
             }
-            MechError::NotAnIntegral { name, rate } => {
-                self.error(&self.kept_place(&name), Fault::NotAnIntegral { name, rate })
+            MechError::NotAnIntegral { name, t, rate } => {
+                self.error(&self.kept_place(&name), Fault::NotAnIntegral { name, t, rate })
             }
             other => self.error(&self.energy_place(), Fault::Derivation { message: other.to_string() }),
         }

@@ -106,7 +106,7 @@ fn constraints_must_leave_something_to_move() {
         BELOW,
         "a = \"x - 0.6\"\nb = \"y + 0.8\"",
         Category::Inconsistent,
-        "m.toml:6:6: [constraints] b: 2 constraints leave no freedom to 2 quasi-velocities\n    b = \"y + 0.8\"\n         \
+        "m.toml:6:6: [constraints] b: nothing is left free: constraints 2, quasi-velocities 2\n    b = \"y + 0.8\"\n         \
          ^^^^^^^\n  help: there must be fewer independent constraints than velocities, or nothing moves",
     );
     // Two that say the same leave one velocity.

@@ -119,7 +119,7 @@ impl Reason {
             Reason::Reset { event, t } => write!(f, "the event {event} cannot reset the state at t = {t}"),
             Reason::Accumulation { event, occurrences, t } => write!(
                 f,
-                "the event {event} occurs infinitely often before t = {t} ({occurrences} times up to t = {time})"
+                "the event {event} occurs without end near t = {t:.5e} ({occurrences} times up to t = {time})"
             ),
         }
     }

@@ -148,9 +148,9 @@ fn random(text: &str) -> Result<Random, String> {
     let law = match kind.trim() {
         "normal" if b >= 0.0 => Law::Normal(a, b),
         "lognormal" if b >= 0.0 => Law::LogNormal(a, b),
-        "normal" | "lognormal" => return Err("the standard deviation is not negative".to_owned()),
+        "normal" | "lognormal" => return Err("the standard deviation must not be negative".to_owned()),
         "uniform" if a <= b && (b - a).is_finite() => Law::Uniform(a, b),
-        "uniform" => return Err("the first bound is the lower one".to_owned()),
+        "uniform" => return Err("the first bound must be the lower one".to_owned()),
         _ => return Err(usage()),
     };
     match name.trim() {

@@ -1,6 +1,6 @@
 //! First integrals that a motion is brought back to.
 
-use pc_expr::{Backend, Evaluator, Expr, Program, VectorField};
+use pc_expr::{Backend, Evaluator, Expr, Program};
 
 use crate::canonical::Canonical;
 use crate::compiled::fault::{Fault, check_finite};
@@ -21,6 +21,11 @@ const DEPENDENT: f64 = 1e-10;
 
 /// A rate of change that is larger than rounding of its terms by this is one.
 const RATE: f64 = 1e-9;
+
+/// An integral is tried along so many steps, each twice the one before; the first changes the state by about this part
+/// of it, with an error far below [`RATE`].
+const STEPS: usize = 8;
+const FIRST_STEP: f64 = 1e-4;
 
 /// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep it at their values: see
 /// [`Motion::keep`].
@@ -100,15 +105,15 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl Motion {
-    /// The same motion with a [projection](VectorField::project) to the values that these integrals have at (t, y), beside
+    /// The same motion with a [projection](pc_expr::VectorField::project) to the values that these integrals have at (t, y), beside
     /// that to its constraints: the shortest way in the components of the state as they are. Asked for after each
     /// step, it changes the state by no more than the error of the step.
     ///
     /// An integral whose gradient depends on those before it, such as the energy at rest, is left to itself there.
     ///
     /// # Errors
-    /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y); what the equations of motion
-    /// report there.
+    /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
+    /// equations of motion report at (t, y).
     ///
     /// ```
     /// use pc_mech::{Graph, System, VectorField};
@@ -131,23 +136,52 @@ impl Motion {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn keep(mut self, mut integrals: KeptIntegrals, t: f64, y: &[f64]) -> Result<Motion, MechError> {
-        let mut rates = vec![0.0; self.dim()];
-        self.rhs(t, y, &mut rates).map_err(MechError::from)?;
-        let gradients = integrals.gradients_at((t, y, self.parameters()));
-        for (name, gradient) in integrals.names.iter().zip(&gradients[integrals.held()..]) {
-            let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(&rates)).map(|(g, rate)| g * rate);
-            let (rate, size): (f64, f64) = (terms().sum(), terms().map(f64::abs).sum());
-            if rate.is_nan() || rate.abs() > RATE * size {
-                return Err(MechError::NotAnIntegral { name: name.clone(), rate });
-            }
+        let rates = self.rates(t, y)?;
+        integrals.check((t, y, self.parameters()), &rates)?;
+        // At rest much that changes has no rate: a few short steps show it.
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let (mut now, mut state) = (t, y.to_vec());
+        let mut step = FIRST_STEP * largest(y).max(1.0) / largest(&rates).max(1.0);
+        for _ in 0..STEPS {
+            let Ok(next) = self.runge_kutta(now, &state, step) else { break };
+            (now, state) = (now + step, next);
+            let Ok(rates) = self.rates(now, &state) else { break };
+            integrals.check((now, &state, self.parameters()), &rates)?;
+            step *= 2.0;
         }
         integrals.set_levels((t, y, self.parameters()));
         self.set_kept(integrals);
         Ok(self)
     }
+
+    /// The state a step of the classical method later.
+    fn runge_kutta(&mut self, t: f64, y: &[f64], step: f64) -> Result<Vec<f64>, MechError> {
+        let along =
+            |rates: &[f64], h: f64| y.iter().zip(rates).map(|(y, rate)| y + h * rate).collect::<Vec<_>>();
+        let a = self.rates(t, y)?;
+        let b = self.rates(t + step / 2.0, &along(&a, step / 2.0))?;
+        let c = self.rates(t + step / 2.0, &along(&b, step / 2.0))?;
+        let d = self.rates(t + step, &along(&c, step))?;
+        let mean: Vec<f64> = (0..y.len()).map(|i| (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) / 6.0).collect();
+        Ok(along(&mean, step))
+    }
 }
 
 impl KeptIntegrals {
+    /// # Errors
+    /// [`MechError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
+    fn check(&mut self, at: (f64, &[f64], &[f64]), rates: &[f64]) -> Result<(), MechError> {
+        let gradients = self.gradients_at(at);
+        for (name, gradient) in self.names.iter().zip(&gradients[self.held()..]) {
+            let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(rates)).map(|(g, rate)| g * rate);
+            let (rate, size): (f64, f64) = (terms().sum(), terms().map(f64::abs).sum());
+            if rate.is_nan() || rate.abs() > RATE * size {
+                return Err(MechError::NotAnIntegral { name: name.clone(), t: at.0, rate });
+            }
+        }
+        Ok(())
+    }
+
     /// Takes the values at (t, y) for those to be kept.
     pub(crate) fn set_levels(&mut self, (t, y, p): (f64, &[f64], &[f64])) {
         self.values.eval(t, y, p, &mut self.levels);

@@ -187,7 +187,7 @@ impl Motion {
         })
     }
 
-    fn rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
+    pub(crate) fn rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut rates = vec![0.0; y.len()];
         self.rhs(t, y, &mut rates)?;
         Ok(rates)

@@ -72,6 +72,11 @@ impl Checkpoint {
         bytes
     }
 
+    /// Whether these bytes begin as a checkpoint does, of whatever version.
+    pub fn is_one(bytes: &[u8]) -> bool {
+        bytes.starts_with(MAGIC)
+    }
+
     /// The checkpoint that these bytes are, and its label.
     ///
     /// # Errors
