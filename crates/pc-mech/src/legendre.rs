@@ -124,6 +124,11 @@ impl Canonical<'_> {
 }
 
 impl LegendreTransform {
+    /// The values of the parameters, to be changed.
+    pub fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.parameters
+    }
+
     /// (x, y) of the state (x, η), length n + k both.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::io::{Read, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::error::Error;
@@ -25,6 +25,14 @@ pub(crate) fn workspace_root() -> PathBuf {
     root
 }
 
+/// Where cargo has built this program.
+pub(crate) fn target_directory() -> Result<PathBuf, Error> {
+    let program = env::current_exe();
+    let program = program.map_err(|source| Error::Start { program: "xtask".to_owned(), source })?;
+    let target = program.parent().and_then(Path::parent);
+    Ok(target.map_or_else(|| workspace_root().join("target"), Path::to_path_buf))
+}
+
 /// Runs to the end with our own input and output.
 ///
 /// # Errors
@@ -43,7 +51,8 @@ pub(crate) fn announce_and_run(command: &mut Command) -> Result<(), Error> {
     run(command)
 }
 
-/// As [`announce_and_run`], with each piece of standard output given to `sink` as well as to the terminal, when it comes.
+/// As [`announce_and_run`], with each piece of standard output given to `sink` as well as to the terminal, when
+/// it comes.
 ///
 /// # Errors
 /// As [`run`], and [`Error::Output`] where the output cannot be read or passed on.

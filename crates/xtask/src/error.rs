@@ -21,6 +21,8 @@ pub(crate) enum Error {
     Start { program: String, source: io::Error },
     /// The output of a program could not be passed on.
     Output { program: String, source: io::Error },
+    /// A file could not be read, written or removed.
+    File { path: String, source: io::Error },
     /// A program ran and failed.
     Failed { command: String, status: ExitStatus },
     /// Tests failed, or their programs did.
@@ -54,6 +56,7 @@ impl fmt::Display for Error {
             Error::Output { program, source } => {
                 write!(f, "cannot pass on the output of `{program}`: {source}")
             }
+            Error::File { path, source } => write!(f, "{path}: {source}"),
             Error::Failed { command, status } => write!(f, "`{command}` failed: {status}"),
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::NoTests => f.write_str("no test was run"),
@@ -65,7 +68,9 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Error::Tests { failure, .. } => failure.source(),
-            Error::Start { source, .. } | Error::Output { source, .. } => Some(source),
+            Error::Start { source, .. } | Error::Output { source, .. } | Error::File { source, .. } => {
+                Some(source)
+            }
             _ => None,
         }
     }

@@ -4,16 +4,20 @@
 //! on a machine that has only Rust and can then say, or install, what else is needed.
 
 mod bench;
+mod c_examples;
 mod command;
 mod counts;
 mod demo;
 mod error;
+mod header;
+mod install;
 mod packages;
 mod setup;
 mod test;
 mod tools;
 
 use std::env;
+use std::path::Path;
 use std::process::ExitCode;
 
 use error::Error;
@@ -24,6 +28,9 @@ usage: cargo xtask <command>
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
   test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
+  header           write include/pc.h from the sources of the C interface
+  c-examples       build the examples in C and C++, run them, and run them under the sanitizers
+  install --prefix DIR     build the C library and install it with its headers; `uninstall` removes it
   setup            install what the build needs (the commands above do it by themselves)
   help             this text";
 
@@ -56,6 +63,16 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         }
         "test" => test::run(quick(rest)?),
         "bench" => bench::run(rest),
+        "header" => {
+            no_more(name, rest)?;
+            header::run()
+        }
+        "c-examples" => {
+            no_more(name, rest)?;
+            c_examples::run()
+        }
+        "install" => install::install(prefix(name, rest)?),
+        "uninstall" => install::uninstall(prefix(name, rest)?),
         "setup" => {
             no_more(name, rest)?;
             setup::everything()
@@ -73,6 +90,16 @@ fn quick(rest: &[String]) -> Result<bool, Error> {
         [] => Ok(false),
         [flag, more @ ..] if flag == "--quick" => no_more("test --quick", more).map(|()| true),
         [other, ..] => Err(Error::Usage { message: format!("`test` does not take `{other}`") }),
+    }
+}
+
+/// The directory of `--prefix DIR`.
+fn prefix<'a>(name: &str, rest: &'a [String]) -> Result<&'a Path, Error> {
+    match rest {
+        [flag, directory, more @ ..] if flag == "--prefix" => {
+            no_more(name, more).map(|()| Path::new(directory))
+        }
+        _ => Err(Error::Usage { message: format!("`{name}` needs `--prefix DIR`") }),
     }
 }
 
@@ -97,6 +124,8 @@ mod tests {
         assert_eq!(message_of(&["tset"]), "there is no command `tset`");
         assert_eq!(message_of(&["demo", "--fast"]), "`demo` does not take `--fast`");
         assert_eq!(message_of(&["test", "--fast"]), "`test` does not take `--fast`");
+        assert_eq!(message_of(&["install"]), "`install` needs `--prefix DIR`");
+        assert_eq!(message_of(&["uninstall", "--prefix", "a", "b"]), "`uninstall` does not take `b`");
         assert_eq!(message_of(&["test", "--quick", "x"]), "`test --quick` does not take `x`");
     }
 

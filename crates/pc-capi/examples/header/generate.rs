@@ -1,0 +1,58 @@
+//! The header from the sources.
+
+use std::path::Path;
+
+use cbindgen::{Builder, Config, DocumentationStyle, EnumConfig, Language, Style};
+
+/// The text of `include/pc.h`.
+pub(crate) fn header() -> String {
+    let mut config = Config {
+        language: Language::C,
+        header: Some(pc::version::PREAMBLE.to_owned()),
+        include_guard: Some("PC_H".to_owned()),
+        cpp_compat: true,
+        style: Style::Type,
+        no_includes: true,
+        sys_includes: ["stddef.h", "stdint.h"].map(str::to_owned).to_vec(),
+        documentation_style: DocumentationStyle::Doxy,
+        usize_is_size_t: true,
+        line_length: 110,
+        line_endings: cbindgen::LineEndingStyle::LF,
+        ..Config::default()
+    };
+    config.enumeration = EnumConfig { prefix_with_name: false, ..EnumConfig::default() };
+    config.export.exclude = vec!["PREAMBLE".to_owned()];
+    // The enumerations of options are only named in the documentation of their fields.
+    config.export.include =
+        ["pc_form", "pc_method", "pc_iteration", "pc_linear_solver", "pc_format"].map(str::to_owned).to_vec();
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut builder = Builder::new().with_config(config);
+    for file in FILES {
+        builder = builder.with_src(sources.join(file));
+    }
+    let bindings = builder.generate().expect("the sources are Rust");
+    let mut text = Vec::new();
+    bindings.write(&mut text);
+    let text = String::from_utf8(text).expect("the sources are UTF-8");
+    text.replace(" \n", "\n")
+}
+
+/// In the order in which a reader needs them.
+const FILES: [&str; 16] = [
+    "version.rs",
+    "status.rs",
+    "error.rs",
+    "strings.rs",
+    "model.rs",
+    "builder.rs",
+    "options.rs",
+    "system.rs",
+    "rates.rs",
+    "observe.rs",
+    "mechanics.rs",
+    "legendre.rs",
+    "source.rs",
+    "kernel.rs",
+    "solver.rs",
+    "statistics.rs",
+];

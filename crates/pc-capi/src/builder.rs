@@ -1,0 +1,342 @@
+//! Models built call by call, expressions as strings.
+
+use std::ffi::c_char;
+
+use crate::draft::{Draft, Section, number, quoted};
+use crate::entry::entry;
+use crate::error::{Fault, pc_error};
+use crate::model::{Contents, Origin, boxed, change, pc_model};
+use crate::pointer::{clear, finite, text, write};
+use crate::status::pc_status;
+
+/// A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
+/// coordinates, quasi-velocities, parameters and so on is that of their calls. Expressions are those of the text
+/// model, where `x'` is the velocity of the coordinate x, and `t` the time. What is said is understood as a
+/// whole by pc_model_check and pc_system_new, whose errors name the entry and show its expression.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_new(
+    name: *const c_char,
+    model: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let new = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(model, "model") }?;
+        // SAFETY: as above.
+        let name = unsafe { text(name, "name") }?;
+        // SAFETY: as above.
+        unsafe { write(model, boxed(Origin::Calls(Draft::new(name))), "model") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, new) }
+}
+
+/// Reads what has been said as a whole: PC_OK if all names and expressions are well formed. Whether equations
+/// can be derived is found by pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
+    let check = |contents: &mut Contents| contents.model().map(|_| ());
+    // SAFETY: as the preamble demands; the contents are not changed.
+    unsafe { change(model.cast_mut(), error, check) }
+}
+
+/// Calls `write` with the draft of a model begun with `pc_model_new`.
+///
+/// # Safety
+/// `model` is null or a live handle, `error` null or a place for a pointer.
+unsafe fn draft(
+    model: *mut pc_model,
+    error: *mut *mut pc_error,
+    what: &'static str,
+    write: impl FnOnce(&mut Draft) -> Result<(), Fault>,
+) -> pc_status {
+    let change_draft = |contents: &mut Contents| match &mut contents.origin {
+        Origin::Calls(draft) => write(draft),
+        Origin::Text(_) => Err(Fault::NotADraft { what }),
+    };
+    // SAFETY: as promised.
+    unsafe { change(model, error, change_draft) }
+}
+
+/// Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_parameter(
+    model: *mut pc_model,
+    name: *const c_char,
+    value: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        draft.add(Section::Parameters, name, number(finite(value, "value")?));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_parameter", write) }
+}
+
+/// Adds a name for an expression.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_definition(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        draft.add(Section::Definitions, name, quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_definition", write) }
+}
+
+/// Adds a coordinate with its value at the start.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_coordinate(
+    model: *mut pc_model,
+    name: *const c_char,
+    start: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        draft.add(Section::Coordinates, name, number(finite(start, "start")?));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_coordinate", write) }
+}
+
+/// Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in the velocities
+/// x', or NULL where the kinematics are given the other way round, by pc_model_set_kinematics. Without any
+/// quasi-velocities they are the velocities themselves; `name` may then be `x'`, to give one its value at the
+/// start.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_quasi_velocity(
+    model: *mut pc_model,
+    name: *const c_char,
+    definition: *const c_char,
+    start: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        let start = number(finite(start, "start")?);
+        let value = if definition.is_null() {
+            start
+        } else {
+            // SAFETY: text, as above.
+            let definition = unsafe { text(definition, "definition") }?;
+            format!("{{ is = {}, start = {start} }}", quoted(definition))
+        };
+        draft.add(Section::QuasiVelocities, name, value);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_quasi_velocity", write) }
+}
+
+/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for every coordinate,
+/// or for none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_kinematics(
+    model: *mut pc_model,
+    coordinate: *const c_char,
+    velocity: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (coordinate, velocity) =
+            unsafe { (text(coordinate, "coordinate")?, text(velocity, "velocity")?) };
+        draft.put(Section::Kinematics, coordinate, quoted(velocity));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_kinematics", write) }
+}
+
+/// Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only where the frame
+/// does not determine them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_algebra(
+    model: *mut pc_model,
+    name: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        draft.put(Section::Algebra, "name", quoted(name));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_algebra", write) }
+}
+
+/// Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as "w3"; brackets
+/// that are not set are zero. `left` may be "t", for X_0. Instead of pc_model_set_algebra.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_bracket(
+    model: *mut pc_model,
+    left: *const c_char,
+    right: *const c_char,
+    value: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (left, right, value) =
+            unsafe { (text(left, "left")?, text(right, "right")?, text(value, "value")?) };
+        draft.put(Section::Brackets, &format!("{left},{right}"), quoted(value));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_bracket", write) }
+}
+
+/// Adds a constraint: the expression, of coordinates or of velocities, vanishes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_constraint(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        draft.add(Section::Constraints, name, quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_constraint", write) }
+}
+
+/// Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_lagrangian(
+    model: *mut pc_model,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let expression = unsafe { text(expression, "expression") }?;
+        draft.put(Section::Lagrangian, "lagrangian", quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_lagrangian", write) }
+}
+
+/// Sets the kinetic energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_kinetic(
+    model: *mut pc_model,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let expression = unsafe { text(expression, "expression") }?;
+        draft.put(Section::Lagrangian, "kinetic", quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_kinetic", write) }
+}
+
+/// Sets the potential energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_potential(
+    model: *mut pc_model,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let expression = unsafe { text(expression, "expression") }?;
+        draft.put(Section::Lagrangian, "potential", quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_potential", write) }
+}
+
+/// Sets a dissipation function R, which gives the forces Q_s = −∂R/∂η_s.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_dissipation(
+    model: *mut pc_model,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let expression = unsafe { text(expression, "expression") }?;
+        draft.put(Section::Lagrangian, "dissipation", quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_dissipation", write) }
+}
+
+/// Adds a force, conjugate to a quasi-velocity, or to a coordinate.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_force(
+    model: *mut pc_model,
+    on: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (on, expression) = unsafe { (text(on, "on")?, text(expression, "expression")?) };
+        draft.add(Section::Forces, on, quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_force", write) }
+}
+
+/// Adds an expression that should stay constant, to be watched.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_integral(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        draft.add(Section::Integrals, name, quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_integral", write) }
+}
+
+/// Adds an expression to be watched.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_output(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        draft.add(Section::Outputs, name, quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_output", write) }
+}

@@ -1,0 +1,126 @@
+//! The boundary: what every function does on the way in and out.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use crate::error::{Fault, pc_error};
+use crate::status::pc_status;
+
+/// Runs `body`, catching panics, and writes its fault to `*error`, or null.
+///
+/// # Safety
+/// `error` is null or a place for a pointer.
+pub(crate) unsafe fn entry(error: *mut *mut pc_error, body: impl FnOnce() -> Result<(), Fault>) -> pc_status {
+    // Unwind safe: what the body may have left half done stands behind a mutex, which is poisoned then.
+    let outcome = catch_unwind(AssertUnwindSafe(|| match body() {
+        Ok(()) => (pc_status::PC_OK, ptr::null_mut()),
+        Err(Fault::Stopped) => (pc_status::PC_STOPPED, ptr::null_mut()),
+        Err(fault) if error.is_null() => (fault.status(), ptr::null_mut()),
+        Err(fault) => (fault.status(), Box::into_raw(Box::new(fault.into_error()))),
+    }));
+    let (status, written) = outcome.unwrap_or_else(|panic| {
+        let fault = Fault::Panic { message: message_of(panic) };
+        (fault.status(), Box::into_raw(Box::new(fault.into_error())))
+    });
+    if !error.is_null() {
+        // SAFETY: not null, and then a place for a pointer.
+        unsafe { error.write(written) };
+    } else if !written.is_null() {
+        // SAFETY: boxed just now.
+        drop(unsafe { Box::from_raw(written) });
+    }
+    status
+}
+
+/// What a panic says.
+fn message_of(panic: Box<dyn Any + Send>) -> String {
+    let message = panic
+        .downcast_ref::<String>()
+        .cloned()
+        .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
+        .unwrap_or_else(|| "a panic".to_owned());
+    // Ours are texts; one of another kind might panic again where it is dropped.
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
+    message
+}
+
+/// What the mutex holds, if nobody else uses it.
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> Result<MutexGuard<'_, T>, Fault> {
+    mutex.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => Fault::Busy,
+        TryLockError::Poisoned(_) => Fault::Broken,
+    })
+}
+
+/// Whether a call holds the mutex.
+pub(crate) fn is_held<T>(mutex: &Mutex<T>) -> bool {
+    matches!(mutex.try_lock(), Err(TryLockError::WouldBlock))
+}
+
+/// Frees a box that was given to C.
+///
+/// # Safety
+/// Null, or made by `Box::into_raw` and used by nobody any more.
+pub(crate) unsafe fn free<T>(boxed: *mut T) {
+    if !boxed.is_null() {
+        // Unwind safe: nobody sees the box again.
+        let _ = catch_unwind(AssertUnwindSafe(|| {
+            // SAFETY: not null, and then as promised.
+            drop(unsafe { Box::from_raw(boxed) });
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::CStr;
+
+    use super::*;
+    use crate::error::{pc_error_free, pc_error_message};
+
+    /// Status and message of a call of `body`.
+    fn called(body: impl FnOnce() -> Result<(), Fault>) -> (pc_status, String) {
+        let mut error = ptr::null_mut();
+        // SAFETY: a place for a pointer; the error is freed once.
+        unsafe {
+            let status = entry(&raw mut error, body);
+            let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap().to_owned();
+            pc_error_free(error);
+            (status, message)
+        }
+    }
+
+    #[test]
+    fn a_panic_goes_no_further() {
+        let (status, message) = called(|| panic!("number {}", 7));
+        assert_eq!((status, message.as_str()), (pc_status::PC_INTERNAL, "a fault of the library: number 7"));
+        assert_eq!(called(|| panic!("seven")).1, "a fault of the library: seven");
+        assert_eq!(called(|| std::panic::panic_any(7)).1, "a fault of the library: a panic");
+        // SAFETY: null.
+        assert_eq!(unsafe { entry(ptr::null_mut(), || panic!()) }, pc_status::PC_INTERNAL);
+    }
+
+    #[test]
+    fn what_a_panic_left_half_done_is_not_used_again() {
+        let mutex = Mutex::new(1);
+        let half_done = called(|| {
+            let _held = locked(&mutex)?;
+            panic!("half done")
+        });
+        assert_eq!(half_done.0, pc_status::PC_INTERNAL);
+        let (status, message) = called(|| locked(&mutex).map(|_| ()));
+        assert_eq!(status, pc_status::PC_INTERNAL);
+        assert!(message.ends_with("this handle can only be freed"), "{message}");
+        assert!(!is_held(&mutex)); // so that it is freed
+    }
+
+    #[test]
+    fn a_success_clears_the_place_of_the_error() {
+        let mut error = ptr::dangling_mut();
+        // SAFETY: a place for a pointer, which is not looked at.
+        assert_eq!(unsafe { entry(&raw mut error, || Ok(())) }, pc_status::PC_OK);
+        assert!(error.is_null());
+    }
+}

@@ -1,0 +1,203 @@
+//! What went wrong, for C.
+
+use std::error::Error;
+use std::ffi::{CString, c_char, c_int};
+
+use ::pc_model::{Category, ModelError, UnknownIntegral, UnknownParameter};
+use pc_expr::Failure;
+use pc_mech::MechError;
+use pc_solve::SolveError;
+
+use crate::status::pc_status;
+use crate::strings::c_string;
+
+/// Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
+/// pc_error_free.
+pub struct pc_error {
+    status: pc_status,
+    message: CString,
+    place: Place,
+    integrator_code: c_int,
+}
+
+/// A place in a model text; zeros where there is none.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    line: usize,
+    column: usize,
+    offset: usize,
+    length: usize,
+}
+
+/// The ways in which a call can fail.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Fault {
+    #[error("{what} is a null pointer")]
+    Null { what: &'static str },
+    #[error("{what}: room for {found} numbers, but there are {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what} is not UTF-8 text: byte number {offset} (from 0) does not fit")]
+    NotText { what: &'static str, offset: usize },
+    #[error("{what} is {value}, but must be finite")]
+    NotFinite { what: &'static str, value: f64 },
+    #[error("{first} and {second} share memory")]
+    Overlap { first: &'static str, second: &'static str },
+    #[error("{value} is not a value of {what}")]
+    Choice { what: &'static str, value: i64 },
+    #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
+    StructSize { what: &'static str, found: usize, least: usize, most: usize },
+    #[error("{what}: there is no number {index}, there are {count}")]
+    Index { what: &'static str, index: usize, count: usize },
+    #[error("{what} needs a model begun with pc_model_new; this one was read from a text")]
+    NotADraft { what: &'static str },
+    #[error("there is no model called `{name}`; pc_builtin_name lists those there are")]
+    NoSuchModel { name: String },
+    #[error("cannot read `{path}`: {source}")]
+    Read { path: String, source: std::io::Error },
+    #[error("{what} is not known of this system: {why}")]
+    Unsupported { what: &'static str, why: &'static str },
+    #[error("the handle is in use by another call")]
+    Busy,
+    #[error("an earlier call failed inside; this handle can only be freed")]
+    Broken,
+    #[error("a fault of the library: {message}")]
+    Panic { message: String },
+    #[error("the observer stopped the integration")]
+    Stopped,
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    UnknownParameter(#[from] UnknownParameter),
+    #[error(transparent)]
+    UnknownIntegral(#[from] UnknownIntegral),
+    #[error("{0}")]
+    Evaluation(#[from] Failure),
+    #[error(transparent)]
+    Mechanics(#[from] MechError),
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}
+
+impl Fault {
+    pub(crate) fn status(&self) -> pc_status {
+        match self {
+            Fault::Null { .. }
+            | Fault::Length { .. }
+            | Fault::NotText { .. }
+            | Fault::NotFinite { .. }
+            | Fault::Overlap { .. }
+            | Fault::Choice { .. }
+            | Fault::StructSize { .. }
+            | Fault::Index { .. }
+            | Fault::NotADraft { .. }
+            | Fault::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
+            Fault::Model(error) => match error.category() {
+                Category::Text => pc_status::PC_INVALID_MODEL,
+                Category::Unsupported => pc_status::PC_UNSUPPORTED,
+                Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
+            },
+            Fault::Unsupported { .. } => pc_status::PC_UNSUPPORTED,
+            Fault::NoSuchModel { .. } | Fault::UnknownParameter(_) | Fault::UnknownIntegral(_) => {
+                pc_status::PC_NOT_FOUND
+            }
+            Fault::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+                pc_status::PC_NOT_FOUND
+            }
+            Fault::Read { .. } => pc_status::PC_IO,
+            Fault::Evaluation(_) | Fault::Mechanics(_) => pc_status::PC_EVALUATION,
+            Fault::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
+            Fault::Stopped => pc_status::PC_STOPPED,
+            Fault::Busy => pc_status::PC_BUSY,
+            // Of the solver: its set-up, which fails for want of memory.
+            Fault::Broken | Fault::Panic { .. } | Fault::Solve(_) => pc_status::PC_INTERNAL,
+        }
+    }
+
+    /// What is said, with the cause where the sentence does not hold it.
+    fn message(&self) -> String {
+        let mut message = self.to_string();
+        let mut cause = match self {
+            Fault::Solve(error) => error.source(),
+            _ => None,
+        };
+        while let Some(error) = cause {
+            message += &format!(": {error}");
+            cause = error.source();
+        }
+        message
+    }
+
+    pub(crate) fn into_error(self) -> pc_error {
+        let place = match &self {
+            Fault::Model(error) => {
+                let (span, position) = (error.span(), error.position());
+                let (line, column) = (position.line, position.column);
+                Place { line, column, offset: span.start, length: span.len() }
+            }
+            _ => Place::default(),
+        };
+        let code = match &self {
+            Fault::Solve(error) => error.code().map_or(0, pc_solve::Code::number),
+            _ => 0,
+        };
+        pc_error { status: self.status(), message: c_string(&self.message()), place, integrator_code: code }
+    }
+}
+
+/// Its status, never PC_OK; PC_OK of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_status(error: *const pc_error) -> pc_status {
+    // SAFETY: null or a live error, as the preamble demands.
+    unsafe { error.as_ref() }.map_or(pc_status::PC_OK, |error| error.status)
+}
+
+/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line at fault and
+/// what would be right, over several lines of text. The empty text of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_message(error: *const pc_error) -> *const c_char {
+    // SAFETY: null or a live error, as the preamble demands.
+    unsafe { error.as_ref() }.map_or(c"".as_ptr(), |error| error.message.as_ptr())
+}
+
+/// The line of the model text at fault, from 1; 0 if there is none, or of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_line(error: *const pc_error) -> usize {
+    place(error).line
+}
+
+/// The column at which the text at fault begins, in characters from 1; 0 if there is none, or of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_column(error: *const pc_error) -> usize {
+    place(error).column
+}
+
+/// The byte at which the text at fault begins, from 0; 0 if there is none, or of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_offset(error: *const pc_error) -> usize {
+    place(error).offset
+}
+
+/// The number of bytes of the text at fault; 0 if there is none, or of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_length(error: *const pc_error) -> usize {
+    place(error).length
+}
+
+/// The code that CVODES returned (cvodes.h), if the status is PC_INTEGRATION and CVODES is the reason; else 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_integrator_code(error: *const pc_error) -> c_int {
+    // SAFETY: null or a live error, as the preamble demands.
+    unsafe { error.as_ref() }.map_or(0, |error| error.integrator_code)
+}
+
+/// Frees an error. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_free(error: *mut pc_error) {
+    // SAFETY: null or an error of ours that nobody uses any more.
+    unsafe { crate::entry::free(error) };
+}
+
+fn place(error: *const pc_error) -> Place {
+    // SAFETY: null or a live error, as the preamble demands of the callers.
+    unsafe { error.as_ref() }.map_or_else(Place::default, |error| error.place)
+}

@@ -1,0 +1,143 @@
+//! The right-hand side as a plain function pointer with a context.
+
+use std::ffi::{c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use pc_mech::{Motion, VectorField};
+
+use crate::entry::{entry, free};
+use crate::error::{Fault, pc_error};
+use crate::pointer::{apart, clear, handle, numbers, room, write};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
+/// pc_kernel_free.
+///
+/// It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
+/// return there are no locks.
+pub struct pc_kernel {
+    motion: Motion,
+    dim: usize,
+}
+
+/// A kernel of the system with the parameters as they are now.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_new(
+    system: *const pc_system,
+    kernel: *mut *mut pc_kernel,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let new = |inventory: &Inventory, inner: &mut Inner| {
+        let made = Box::new(pc_kernel { motion: inner.motion.clone(), dim: inventory.dim() });
+        // SAFETY: null or a place for a handle, as the preamble demands.
+        unsafe { write(kernel, Box::into_raw(made), "kernel") }
+    };
+    let checked = || {
+        // SAFETY: as above.
+        unsafe { clear(kernel, "kernel") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    match unsafe { entry(error, checked) } {
+        // SAFETY: as the preamble demands.
+        pc_status::PC_OK => unsafe { inside(system, error, new) },
+        refused => refused,
+    }
+}
+
+/// Frees a kernel. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_free(kernel: *mut pc_kernel) {
+    // SAFETY: null or a handle of ours that nobody uses any more.
+    unsafe { free(kernel) };
+}
+
+/// Sets all parameters of a kernel, in the order of pc_system_parameter_name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_set_parameters(
+    kernel: *mut pc_kernel,
+    values: *const f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let set = || {
+        // SAFETY: null or a live kernel that no other thread uses, as its documentation demands.
+        let kernel = unsafe { kernel.as_mut() }.ok_or(Fault::Null { what: "kernel" })?;
+        let parameters = kernel.motion.parameters_mut();
+        // SAFETY: null or `length` numbers, as the preamble demands.
+        let values = unsafe { numbers(values, length, parameters.len(), "values") }?;
+        if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(Fault::NotFinite { what: "a parameter", value });
+        }
+        parameters.copy_from_slice(values);
+        Ok(())
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, set) }
+}
+
+/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no memory. `kernel` is
+/// a pc_kernel of this thread's.
+///
+/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step helps.
+/// pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes, with the kernel as
+/// `params`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
+    // SAFETY: a kernel and arrays of its dimension, as the documentation demands.
+    unsafe { evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot)) }
+}
+
+/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_jacobian(
+    t: f64,
+    y: *const f64,
+    jacobian: *mut f64,
+    kernel: *mut c_void,
+) -> c_int {
+    // SAFETY: a kernel and arrays of its dimension, as the documentation demands.
+    unsafe { evaluate(y, jacobian, kernel, |dim| dim * dim, |motion, y, j| motion.jacobian(t, y, j)) }
+}
+
+/// # Safety
+/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its state, `target` null or as long as
+/// `len` says.
+unsafe fn evaluate(
+    y: *const f64,
+    target: *mut f64,
+    kernel: *mut c_void,
+    len: impl FnOnce(usize) -> usize,
+    function: impl FnOnce(&mut Motion, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
+) -> c_int {
+    let body = || {
+        // SAFETY: as promised.
+        let Some(kernel) = (unsafe { kernel.cast::<pc_kernel>().as_mut() }) else { return -1 };
+        let (dim, len) = (kernel.dim, len(kernel.dim));
+        if apart((y, dim, "y"), (target, len, "the result")).is_err() {
+            return -1;
+        }
+        // SAFETY: as promised; they share no memory.
+        let slices = unsafe { (numbers(y, dim, dim, "y"), room(target, len, len, "the result")) };
+        let (Ok(y), Ok(target)) = slices else { return -1 };
+        match function(&mut kernel.motion, y, target) {
+            Ok(()) => 0,
+            Err(failure) => {
+                if failure.is_recoverable() {
+                    1
+                } else {
+                    -1
+                }
+            }
+        }
+    };
+    // Unwind safe: after a panic the room to compute in holds other numbers, which are written before they are read.
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or(-1)
+}
+
+/// The dimension of a kernel's state. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_dim(kernel: *const pc_kernel) -> usize {
+    // SAFETY: null or a live kernel, as the preamble demands.
+    unsafe { handle(kernel, "kernel") }.map_or(0, |kernel| kernel.dim)
+}

@@ -1,0 +1,83 @@
+//! From quasi-velocities to momenta and back.
+
+use pc_mech::{Graph, LegendreTransform, MechError};
+
+use crate::derivation::canonical;
+use crate::error::{Fault, pc_error};
+use crate::rates::{State, Target, slices};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+impl Inner {
+    /// The transform of the state, derived when first asked for.
+    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, Fault> {
+        if self.legendre.is_none() {
+            let model = &inventory.model;
+            let graph = Graph::new();
+            let assembly = model.assemble(&graph)?;
+            let canonical = canonical(model, &assembly, inventory.variables)?;
+            let mut transform =
+                canonical.legendre_transform().map_err(|error| model.derivation_error(error))?;
+            transform.parameters_mut().copy_from_slice(self.motion.parameters());
+            self.legendre = Some(transform);
+        }
+        const MISSING: Fault = Fault::Unsupported { what: "the transform", why: "it was not derived" };
+        self.legendre.as_mut().ok_or(MISSING)
+    }
+}
+
+/// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
+/// pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_to_momenta(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    result: *mut f64,
+    result_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let (state, target) = (State { y, length: y_length }, (result, result_length));
+    // SAFETY: as the preamble demands.
+    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta) }
+}
+
+/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives, as
+/// pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_to_quasi_velocities(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    result: *mut f64,
+    result_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let (state, target) = (State { y, length: y_length }, (result, result_length));
+    // SAFETY: as the preamble demands.
+    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_quasi_velocities) }
+}
+
+/// # Safety
+/// As the preamble demands.
+unsafe fn transformed(
+    system: *mut pc_system,
+    t: f64,
+    state: State,
+    (data, length): (*mut f64, usize),
+    error: *mut *mut pc_error,
+    transform: impl FnOnce(&mut LegendreTransform, f64, &[f64]) -> Result<Vec<f64>, MechError>,
+) -> pc_status {
+    let transform = |inventory: &Inventory, inner: &mut Inner| {
+        let dim = inventory.dim();
+        let target = Target { data, length, expected: dim, what: "result" };
+        // SAFETY: as promised.
+        let (y, result) = unsafe { slices(state, dim, target) }?;
+        result.copy_from_slice(&transform(inner.legendre(inventory)?, t, y)?);
+        Ok(())
+    };
+    // SAFETY: as promised.
+    unsafe { inside(system, error, transform) }
+}

@@ -1,0 +1,274 @@
+//! Models: a text, or what has been said call by call.
+
+use std::ffi::{c_char, c_int};
+use std::sync::Mutex;
+
+use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
+
+use crate::draft::Draft;
+use crate::entry::{entry, free, is_held, locked};
+use crate::error::{Fault, pc_error};
+use crate::pointer::{bytes, clear, finite, handle, text, write};
+use crate::status::pc_status;
+use crate::strings::give;
+
+/// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
+pub struct pc_model {
+    pub(crate) contents: Mutex<Contents>,
+}
+
+#[derive(Clone)]
+pub(crate) struct Contents {
+    pub(crate) origin: Origin,
+    kept: Vec<String>,
+    projects_start: bool,
+    pub(crate) observes_reactions: bool,
+}
+
+#[derive(Clone)]
+pub(crate) enum Origin {
+    Text(Box<Model>),
+    Calls(Draft),
+}
+
+impl Contents {
+    /// The model, its settings applied.
+    pub(crate) fn model(&self) -> Result<Model, Fault> {
+        let mut model = match &self.origin {
+            Origin::Text(model) => Model::clone(model),
+            Origin::Calls(draft) => Model::new(draft.document()?),
+        };
+        for name in &self.kept {
+            model.keep(name)?;
+        }
+        model.project_start(self.projects_start);
+        model.observe_reactions(self.observes_reactions);
+        Ok(model)
+    }
+}
+
+pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
+    let contents = Contents { origin, kept: Vec::new(), projects_start: false, observes_reactions: false };
+    Box::into_raw(Box::new(pc_model { contents: Mutex::new(contents) }))
+}
+
+fn of_document(document: Document) -> *mut pc_model {
+    boxed(Origin::Text(Box::new(Model::new(document))))
+}
+
+/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages call it;
+/// NULL for "model".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_parse(
+    text: *const c_char,
+    length: usize,
+    name: *const c_char,
+    model: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(model, "model") }?;
+        // SAFETY: as above.
+        let text = unsafe { bytes(text, length, "text") }?;
+        let name = if name.is_null() { c"model".as_ptr() } else { name };
+        // SAFETY: as above.
+        let name = unsafe { crate::pointer::text(name, "name") }?;
+        let document = Document::parse(Source::from_bytes(name, text))?;
+        // SAFETY: as above.
+        unsafe { write(model, of_document(document), "model") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, read) }
+}
+
+/// Reads a model from a file.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_from_file(
+    path: *const c_char,
+    model: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(model, "model") }?;
+        // SAFETY: as above.
+        let path = unsafe { text(path, "path") }?;
+        let bytes = std::fs::read(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+        let document = Document::parse(Source::from_bytes(path, &bytes))?;
+        // SAFETY: as above.
+        unsafe { write(model, of_document(document), "model") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, read) }
+}
+
+/// A model that comes with the library, such as "heavy-top-lagrange".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_builtin(
+    name: *const c_char,
+    model: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(model, "model") }?;
+        // SAFETY: as above.
+        let name = unsafe { text(name, "name") }?;
+        let builtin = Builtin::named(name).ok_or_else(|| Fault::NoSuchModel { name: name.to_owned() })?;
+        // SAFETY: as above.
+        unsafe { write(model, of_document(builtin.document()?), "model") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, read) }
+}
+
+/// The number of models that come with the library.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_builtin_count() -> usize {
+    BUILTIN.len()
+}
+
+/// The name of such a model, to be freed with pc_string_free; NULL beyond the last. `index` from 0.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_builtin_name(index: usize) -> *mut c_char {
+    BUILTIN.get(index).map_or(std::ptr::null_mut(), |builtin| give(builtin.name))
+}
+
+/// A copy that can be changed by itself.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_clone(
+    model: *const pc_model,
+    copy: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let clone = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(copy, "copy") }?;
+        // SAFETY: as above.
+        let contents = locked(&unsafe { handle(model, "model") }?.contents)?.clone();
+        let cloned = Box::into_raw(Box::new(pc_model { contents: Mutex::new(contents) }));
+        // SAFETY: as above.
+        unsafe { write(copy, cloned, "copy") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, clone) }
+}
+
+/// Frees a model. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
+    // SAFETY: null or a live handle, as the preamble demands.
+    if !unsafe { model.as_ref() }.is_some_and(|model| is_held(&model.contents)) {
+        // SAFETY: null or a handle of ours that nobody uses any more.
+        unsafe { free(model) };
+    }
+}
+
+/// Calls `change` with what the model holds.
+///
+/// # Safety
+/// `model` is null or a live handle, `error` null or a place for a pointer.
+pub(crate) unsafe fn change(
+    model: *mut pc_model,
+    error: *mut *mut pc_error,
+    change: impl FnOnce(&mut Contents) -> Result<(), Fault>,
+) -> pc_status {
+    // SAFETY: as promised.
+    unsafe { entry(error, || change(&mut *locked(&handle(model, "model")?.contents)?)) }
+}
+
+/// Sets a parameter of the model to another value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set(
+    model: *mut pc_model,
+    name: *const c_char,
+    value: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let set = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        let value = finite(value, "value")?;
+        match &mut contents.origin {
+            Origin::Text(model) => model.set(name, value)?,
+            Origin::Calls(draft) => draft.set(name, value)?,
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, set) }
+}
+
+/// Has states projected to the value that this integral, or "energy", has at the start: after each step of a
+/// solver, and by pc_system_project. An unknown name is found by pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_keep(
+    model: *mut pc_model,
+    integral: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let keep = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(integral, "integral") }?;
+        contents.kept.push(name.to_owned());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, keep) }
+}
+
+/// Whether the start is moved to where the constraints are satisfied (else a start off them is refused). Not 0 is yes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_project_start(
+    model: *mut pc_model,
+    yes: c_int,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let project = |contents: &mut Contents| {
+        contents.projects_start = yes != 0;
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, project) }
+}
+
+/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
+/// is yes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_observe_reactions(
+    model: *mut pc_model,
+    yes: c_int,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |contents: &mut Contents| {
+        contents.observes_reactions = yes != 0;
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, observe) }
+}
+
+/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
+/// wrote; lines and columns of errors are counted in it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_text(
+    model: *const pc_model,
+    text: *mut *mut c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write_text = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(text, "text") }?;
+        // SAFETY: as above.
+        let model = unsafe { handle(model, "model") }?;
+        let written = match &locked(&model.contents)?.origin {
+            Origin::Text(model) => model.document().source.text().to_owned(),
+            Origin::Calls(draft) => draft.text(),
+        };
+        // SAFETY: as above.
+        unsafe { write(text, give(&written), "text") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, write_text) }
+}

@@ -1,0 +1,107 @@
+//! What is watched along a motion.
+
+use crate::error::{Fault, pc_error};
+use crate::rates::{State, Target, slices};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
+///
+/// In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_observe(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, expected) = (State { y, length: y_length }, inventory.observables.len());
+        let target = Target { data: values, length, expected, what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
+        values.copy_from_slice(&inner.motion.observe(t, y));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, observe) }
+}
+
+/// Writes the energy y_s η_s − L at (t, y).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_energy(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    energy: *mut f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |inventory: &Inventory, inner: &mut Inner| {
+        let target = Target { data: energy, length: 1, expected: 1, what: "energy" };
+        // SAFETY: as the preamble demands.
+        let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        // The last of those that should stay constant.
+        energy[0] = inner.motion.observe(t, y)[inventory.conserved - 1];
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, observe) }
+}
+
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what they add to the
+/// forces Q_s is the sum of each times the derivative of its constraint by η_s.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_reactions(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |inventory: &Inventory, inner: &mut Inner| {
+        let reactions = &inventory.reactions;
+        if reactions.is_empty() {
+            let why = "there are none, or pc_model_observe_reactions was not asked";
+            return Err(Fault::Unsupported { what: "the reactions", why });
+        }
+        let target = Target { data: values, length, expected: reactions.len(), what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        let all = inner.motion.observe(t, y);
+        for (value, &place) in values.iter_mut().zip(reactions) {
+            *value = all[place];
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, observe) }
+}
+
+/// Writes what should be zero of each constraint that is kept by projection, as many as pc_system_constraint_count.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_constraint_residuals(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |inventory: &Inventory, inner: &mut Inner| {
+        let expected = inner.motion.constraint_names().len();
+        let target = Target { data: values, length, expected, what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        values.copy_from_slice(&inner.motion.constraint_residuals(t, y));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, observe) }
+}

@@ -1,0 +1,226 @@
+//! Options: structures that may grow, each beginning with its size.
+
+use std::ffi::c_int;
+
+use pc_solve::{Krylov, LinearSolver, Method, NonlinearSolver, Options};
+
+use crate::error::Fault;
+use crate::pointer::numbers;
+
+/// Which equations of motion; values of pc_system_options.form.
+#[repr(C)]
+pub enum pc_form {
+    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish, all of them
+    /// with multipliers otherwise.
+    PC_POINCARE = 0,
+    /// Chetaev's canonical equations, of momenta.
+    PC_CANONICAL = 1,
+}
+
+/// What to derive. Set it up with pc_system_options_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct pc_system_options {
+    /// sizeof(pc_system_options), set by pc_system_options_init.
+    pub size: usize,
+    /// A pc_form; PC_POINCARE by default.
+    pub form: c_int,
+}
+
+impl Default for pc_system_options {
+    fn default() -> Self {
+        pc_system_options { size: size_of::<Self>(), form: pc_form::PC_POINCARE as c_int }
+    }
+}
+
+/// The method of integration; values of pc_solver_options.method.
+#[repr(C)]
+pub enum pc_method {
+    /// Adams–Moulton formulas of orders 1 to 12, for systems that are not stiff.
+    PC_ADAMS = 0,
+    /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
+    PC_BDF = 1,
+}
+
+/// How the equation of a step is solved; values of pc_solver_options.iteration.
+#[repr(C)]
+pub enum pc_iteration {
+    /// Newton's for PC_BDF, the fixed-point iteration for PC_ADAMS.
+    PC_ITERATION_OF_METHOD = 0,
+    /// Newton's iteration, with a linear solver.
+    PC_NEWTON = 1,
+    /// The fixed-point iteration, which needs no Jacobian.
+    PC_FIXED_POINT = 2,
+}
+
+/// How the linear systems of Newton's iteration are solved; values of pc_solver_options.linear_solver.
+#[repr(C)]
+pub enum pc_linear_solver {
+    /// Chosen by the size and the zero pattern of the Jacobian.
+    PC_LINEAR_AUTOMATIC = 0,
+    /// Dense LU factors.
+    PC_LINEAR_DENSE = 1,
+    /// Sparse LU factors.
+    PC_LINEAR_SPARSE = 2,
+    /// GMRES without a matrix.
+    PC_LINEAR_KRYLOV = 3,
+}
+
+/// How to integrate. Set it up with pc_solver_options_init, then change what you like.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct pc_solver_options {
+    /// sizeof(pc_solver_options), set by pc_solver_options_init.
+    pub size: usize,
+    /// A pc_method; PC_ADAMS by default.
+    pub method: c_int,
+    /// A pc_iteration; PC_ITERATION_OF_METHOD by default.
+    pub iteration: c_int,
+    /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+    pub linear_solver: c_int,
+    /// Highest order of the method; 0, the default, for all it has.
+    pub max_order: c_int,
+    /// Relative tolerance, positive; 1e-9 by default.
+    pub relative_tolerance: f64,
+    /// Absolute tolerance of all components, positive; 1e-12 by default.
+    pub absolute_tolerance: f64,
+    /// Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
+    pub absolute_tolerances: *const f64,
+    /// Their number, 0 without.
+    pub absolute_tolerances_length: usize,
+    /// Most steps from one output to the next; 500000 by default.
+    pub max_steps: u64,
+    /// Length of the first step, positive in both directions of time; 0, the default, for an estimate.
+    pub initial_step: f64,
+    /// Least length of a step; 0, the default, for none.
+    pub min_step: f64,
+    /// Largest length of a step; 0, the default, for none.
+    pub max_step: f64,
+    /// A time beyond which the equations are never evaluated; infinite, the default, for none.
+    pub stop_time: f64,
+}
+
+impl Default for pc_solver_options {
+    fn default() -> Self {
+        pc_solver_options {
+            size: size_of::<Self>(),
+            method: pc_method::PC_ADAMS as c_int,
+            iteration: pc_iteration::PC_ITERATION_OF_METHOD as c_int,
+            linear_solver: pc_linear_solver::PC_LINEAR_AUTOMATIC as c_int,
+            max_order: 0,
+            relative_tolerance: 1e-9,
+            absolute_tolerance: 1e-12,
+            absolute_tolerances: std::ptr::null(),
+            absolute_tolerances_length: 0,
+            max_steps: 500_000,
+            initial_step: 0.0,
+            min_step: 0.0,
+            max_step: 0.0,
+            stop_time: f64::INFINITY,
+        }
+    }
+}
+
+/// Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_options_init(options: *mut pc_system_options, size: usize) {
+    // SAFETY: null, or `size` bytes, as the preamble demands.
+    unsafe { give(options, pc_system_options { size, ..Default::default() }, size) };
+}
+
+/// Sets the options to their defaults. `size` is sizeof(pc_solver_options). Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_options_init(options: *mut pc_solver_options, size: usize) {
+    // SAFETY: null, or `size` bytes, as the preamble demands.
+    unsafe { give(options, pc_solver_options { size, ..Default::default() }, size) };
+}
+
+/// Writes as much of `value` as there is room for.
+///
+/// # Safety
+/// `place` is null, or has room for `size` bytes and is aligned as a `T`.
+pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
+    if !place.is_null() {
+        let value = std::ptr::from_ref(&value).cast::<u8>();
+        // SAFETY: no more bytes than either has; plain data.
+        unsafe { std::ptr::copy_nonoverlapping(value, place.cast::<u8>(), size.min(size_of::<T>())) };
+    }
+}
+
+/// The options at `place`, those that the caller's header does not know at their defaults; all of them if it is null.
+///
+/// # Safety
+/// `T` is plain data that any bytes of the caller's are valid for, and begins with a size; `place` is null or has as many bytes as
+/// that size says.
+pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, Fault> {
+    let mut options = T::default();
+    if place.is_null() {
+        return Ok(options);
+    }
+    // SAFETY: not null, and begins with its size.
+    let found = unsafe { place.cast::<usize>().read() };
+    let (least, most) = (size_of::<usize>(), size_of::<T>());
+    if !(least..=most).contains(&found) {
+        return Err(Fault::StructSize { what, found, least, most });
+    }
+    let target = std::ptr::from_mut(&mut options).cast::<u8>();
+    // SAFETY: both have `found` bytes, and any are valid.
+    unsafe { std::ptr::copy_nonoverlapping(place.cast::<u8>(), target, found) };
+    Ok(options)
+}
+
+impl pc_solver_options {
+    /// The same for the solver of a state of `dim` components.
+    ///
+    /// # Safety
+    /// The tolerances are null or as many numbers as said.
+    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, Fault> {
+        let choice = |what, value: c_int| Fault::Choice { what, value: value.into() };
+        let mut options = Options::new(match self.method {
+            0 => Method::Adams,
+            1 => Method::Bdf,
+            value => return Err(choice("pc_method", value)),
+        });
+        match self.iteration {
+            0 => {}
+            1 => options = options.nonlinear_solver(NonlinearSolver::Newton),
+            2 => options = options.nonlinear_solver(NonlinearSolver::FixedPoint),
+            value => return Err(choice("pc_iteration", value)),
+        }
+        match self.linear_solver {
+            0 => {}
+            1 => options = options.linear_solver(LinearSolver::Dense),
+            2 => options = options.linear_solver(LinearSolver::Sparse),
+            3 => options = options.linear_solver(LinearSolver::Krylov(Krylov::default())),
+            value => return Err(choice("pc_linear_solver", value)),
+        }
+        options = options.relative_tolerance(self.relative_tolerance).max_steps(self.max_steps);
+        options = if self.absolute_tolerances.is_null() {
+            options.absolute_tolerance(self.absolute_tolerance)
+        } else {
+            let what = "absolute_tolerances";
+            // SAFETY: as promised.
+            let tolerances =
+                unsafe { numbers(self.absolute_tolerances, self.absolute_tolerances_length, dim, what) }?;
+            options.absolute_tolerance(tolerances.to_vec())
+        };
+        if self.max_order != 0 {
+            let order = u32::try_from(self.max_order);
+            options = options.max_order(order.map_err(|_| choice("max_order", self.max_order))?);
+        }
+        // Anything but 0 is handed on, to be used or refused there.
+        if self.initial_step != 0.0 {
+            options = options.initial_step(self.initial_step);
+        }
+        if self.min_step != 0.0 {
+            options = options.min_step(self.min_step);
+        }
+        if self.max_step != 0.0 {
+            options = options.max_step(self.max_step);
+        }
+        if self.stop_time.is_nan() || self.stop_time.is_finite() {
+            options = options.stop_time(self.stop_time);
+        }
+        Ok(options)
+    }
+}

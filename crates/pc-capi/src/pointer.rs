@@ -1,0 +1,135 @@
+//! Pointers from C as references and slices, checked as far as they can be.
+
+use std::ffi::{CStr, c_char};
+use std::slice;
+
+use crate::error::Fault;
+
+/// The object of a handle.
+///
+/// # Safety
+/// Null, or a live handle of that type.
+pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Result<&'a T, Fault> {
+    // SAFETY: as promised.
+    unsafe { handle.as_ref() }.ok_or(Fault::Null { what })
+}
+
+/// `expected` numbers at `data`, of which the caller says there are `found`.
+///
+/// # Safety
+/// Null, or `found` numbers that nobody changes during the call.
+pub(crate) unsafe fn numbers<'a>(
+    data: *const f64,
+    found: usize,
+    expected: usize,
+    what: &'static str,
+) -> Result<&'a [f64], Fault> {
+    check(data.is_null(), found, expected, what)?;
+    if expected == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: not null, and `found` = `expected` numbers as promised.
+    Ok(unsafe { slice::from_raw_parts(data, expected) })
+}
+
+/// Room for `expected` numbers at `data`, all set to NaN; the caller says there is room for `found`.
+///
+/// # Safety
+/// Null, or room for `found` numbers that nobody else uses during the call.
+pub(crate) unsafe fn room<'a>(
+    data: *mut f64,
+    found: usize,
+    expected: usize,
+    what: &'static str,
+) -> Result<&'a mut [f64], Fault> {
+    check(data.is_null(), found, expected, what)?;
+    if expected == 0 {
+        return Ok(&mut []);
+    }
+    for i in 0..expected {
+        // SAFETY: within the room promised, which may be uninitialised so far.
+        unsafe { data.add(i).write(f64::NAN) };
+    }
+    // SAFETY: not null, initialised just now, and nobody else's as promised.
+    Ok(unsafe { slice::from_raw_parts_mut(data, expected) })
+}
+
+fn check(is_null: bool, found: usize, expected: usize, what: &'static str) -> Result<(), Fault> {
+    if found != expected {
+        return Err(Fault::Length { what, found, expected });
+    }
+    if is_null && expected > 0 {
+        return Err(Fault::Null { what });
+    }
+    Ok(())
+}
+
+/// Refuses arrays of input and output that share memory, before either is made a slice.
+pub(crate) fn apart(
+    first: (*const f64, usize, &'static str),
+    second: (*const f64, usize, &'static str),
+) -> Result<(), Fault> {
+    let range = |(data, len, _): (*const f64, usize, &'static str)| {
+        let start = data as usize;
+        (start, start.saturating_add(len.saturating_mul(size_of::<f64>())))
+    };
+    let ((a, a_end), (b, b_end)) = (range(first), range(second));
+    if a < b_end && b < a_end { Err(Fault::Overlap { first: first.2, second: second.2 }) } else { Ok(()) }
+}
+
+/// The text of a C string.
+///
+/// # Safety
+/// Null, or zero-terminated text that nobody changes during the call.
+pub(crate) unsafe fn text<'a>(text: *const c_char, what: &'static str) -> Result<&'a str, Fault> {
+    if text.is_null() {
+        return Err(Fault::Null { what });
+    }
+    // SAFETY: not null, and then as promised.
+    let text = unsafe { CStr::from_ptr(text) };
+    text.to_str().map_err(|error| Fault::NotText { what, offset: error.valid_up_to() })
+}
+
+/// `len` bytes.
+///
+/// # Safety
+/// Null, or `len` bytes that nobody changes during the call.
+pub(crate) unsafe fn bytes<'a>(
+    data: *const c_char,
+    len: usize,
+    what: &'static str,
+) -> Result<&'a [u8], Fault> {
+    match (data.is_null(), len) {
+        (_, 0) => Ok(&[]),
+        (true, _) => Err(Fault::Null { what }),
+        // SAFETY: not null, and then as promised.
+        (false, _) => Ok(unsafe { slice::from_raw_parts(data.cast(), len) }),
+    }
+}
+
+/// Writes a result.
+///
+/// # Safety
+/// Null, or a place for a `T`.
+pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Result<(), Fault> {
+    if place.is_null() {
+        return Err(Fault::Null { what });
+    }
+    // SAFETY: not null, and then as promised.
+    unsafe { place.write(value) };
+    Ok(())
+}
+
+/// Refuses a null place for a result before the work is done, and writes null there for the case that it fails.
+///
+/// # Safety
+/// Null, or a place for a pointer.
+pub(crate) unsafe fn clear<T>(place: *mut *mut T, what: &'static str) -> Result<(), Fault> {
+    // SAFETY: as promised.
+    unsafe { write(place, std::ptr::null_mut(), what) }
+}
+
+/// The number, if it is finite.
+pub(crate) fn finite(value: f64, what: &'static str) -> Result<f64, Fault> {
+    if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { what, value }) }
+}

@@ -1,0 +1,205 @@
+//! f(t, y) and its derivatives.
+
+use pc_mech::VectorField;
+
+use crate::error::{Fault, pc_error};
+use crate::pointer::{apart, numbers, room, write};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// A state from C.
+#[derive(Clone, Copy)]
+pub(crate) struct State {
+    pub(crate) y: *const f64,
+    pub(crate) length: usize,
+}
+
+/// An array from C that is written.
+#[derive(Clone, Copy)]
+pub(crate) struct Target {
+    pub(crate) data: *mut f64,
+    pub(crate) length: usize,
+    pub(crate) expected: usize,
+    pub(crate) what: &'static str,
+}
+
+/// The state and the array as slices.
+///
+/// # Safety
+/// Both are null or as long as they say.
+pub(crate) unsafe fn slices<'a>(
+    state: State,
+    dim: usize,
+    target: Target,
+) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+    let Target { data, length, expected, what } = target;
+    if state.length == dim && length == expected {
+        apart((state.y, dim, "y"), (data, expected, what))?;
+    }
+    // SAFETY: as promised; they share no memory.
+    unsafe { Ok((numbers(state.y, state.length, dim, "y")?, room(data, length, expected, what)?)) }
+}
+
+/// Writes the rate f(t, y) of the state to ydot.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_rhs(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    ydot: *mut f64,
+    ydot_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let target = Target { data: ydot, length: ydot_length, expected: dim, what: "ydot" };
+        // SAFETY: as the preamble demands.
+        let (y, ydot) = unsafe { slices(state, dim, target) }?;
+        Ok(inner.motion.rhs(t, y, ydot)?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_jacobian(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    jacobian: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let target = Target { data: jacobian, length, expected: dim * dim, what: "jacobian" };
+        // SAFETY: as the preamble demands.
+        let (y, jacobian) = unsafe { slices(state, dim, target) }?;
+        Ok(inner.motion.jacobian(t, y, jacobian)?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j, ascending,
+/// are the numbers of row_indices from place column_starts(j) up to but without place column_starts(j + 1).
+/// Gives pointers to dim + 1 and `entries` numbers that belong to the system and its copies. Each of the three
+/// places may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_jacobian_pattern(
+    system: *const pc_system,
+    entries: *mut usize,
+    column_starts: *mut *const usize,
+    row_indices: *mut *const usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let get = || {
+        // SAFETY: null or a live handle, as the preamble demands.
+        let inventory = &unsafe { crate::pointer::handle(system, "system") }?.inventory;
+        let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
+        // SAFETY: null or places for results, as the preamble demands.
+        unsafe {
+            if !entries.is_null() {
+                write(entries, pattern.len(), "entries")?;
+            }
+            if !column_starts.is_null() {
+                write(column_starts, pattern.column_starts().as_ptr(), "column_starts")?;
+            }
+            if !row_indices.is_null() {
+                write(row_indices, pattern.row_indices().as_ptr(), "row_indices")?;
+            }
+        }
+        Ok(())
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { crate::entry::entry(error, get) }
+}
+
+const NO_PATTERN: Fault =
+    Fault::Unsupported { what: "the zero pattern of the Jacobian", why: "it has no Jacobian" };
+
+/// Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_sparse_jacobian(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let expected = inventory.pattern.as_ref().ok_or(NO_PATTERN)?.len();
+        let target = Target { data: values, length, expected, what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(state, dim, target) }?;
+        Ok(inner.motion.sparse_jacobian(t, y, values)?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Writes the product (∂f/∂y) v; all three arrays have the length dim.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_jvp(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    v: *const f64,
+    v_length: usize,
+    product: *mut f64,
+    product_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let target = Target { data: product, length: product_length, expected: dim, what: "product" };
+        if v_length == dim && product_length == dim {
+            apart((v, dim, "v"), (product, dim, "product"))?;
+        }
+        // SAFETY: as the preamble demands; the product shares no memory with v.
+        let v = unsafe { numbers(v, v_length, dim, "v") }?;
+        // SAFETY: as the preamble demands.
+        let (y, product) = unsafe { slices(state, dim, target) }?;
+        let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
+        let mut values = vec![0.0; pattern.len()];
+        inner.motion.sparse_jacobian(t, y, &mut values)?;
+        product.fill(0.0);
+        for ((i, j), value) in pattern.entries().zip(values) {
+            product[i] += value * v[j];
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and to the values at
+/// the start of the integrals of pc_model_keep. Where there is nothing to be kept it stays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_project(
+    system: *mut pc_system,
+    t: f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let project = |inventory: &Inventory, inner: &mut Inner| {
+        // SAFETY: as the preamble demands.
+        let mut projected = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
+        if inner.motion.has_projection() {
+            inner.motion.project(t, &mut projected)?;
+        }
+        // SAFETY: as the preamble demands.
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&projected);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, project) }
+}

@@ -1,0 +1,205 @@
+//! Integration by CVODE.
+
+use std::ffi::{c_int, c_void};
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
+use pc_mech::{Motion, VectorField};
+use pc_solve::{Cvode, Ending};
+
+use crate::entry::{entry, free, is_held, locked};
+use crate::error::{Fault, pc_error};
+use crate::options::{pc_solver_options, take};
+use crate::pointer::{clear, handle, numbers, room, write};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// An integration, which stands at a time with a state. Free it with pc_solver_free.
+pub struct pc_solver {
+    pub(crate) inner: Mutex<Cvode<Motion>>,
+    dim: usize,
+}
+
+/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
+/// may call any function on other handles, and must return: no exceptions, no longjmp.
+pub type pc_observer =
+    Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
+
+/// An integration of the system from the state y at the time t, with the parameters as they are now; from the
+/// start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
+/// constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
+/// values at this start. A model with events is refused with PC_UNSUPPORTED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_new(
+    system: *const pc_system,
+    options: *const pc_solver_options,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    solver: *mut *mut pc_solver,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let new = |inventory: &Inventory, inner: &mut Inner| {
+        let dim = inventory.dim();
+        if !inventory.model.document().events.is_empty() {
+            let why = "the model has events, which this library does not follow";
+            return Err(Fault::Unsupported { what: "an integration", why });
+        }
+        // SAFETY: null or options, as the preamble demands.
+        let options = unsafe { take(options, "options")?.options(dim) }?;
+        let (t, y) = if y.is_null() {
+            inventory.start()
+        } else {
+            // SAFETY: `y_length` numbers, as the preamble demands.
+            (t, unsafe { numbers(y, y_length, dim, "y") }?)
+        };
+        let mut motion = inner.motion.clone();
+        motion.restart(t, y);
+        let integration = Cvode::new(motion, t, y, &options)?;
+        let made = Box::new(pc_solver { inner: Mutex::new(integration), dim });
+        // SAFETY: null or a place for a handle, as the preamble demands.
+        unsafe { write(solver, Box::into_raw(made), "solver") }
+    };
+    let checked = || {
+        // SAFETY: as above.
+        unsafe { clear(solver, "solver") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    match unsafe { entry(error, checked) } {
+        // SAFETY: as the preamble demands.
+        pc_status::PC_OK => unsafe { inside(system, error, new) },
+        refused => refused,
+    }
+}
+
+/// Frees a solver. Null is allowed. In its own observer it does nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
+    // SAFETY: null or a live handle, as the preamble demands.
+    if !unsafe { solver.as_ref() }.is_some_and(|solver| is_held(&solver.inner)) {
+        // SAFETY: null or a handle of ours that nobody uses any more.
+        unsafe { free(solver) };
+    }
+}
+
+/// Calls `body` with the integration and the length of its state.
+///
+/// # Safety
+/// `solver` is null or a live handle, `error` null or a place for a pointer.
+unsafe fn integrate(
+    solver: *const pc_solver,
+    error: *mut *mut pc_error,
+    body: impl FnOnce(&mut Cvode<Motion>, usize) -> Result<(), Fault>,
+) -> pc_status {
+    let body = || {
+        // SAFETY: as promised.
+        let solver = unsafe { handle(solver, "solver") }?;
+        body(&mut *locked(&solver.inner)?, solver.dim)
+    };
+    // SAFETY: as promised.
+    unsafe { entry(error, body) }
+}
+
+/// Integrates to the time t, in the direction of the first step, and writes the state there. After a failure
+/// pc_solver_time and pc_solver_state tell what was reached.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_advance(
+    solver: *mut pc_solver,
+    t: f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let advance = |integration: &mut Cvode<Motion>, dim: usize| {
+        // SAFETY: null or room for `y_length` numbers, as the preamble demands.
+        let y = unsafe { room(y, y_length, dim, "y") }?;
+        y.copy_from_slice(integration.advance_to(t)?);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, advance) }
+}
+
+/// Takes one internal step in the direction of `towards`, and writes its end, which may lie beyond, and the
+/// state there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_step(
+    solver: *mut pc_solver,
+    towards: f64,
+    t: *mut f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let step = |integration: &mut Cvode<Motion>, dim: usize| {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { write(t, f64::NAN, "t") }?;
+        // SAFETY: as above.
+        let y = unsafe { room(y, y_length, dim, "y") }?;
+        let reached = integration.step(towards)?;
+        y.copy_from_slice(integration.state());
+        // SAFETY: as above.
+        unsafe { write(t, reached, "t") }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, step) }
+}
+
+/// Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
+/// during the call, and with `user`. PC_STOPPED if the observer stops it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_run(
+    solver: *mut pc_solver,
+    times: *const f64,
+    times_length: usize,
+    observer: pc_observer,
+    user: *mut c_void,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let run = |integration: &mut Cvode<Motion>, _: usize| {
+        // SAFETY: null or `times_length` numbers, as the preamble demands.
+        let times = unsafe { numbers(times, times_length, times_length, "times") }?;
+        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+        let output = |t: f64, y: &[f64]| {
+            // SAFETY: the observer is a function of that type, as the preamble demands.
+            match unsafe { observer(t, y.as_ptr(), y.len(), user) } {
+                0 => ControlFlow::Continue(()),
+                _ => ControlFlow::Break(()),
+            }
+        };
+        match integration.run(times, output)? {
+            Ending::Completed | Ending::Event { .. } => Ok(()),
+            Ending::Stopped => Err(Fault::Stopped),
+        }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, run) }
+}
+
+/// Writes the time at which the integration stands.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_time(
+    solver: *const pc_solver,
+    t: *mut f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, |integration, _| write(t, integration.time(), "t")) }
+}
+
+/// Writes the state at which the integration stands.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_state(
+    solver: *const pc_solver,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let state = |integration: &mut Cvode<Motion>, dim: usize| {
+        // SAFETY: null or room for `y_length` numbers, as the preamble demands.
+        unsafe { room(y, y_length, dim, "y") }?.copy_from_slice(integration.state());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, state) }
+}

@@ -1,0 +1,81 @@
+//! The work of an integration.
+
+use pc_solve::Statistics;
+
+use crate::entry::{entry, locked};
+use crate::error::{Fault, pc_error};
+use crate::options::give;
+use crate::pointer::handle;
+use crate::solver::pc_solver;
+use crate::status::pc_status;
+
+/// Counts since the start of an integration, and its last internal step. It may grow at the end.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct pc_statistics {
+    /// Internal steps.
+    pub steps: u64,
+    /// Evaluations of f, with those for difference quotients.
+    pub rhs_evaluations: u64,
+    /// Evaluations of ∂f/∂y.
+    pub jacobian_evaluations: u64,
+    /// Steps tried again because the estimated error was too large.
+    pub error_test_failures: u64,
+    /// Iterations of the nonlinear solver.
+    pub nonlinear_iterations: u64,
+    /// Failures of the nonlinear solver.
+    pub nonlinear_failures: u64,
+    /// Factorisations, or renewals of the preconditioner.
+    pub linear_setups: u64,
+    /// Iterations of the Krylov solver.
+    pub linear_iterations: u64,
+    /// Order of the last step, 0 before the first.
+    pub last_order: u64,
+    /// Length of the last step, with the sign of the direction; 0 before the first.
+    pub last_step: f64,
+    /// Length that the next step will be tried with.
+    pub next_step: f64,
+    /// End of the last step, which may lie beyond the time of the solver.
+    pub step_time: f64,
+}
+
+impl From<Statistics> for pc_statistics {
+    fn from(of: Statistics) -> pc_statistics {
+        pc_statistics {
+            steps: of.steps,
+            rhs_evaluations: of.rhs_evaluations,
+            jacobian_evaluations: of.jacobian_evaluations,
+            error_test_failures: of.error_test_failures,
+            nonlinear_iterations: of.nonlinear_iterations,
+            nonlinear_failures: of.nonlinear_failures,
+            linear_setups: of.linear_setups,
+            linear_iterations: of.linear_iterations,
+            last_order: of.last_order.into(),
+            last_step: of.last_step,
+            next_step: of.current_step,
+            step_time: of.current_time,
+        }
+    }
+}
+
+/// Writes the work so far. `size` is sizeof(pc_statistics).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_statistics(
+    solver: *const pc_solver,
+    statistics: *mut pc_statistics,
+    size: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: null or a live handle, as the preamble demands.
+        let counts = locked(&unsafe { handle(solver, "solver") }?.inner)?.statistics();
+        if statistics.is_null() {
+            return Err(Fault::Null { what: "statistics" });
+        }
+        // SAFETY: room for `size` bytes, as the preamble demands.
+        unsafe { give(statistics, counts.into(), size) };
+        Ok(())
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, read) }
+}

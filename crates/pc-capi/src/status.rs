@@ -1,0 +1,55 @@
+//! How a call ended.
+
+use std::ffi::{c_char, c_int};
+
+/// How a call ended. New ones may be added, so treat an unknown one as an error.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum pc_status {
+    /// All went well.
+    PC_OK = 0,
+    /// The call is wrong: a null pointer, a wrong length, text that is not UTF-8, a number that is not finite,
+    /// an unknown choice.
+    PC_INVALID_ARGUMENT = 1,
+    /// The text of the model is wrong; the error has the place.
+    PC_INVALID_MODEL = 2,
+    /// The model contradicts itself; the error has the place.
+    PC_INCONSISTENT_MODEL = 3,
+    /// What is asked for cannot be done, or not of this system.
+    PC_UNSUPPORTED = 4,
+    /// There is nothing of this name.
+    PC_NOT_FOUND = 5,
+    /// A file could not be read.
+    PC_IO = 6,
+    /// The equations cannot be evaluated at this time and state.
+    PC_EVALUATION = 7,
+    /// The integration began and could not go on.
+    PC_INTEGRATION = 8,
+    /// The observer stopped the integration. This is no failure, and there is no pc_error.
+    PC_STOPPED = 9,
+    /// The handle is in use: by another thread, or by the call that called the observer.
+    PC_BUSY = 10,
+    /// A fault of the library or no memory. The handle can only be freed.
+    PC_INTERNAL = 11,
+}
+
+/// The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
+    let name = match status {
+        0 => c"PC_OK",
+        1 => c"PC_INVALID_ARGUMENT",
+        2 => c"PC_INVALID_MODEL",
+        3 => c"PC_INCONSISTENT_MODEL",
+        4 => c"PC_UNSUPPORTED",
+        5 => c"PC_NOT_FOUND",
+        6 => c"PC_IO",
+        7 => c"PC_EVALUATION",
+        8 => c"PC_INTEGRATION",
+        9 => c"PC_STOPPED",
+        10 => c"PC_BUSY",
+        11 => c"PC_INTERNAL",
+        _ => c"unknown status",
+    };
+    name.as_ptr()
+}

@@ -1,0 +1,347 @@
+//! Equations of motion: what they are of, and their parameters.
+
+use std::ffi::{CString, c_char};
+use std::sync::{Arc, Mutex};
+
+use ::pc_model::Model;
+use pc_expr::Pattern;
+use pc_mech::{LegendreTransform, Motion, VectorField};
+
+use crate::derivation::{Derived, Variables, derive};
+use crate::entry::{entry, free, is_held, locked};
+use crate::error::{Fault, pc_error};
+use crate::mechanics::Mechanics;
+use crate::model::pc_model;
+use crate::options::{pc_system_options, take};
+use crate::pointer::{clear, finite, handle, numbers, room, write};
+use crate::status::pc_status;
+use crate::strings::{c_strings, nth};
+
+/// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
+pub struct pc_system {
+    pub(crate) inventory: Arc<Inventory>,
+    pub(crate) inner: Mutex<Inner>,
+}
+
+/// What never changes.
+pub(crate) struct Inventory {
+    pub(crate) model: Model,
+    pub(crate) variables: Variables,
+    names: Vec<CString>,
+    coordinates: usize,
+    parameters: Vec<CString>,
+    pub(crate) observables: Vec<CString>,
+    pub(crate) conserved: usize,
+    constraints: Vec<CString>,
+    /// Places of the reactions among the observables, with their names.
+    pub(crate) reactions: Vec<usize>,
+    pub(crate) pattern: Option<Pattern>,
+    t_start: f64,
+    start: Vec<f64>,
+}
+
+impl Inventory {
+    /// Length of the state.
+    pub(crate) fn dim(&self) -> usize {
+        self.names.len()
+    }
+
+    /// The time and state from which the model starts.
+    pub(crate) fn start(&self) -> (f64, &[f64]) {
+        (self.t_start, &self.start)
+    }
+}
+
+#[derive(Clone)]
+pub(crate) struct Inner {
+    pub(crate) motion: Motion,
+    /// Derived when first asked for.
+    pub(crate) mechanics: Option<Mechanics>,
+    pub(crate) legendre: Option<LegendreTransform>,
+}
+
+impl pc_system {
+    /// `reactions` says whether there are reactions among the outputs.
+    fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, Fault> {
+        let Derived { motion, parameters, t_start, start } = derive(&model, variables)?;
+        let observables = motion.observable_names();
+        let constraints = &model.document().constraints;
+        let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
+        let places = motion.conserved_len()..observables.len();
+        let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
+        let inventory = Inventory {
+            variables,
+            names: c_strings(motion.names()),
+            coordinates: motion.coordinates(),
+            parameters: c_strings(&parameters),
+            observables: c_strings(observables),
+            conserved: motion.conserved_len(),
+            constraints: c_strings(motion.constraint_names()),
+            reactions: reactions.collect(),
+            pattern: motion.sparsity().cloned(),
+            t_start,
+            start,
+            model,
+        };
+        let inner = Inner { motion, mechanics: None, legendre: None };
+        Ok(pc_system { inventory: Arc::new(inventory), inner: Mutex::new(inner) })
+    }
+}
+
+/// Derives and compiles the equations of a model. `options` may be NULL. This takes from milliseconds to, for a hundred
+/// bodies, seconds; everything else is fast, except where it says that it derives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_new(
+    model: *const pc_model,
+    options: *const pc_system_options,
+    system: *mut *mut pc_system,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let new = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(system, "system") }?;
+        // SAFETY: as above.
+        let options = unsafe { take(options, "options") }?;
+        let variables = Variables::try_from(options.form)?;
+        // SAFETY: as above.
+        let contents = locked(&unsafe { handle(model, "model") }?.contents)?.clone();
+        let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
+        // SAFETY: as above.
+        unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, new) }
+}
+
+/// A copy for another thread, with the parameters as they are now. It shares the machine code there is: that of
+/// f, and that of each derivative which the original has evaluated before (the first evaluation of each compiles
+/// it).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_clone(
+    system: *const pc_system,
+    copy: *mut *mut pc_system,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let clone = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(copy, "copy") }?;
+        // SAFETY: as above.
+        let system = unsafe { handle(system, "system") }?;
+        let inner = Mutex::new(locked(&system.inner)?.clone());
+        let cloned = pc_system { inventory: Arc::clone(&system.inventory), inner };
+        // SAFETY: as above.
+        unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, clone) }
+}
+
+/// Frees a system. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
+    // SAFETY: null or a live handle, as the preamble demands.
+    if !unsafe { system.as_ref() }.is_some_and(|system| is_held(&system.inner)) {
+        // SAFETY: null or a handle of ours that nobody uses any more.
+        unsafe { free(system) };
+    }
+}
+
+/// A number of the inventory; 0 of null.
+fn count(system: *const pc_system, number: impl FnOnce(&Inventory) -> usize) -> usize {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    unsafe { system.as_ref() }.map_or(0, |system| number(&system.inventory))
+}
+
+/// A name of the inventory; null of null, and beyond the last.
+fn name(
+    system: *const pc_system,
+    index: usize,
+    list: impl FnOnce(&Inventory) -> &[CString],
+) -> *const c_char {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    unsafe { system.as_ref() }.map_or(std::ptr::null(), |system| nth(list(&system.inventory), index))
+}
+
+/// The length of the state y: coordinates and quasi-velocities, or momenta. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
+    count(system, Inventory::dim)
+}
+
+/// The number of coordinates, which come first in the state. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_coordinate_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.coordinates)
+}
+
+/// The number of parameters. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_parameter_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.parameters.len())
+}
+
+/// The number of observables: the integrals, "energy", the outputs. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_observable_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.observables.len())
+}
+
+/// The number of observables, the first ones, that should stay constant: integrals and energy. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_conserved_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.conserved)
+}
+
+/// The number of constraints that are kept by projection. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_constraint_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.constraints.len())
+}
+
+/// The number of reactions; 0 unless pc_model_observe_reactions was asked, and of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_reaction_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.reactions.len())
+}
+
+/// The name of a component of the state, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_name(system: *const pc_system, index: usize) -> *const c_char {
+    name(system, index, |inventory| &inventory.names)
+}
+
+/// The name of a parameter, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_parameter_name(system: *const pc_system, index: usize) -> *const c_char {
+    name(system, index, |inventory| &inventory.parameters)
+}
+
+/// The name of an observable, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_observable_name(system: *const pc_system, index: usize) -> *const c_char {
+    name(system, index, |inventory| &inventory.observables)
+}
+
+/// The name of a constraint that is kept by projection, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_constraint_name(system: *const pc_system, index: usize) -> *const c_char {
+    name(system, index, |inventory| &inventory.constraints)
+}
+
+/// The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_reaction_name(system: *const pc_system, index: usize) -> *const c_char {
+    // SAFETY: null or a live handle, as the preamble demands.
+    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
+    let place = inventory.and_then(|inventory| inventory.reactions.get(index).copied());
+    name(system, place.unwrap_or(usize::MAX), |inventory| &inventory.observables)
+}
+
+/// The time and state from which the model starts. `t` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_start(
+    system: *const pc_system,
+    t: *mut f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let start = || {
+        // SAFETY: the pointers are as the preamble demands.
+        let inventory = &unsafe { handle(system, "system") }?.inventory;
+        // SAFETY: as above.
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&inventory.start);
+        // SAFETY: as above.
+        if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.t_start, "t") } }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, start) }
+}
+
+/// The values of all parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_parameters(
+    system: *const pc_system,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let get = |inventory: &Inventory, inner: &mut Inner| {
+        // SAFETY: null or room for `length` numbers, as the preamble demands.
+        let values = unsafe { room(values, length, inventory.parameters.len(), "values") }?;
+        values.copy_from_slice(inner.motion.parameters());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, get) }
+}
+
+/// Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
+/// keep their values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_set_parameters(
+    system: *mut pc_system,
+    values: *const f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let set = |inventory: &Inventory, inner: &mut Inner| {
+        // SAFETY: null or `length` numbers, as the preamble demands.
+        let values = unsafe { numbers(values, length, inventory.parameters.len(), "values") }?;
+        for &value in values {
+            finite(value, "a parameter")?;
+        }
+        inner.set_parameters(|parameters| parameters.copy_from_slice(values));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, set) }
+}
+
+/// Sets one parameter, by its place; otherwise as pc_system_set_parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_set_parameter(
+    system: *mut pc_system,
+    index: usize,
+    value: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let set = |inventory: &Inventory, inner: &mut Inner| {
+        let count = inventory.parameters.len();
+        if index >= count {
+            return Err(Fault::Index { what: "the parameters", index, count });
+        }
+        let value = finite(value, "value")?;
+        inner.set_parameters(|parameters| parameters[index] = value);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, set) }
+}
+
+impl Inner {
+    fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
+        set(self.motion.parameters_mut());
+        if let Some(legendre) = &mut self.legendre {
+            set(legendre.parameters_mut());
+        }
+    }
+}
+
+/// Calls `body` with what the system is, and what only one may use at a time.
+///
+/// # Safety
+/// `system` is null or a live handle, `error` null or a place for a pointer.
+pub(crate) unsafe fn inside(
+    system: *const pc_system,
+    error: *mut *mut pc_error,
+    body: impl FnOnce(&Inventory, &mut Inner) -> Result<(), Fault>,
+) -> pc_status {
+    let body = || {
+        // SAFETY: as promised.
+        let system = unsafe { handle(system, "system") }?;
+        body(&system.inventory, &mut *locked(&system.inner)?)
+    };
+    // SAFETY: as promised.
+    unsafe { entry(error, body) }
+}

@@ -1,0 +1,58 @@
+//! Which library this is, and what holds for all of it.
+
+use std::ffi::c_char;
+
+/// First number of the version of the header.
+pub const PC_VERSION_MAJOR: u32 = 0;
+/// Second number of the version of the header.
+pub const PC_VERSION_MINOR: u32 = 1;
+/// Third number of the version of the header.
+pub const PC_VERSION_PATCH: u32 = 0;
+/// Version of the binary interface, the number in the name libpc.so.N. Programs run with any library of the same.
+pub const PC_ABI_VERSION: u32 = 0;
+
+/// The version of the library, such as "0.1.0". Static.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_version() -> *const c_char {
+    const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
+    VERSION.as_ptr().cast()
+}
+
+/// The head of the header: what is true of every function.
+pub const PREAMBLE: &str = "\
+/*
+ * pc: the Poincaré–Chetaev equations of a mechanical system, derived, compiled and integrated.
+ *
+ *     pc_model *model = NULL;
+ *     pc_system *top = NULL;
+ *     pc_error *error = NULL;
+ *     if (pc_model_builtin(\"heavy-top-lagrange\", &model, &error) == PC_OK &&
+ *         pc_system_new(model, NULL, &top, &error) == PC_OK) { ... pc_system_rhs(top, t, y, n, ydot, n, &error) ... }
+ *     if (error) fprintf(stderr, \"%s\\n\", pc_error_message(error));
+ *     pc_error_free(error);
+ *     pc_system_free(top);
+ *     pc_model_free(model);
+ *
+ * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
+ *
+ * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
+ * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. Results are
+ * written only if the status is PC_OK, except that a new handle or text is NULL after a failure, and that arrays for results may
+ * hold anything then.
+ *
+ * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file or pc_model_builtin gives, you
+ * free with the ..._free of its type; `char *` you free with pc_string_free; `const char *` belongs to the handle it came from
+ * and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
+ * lives, and a system while its solvers and kernels do.
+ *
+ * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
+ * and an array that is written shares no memory with another one; this is checked. Matrices are dense and column-major,
+ * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
+ *
+ * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
+ * time returns PC_BUSY and does nothing. (Freeing a handle while another thread uses it is not safe, as ever.) Different
+ * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
+ * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
+ *
+ * Not for signal handlers. A fault of the library is PC_INTERNAL and never ends your program.
+ */";

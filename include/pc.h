@@ -1,0 +1,1050 @@
+/*
+ * pc: the Poincaré–Chetaev equations of a mechanical system, derived, compiled and integrated.
+ *
+ *     pc_model *model = NULL;
+ *     pc_system *top = NULL;
+ *     pc_error *error = NULL;
+ *     if (pc_model_builtin("heavy-top-lagrange", &model, &error) == PC_OK &&
+ *         pc_system_new(model, NULL, &top, &error) == PC_OK) { ... pc_system_rhs(top, t, y, n, ydot, n, &error) ... }
+ *     if (error) fprintf(stderr, "%s\n", pc_error_message(error));
+ *     pc_error_free(error);
+ *     pc_system_free(top);
+ *     pc_model_free(model);
+ *
+ * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
+ *
+ * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
+ * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. Results are
+ * written only if the status is PC_OK, except that a new handle or text is NULL after a failure, and that arrays for results may
+ * hold anything then.
+ *
+ * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file or pc_model_builtin gives, you
+ * free with the ..._free of its type; `char *` you free with pc_string_free; `const char *` belongs to the handle it came from
+ * and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
+ * lives, and a system while its solvers and kernels do.
+ *
+ * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
+ * and an array that is written shares no memory with another one; this is checked. Matrices are dense and column-major,
+ * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
+ *
+ * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
+ * time returns PC_BUSY and does nothing. (Freeing a handle while another thread uses it is not safe, as ever.) Different
+ * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
+ * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
+ *
+ * Not for signal handlers. A fault of the library is PC_INTERNAL and never ends your program.
+ */
+
+#ifndef PC_H
+#define PC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * First number of the version of the header.
+ */
+#define PC_VERSION_MAJOR 0
+
+/**
+ * Second number of the version of the header.
+ */
+#define PC_VERSION_MINOR 1
+
+/**
+ * Third number of the version of the header.
+ */
+#define PC_VERSION_PATCH 0
+
+/**
+ * Version of the binary interface, the number in the name libpc.so.N. Programs run with any library of the same.
+ */
+#define PC_ABI_VERSION 0
+
+/**
+ * How a call ended. New ones may be added, so treat an unknown one as an error.
+ */
+typedef enum {
+  /**
+   * All went well.
+   */
+  PC_OK = 0,
+  /**
+   * The call is wrong: a null pointer, a wrong length, text that is not UTF-8, a number that is not finite,
+   * an unknown choice.
+   */
+  PC_INVALID_ARGUMENT = 1,
+  /**
+   * The text of the model is wrong; the error has the place.
+   */
+  PC_INVALID_MODEL = 2,
+  /**
+   * The model contradicts itself; the error has the place.
+   */
+  PC_INCONSISTENT_MODEL = 3,
+  /**
+   * What is asked for cannot be done, or not of this system.
+   */
+  PC_UNSUPPORTED = 4,
+  /**
+   * There is nothing of this name.
+   */
+  PC_NOT_FOUND = 5,
+  /**
+   * A file could not be read.
+   */
+  PC_IO = 6,
+  /**
+   * The equations cannot be evaluated at this time and state.
+   */
+  PC_EVALUATION = 7,
+  /**
+   * The integration began and could not go on.
+   */
+  PC_INTEGRATION = 8,
+  /**
+   * The observer stopped the integration. This is no failure, and there is no pc_error.
+   */
+  PC_STOPPED = 9,
+  /**
+   * The handle is in use: by another thread, or by the call that called the observer.
+   */
+  PC_BUSY = 10,
+  /**
+   * A fault of the library or no memory. The handle can only be freed.
+   */
+  PC_INTERNAL = 11,
+} pc_status;
+
+/**
+ * Which equations of motion; values of pc_system_options.form.
+ */
+typedef enum {
+  /**
+   * Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish, all of them
+   * with multipliers otherwise.
+   */
+  PC_POINCARE = 0,
+  /**
+   * Chetaev's canonical equations, of momenta.
+   */
+  PC_CANONICAL = 1,
+} pc_form;
+
+/**
+ * The method of integration; values of pc_solver_options.method.
+ */
+typedef enum {
+  /**
+   * Adams–Moulton formulas of orders 1 to 12, for systems that are not stiff.
+   */
+  PC_ADAMS = 0,
+  /**
+   * Backward differentiation formulas of orders 1 to 5, for stiff systems.
+   */
+  PC_BDF = 1,
+} pc_method;
+
+/**
+ * How the equation of a step is solved; values of pc_solver_options.iteration.
+ */
+typedef enum {
+  /**
+   * Newton's for PC_BDF, the fixed-point iteration for PC_ADAMS.
+   */
+  PC_ITERATION_OF_METHOD = 0,
+  /**
+   * Newton's iteration, with a linear solver.
+   */
+  PC_NEWTON = 1,
+  /**
+   * The fixed-point iteration, which needs no Jacobian.
+   */
+  PC_FIXED_POINT = 2,
+} pc_iteration;
+
+/**
+ * How the linear systems of Newton's iteration are solved; values of pc_solver_options.linear_solver.
+ */
+typedef enum {
+  /**
+   * Chosen by the size and the zero pattern of the Jacobian.
+   */
+  PC_LINEAR_AUTOMATIC = 0,
+  /**
+   * Dense LU factors.
+   */
+  PC_LINEAR_DENSE = 1,
+  /**
+   * Sparse LU factors.
+   */
+  PC_LINEAR_SPARSE = 2,
+  /**
+   * GMRES without a matrix.
+   */
+  PC_LINEAR_KRYLOV = 3,
+} pc_linear_solver;
+
+/**
+ * How equations are printed.
+ */
+typedef enum {
+  /**
+   * As a book prints them, in UTF-8.
+   */
+  PC_TEXT = 0,
+  /**
+   * Displays of LaTeX with amsmath.
+   */
+  PC_LATEX = 1,
+} pc_format;
+
+/**
+ * Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
+ * pc_error_free.
+ */
+typedef struct pc_error pc_error;
+
+/**
+ * f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
+ * pc_kernel_free.
+ *
+ * It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
+ * return there are no locks.
+ */
+typedef struct pc_kernel pc_kernel;
+
+/**
+ * A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
+ */
+typedef struct pc_model pc_model;
+
+/**
+ * An integration, which stands at a time with a state. Free it with pc_solver_free.
+ */
+typedef struct pc_solver pc_solver;
+
+/**
+ * The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
+ */
+typedef struct pc_system pc_system;
+
+/**
+ * What to derive. Set it up with pc_system_options_init.
+ */
+typedef struct {
+  /**
+   * sizeof(pc_system_options), set by pc_system_options_init.
+   */
+  size_t size;
+  /**
+   * A pc_form; PC_POINCARE by default.
+   */
+  int form;
+} pc_system_options;
+
+/**
+ * How to integrate. Set it up with pc_solver_options_init, then change what you like.
+ */
+typedef struct {
+  /**
+   * sizeof(pc_solver_options), set by pc_solver_options_init.
+   */
+  size_t size;
+  /**
+   * A pc_method; PC_ADAMS by default.
+   */
+  int method;
+  /**
+   * A pc_iteration; PC_ITERATION_OF_METHOD by default.
+   */
+  int iteration;
+  /**
+   * A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+   */
+  int linear_solver;
+  /**
+   * Highest order of the method; 0, the default, for all it has.
+   */
+  int max_order;
+  /**
+   * Relative tolerance, positive; 1e-9 by default.
+   */
+  double relative_tolerance;
+  /**
+   * Absolute tolerance of all components, positive; 1e-12 by default.
+   */
+  double absolute_tolerance;
+  /**
+   * Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
+   */
+  const double *absolute_tolerances;
+  /**
+   * Their number, 0 without.
+   */
+  size_t absolute_tolerances_length;
+  /**
+   * Most steps from one output to the next; 500000 by default.
+   */
+  uint64_t max_steps;
+  /**
+   * Length of the first step, positive in both directions of time; 0, the default, for an estimate.
+   */
+  double initial_step;
+  /**
+   * Least length of a step; 0, the default, for none.
+   */
+  double min_step;
+  /**
+   * Largest length of a step; 0, the default, for none.
+   */
+  double max_step;
+  /**
+   * A time beyond which the equations are never evaluated; infinite, the default, for none.
+   */
+  double stop_time;
+} pc_solver_options;
+
+/**
+ * Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
+ * may call any function on other handles, and must return: no exceptions, no longjmp.
+ */
+typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
+
+/**
+ * Counts since the start of an integration, and its last internal step. It may grow at the end.
+ */
+typedef struct {
+  /**
+   * Internal steps.
+   */
+  uint64_t steps;
+  /**
+   * Evaluations of f, with those for difference quotients.
+   */
+  uint64_t rhs_evaluations;
+  /**
+   * Evaluations of ∂f/∂y.
+   */
+  uint64_t jacobian_evaluations;
+  /**
+   * Steps tried again because the estimated error was too large.
+   */
+  uint64_t error_test_failures;
+  /**
+   * Iterations of the nonlinear solver.
+   */
+  uint64_t nonlinear_iterations;
+  /**
+   * Failures of the nonlinear solver.
+   */
+  uint64_t nonlinear_failures;
+  /**
+   * Factorisations, or renewals of the preconditioner.
+   */
+  uint64_t linear_setups;
+  /**
+   * Iterations of the Krylov solver.
+   */
+  uint64_t linear_iterations;
+  /**
+   * Order of the last step, 0 before the first.
+   */
+  uint64_t last_order;
+  /**
+   * Length of the last step, with the sign of the direction; 0 before the first.
+   */
+  double last_step;
+  /**
+   * Length that the next step will be tried with.
+   */
+  double next_step;
+  /**
+   * End of the last step, which may lie beyond the time of the solver.
+   */
+  double step_time;
+} pc_statistics;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The version of the library, such as "0.1.0". Static.
+ */
+const char *pc_version(void);
+
+/**
+ * The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
+ */
+const char *pc_status_name(int status);
+
+/**
+ * Its status, never PC_OK; PC_OK of null.
+ */
+pc_status pc_error_status(const pc_error *error);
+
+/**
+ * The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line at fault and
+ * what would be right, over several lines of text. The empty text of null.
+ */
+const char *pc_error_message(const pc_error *error);
+
+/**
+ * The line of the model text at fault, from 1; 0 if there is none, or of null.
+ */
+size_t pc_error_line(const pc_error *error);
+
+/**
+ * The column at which the text at fault begins, in characters from 1; 0 if there is none, or of null.
+ */
+size_t pc_error_column(const pc_error *error);
+
+/**
+ * The byte at which the text at fault begins, from 0; 0 if there is none, or of null.
+ */
+size_t pc_error_offset(const pc_error *error);
+
+/**
+ * The number of bytes of the text at fault; 0 if there is none, or of null.
+ */
+size_t pc_error_length(const pc_error *error);
+
+/**
+ * The code that CVODES returned (cvodes.h), if the status is PC_INTEGRATION and CVODES is the reason; else 0.
+ */
+int pc_error_integrator_code(const pc_error *error);
+
+/**
+ * Frees an error. Null is allowed.
+ */
+void pc_error_free(pc_error *error);
+
+/**
+ * Frees a text that a function of this library has returned to be freed. Null is allowed.
+ */
+void pc_string_free(char *text);
+
+/**
+ * Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages call it;
+ * NULL for "model".
+ */
+pc_status pc_model_parse(const char *text,
+                         size_t length,
+                         const char *name,
+                         pc_model **model,
+                         pc_error **error);
+
+/**
+ * Reads a model from a file.
+ */
+pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **error);
+
+/**
+ * A model that comes with the library, such as "heavy-top-lagrange".
+ */
+pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error);
+
+/**
+ * The number of models that come with the library.
+ */
+size_t pc_builtin_count(void);
+
+/**
+ * The name of such a model, to be freed with pc_string_free; NULL beyond the last. `index` from 0.
+ */
+char *pc_builtin_name(size_t index);
+
+/**
+ * A copy that can be changed by itself.
+ */
+pc_status pc_model_clone(const pc_model *model, pc_model **copy, pc_error **error);
+
+/**
+ * Frees a model. Null is allowed.
+ */
+void pc_model_free(pc_model *model);
+
+/**
+ * Sets a parameter of the model to another value.
+ */
+pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
+
+/**
+ * Has states projected to the value that this integral, or "energy", has at the start: after each step of a
+ * solver, and by pc_system_project. An unknown name is found by pc_system_new.
+ */
+pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
+
+/**
+ * Whether the start is moved to where the constraints are satisfied (else a start off them is refused). Not 0 is yes.
+ */
+pc_status pc_model_project_start(pc_model *model,
+                                 int yes,
+                                 pc_error **error);
+
+/**
+ * Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
+ * is yes.
+ */
+pc_status pc_model_observe_reactions(pc_model *model,
+                                     int yes,
+                                     pc_error **error);
+
+/**
+ * The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
+ * wrote; lines and columns of errors are counted in it.
+ */
+pc_status pc_model_text(const pc_model *model,
+                        char **text,
+                        pc_error **error);
+
+/**
+ * A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
+ * coordinates, quasi-velocities, parameters and so on is that of their calls. Expressions are those of the text
+ * model, where `x'` is the velocity of the coordinate x, and `t` the time. What is said is understood as a
+ * whole by pc_model_check and pc_system_new, whose errors name the entry and show its expression.
+ */
+pc_status pc_model_new(const char *name,
+                       pc_model **model,
+                       pc_error **error);
+
+/**
+ * Reads what has been said as a whole: PC_OK if all names and expressions are well formed. Whether equations
+ * can be derived is found by pc_system_new.
+ */
+pc_status pc_model_check(const pc_model *model, pc_error **error);
+
+/**
+ * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
+ */
+pc_status pc_model_add_parameter(pc_model *model, const char *name, double value, pc_error **error);
+
+/**
+ * Adds a name for an expression.
+ */
+pc_status pc_model_add_definition(pc_model *model,
+                                  const char *name,
+                                  const char *expression,
+                                  pc_error **error);
+
+/**
+ * Adds a coordinate with its value at the start.
+ */
+pc_status pc_model_add_coordinate(pc_model *model, const char *name, double start, pc_error **error);
+
+/**
+ * Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in the velocities
+ * x', or NULL where the kinematics are given the other way round, by pc_model_set_kinematics. Without any
+ * quasi-velocities they are the velocities themselves; `name` may then be `x'`, to give one its value at the
+ * start.
+ */
+pc_status pc_model_add_quasi_velocity(pc_model *model,
+                                      const char *name,
+                                      const char *definition,
+                                      double start,
+                                      pc_error **error);
+
+/**
+ * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for every coordinate,
+ * or for none.
+ */
+pc_status pc_model_set_kinematics(pc_model *model,
+                                  const char *coordinate,
+                                  const char *velocity,
+                                  pc_error **error);
+
+/**
+ * Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only where the frame
+ * does not determine them.
+ */
+pc_status pc_model_set_algebra(pc_model *model,
+                               const char *name,
+                               pc_error **error);
+
+/**
+ * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as "w3"; brackets
+ * that are not set are zero. `left` may be "t", for X_0. Instead of pc_model_set_algebra.
+ */
+pc_status pc_model_set_bracket(pc_model *model,
+                               const char *left,
+                               const char *right,
+                               const char *value,
+                               pc_error **error);
+
+/**
+ * Adds a constraint: the expression, of coordinates or of velocities, vanishes.
+ */
+pc_status pc_model_add_constraint(pc_model *model,
+                                  const char *name,
+                                  const char *expression,
+                                  pc_error **error);
+
+/**
+ * Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential energy.
+ */
+pc_status pc_model_set_lagrangian(pc_model *model, const char *expression, pc_error **error);
+
+/**
+ * Sets the kinetic energy.
+ */
+pc_status pc_model_set_kinetic(pc_model *model, const char *expression, pc_error **error);
+
+/**
+ * Sets the potential energy.
+ */
+pc_status pc_model_set_potential(pc_model *model, const char *expression, pc_error **error);
+
+/**
+ * Sets a dissipation function R, which gives the forces Q_s = −∂R/∂η_s.
+ */
+pc_status pc_model_set_dissipation(pc_model *model, const char *expression, pc_error **error);
+
+/**
+ * Adds a force, conjugate to a quasi-velocity, or to a coordinate.
+ */
+pc_status pc_model_add_force(pc_model *model, const char *on, const char *expression, pc_error **error);
+
+/**
+ * Adds an expression that should stay constant, to be watched.
+ */
+pc_status pc_model_add_integral(pc_model *model, const char *name, const char *expression, pc_error **error);
+
+/**
+ * Adds an expression to be watched.
+ */
+pc_status pc_model_add_output(pc_model *model, const char *name, const char *expression, pc_error **error);
+
+/**
+ * Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
+ */
+void pc_system_options_init(pc_system_options *options, size_t size);
+
+/**
+ * Sets the options to their defaults. `size` is sizeof(pc_solver_options). Null is allowed.
+ */
+void pc_solver_options_init(pc_solver_options *options, size_t size);
+
+/**
+ * Derives and compiles the equations of a model. `options` may be NULL. This takes from milliseconds to, for a hundred
+ * bodies, seconds; everything else is fast, except where it says that it derives.
+ */
+pc_status pc_system_new(const pc_model *model,
+                        const pc_system_options *options,
+                        pc_system **system,
+                        pc_error **error);
+
+/**
+ * A copy for another thread, with the parameters as they are now. It shares the machine code there is: that of
+ * f, and that of each derivative which the original has evaluated before (the first evaluation of each compiles
+ * it).
+ */
+pc_status pc_system_clone(const pc_system *system,
+                          pc_system **copy,
+                          pc_error **error);
+
+/**
+ * Frees a system. Null is allowed.
+ */
+void pc_system_free(pc_system *system);
+
+/**
+ * The length of the state y: coordinates and quasi-velocities, or momenta. 0 of NULL.
+ */
+size_t pc_system_dim(const pc_system *system);
+
+/**
+ * The number of coordinates, which come first in the state. 0 of NULL.
+ */
+size_t pc_system_coordinate_count(const pc_system *system);
+
+/**
+ * The number of parameters. 0 of NULL.
+ */
+size_t pc_system_parameter_count(const pc_system *system);
+
+/**
+ * The number of observables: the integrals, "energy", the outputs. 0 of NULL.
+ */
+size_t pc_system_observable_count(const pc_system *system);
+
+/**
+ * The number of observables, the first ones, that should stay constant: integrals and energy. 0 of NULL.
+ */
+size_t pc_system_conserved_count(const pc_system *system);
+
+/**
+ * The number of constraints that are kept by projection. 0 of NULL.
+ */
+size_t pc_system_constraint_count(const pc_system *system);
+
+/**
+ * The number of reactions; 0 unless pc_model_observe_reactions was asked, and of NULL.
+ */
+size_t pc_system_reaction_count(const pc_system *system);
+
+/**
+ * The name of a component of the state, from 0; NULL beyond the last.
+ */
+const char *pc_system_name(const pc_system *system, size_t index);
+
+/**
+ * The name of a parameter, from 0; NULL beyond the last.
+ */
+const char *pc_system_parameter_name(const pc_system *system, size_t index);
+
+/**
+ * The name of an observable, from 0; NULL beyond the last.
+ */
+const char *pc_system_observable_name(const pc_system *system, size_t index);
+
+/**
+ * The name of a constraint that is kept by projection, from 0; NULL beyond the last.
+ */
+const char *pc_system_constraint_name(const pc_system *system, size_t index);
+
+/**
+ * The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
+ */
+const char *pc_system_reaction_name(const pc_system *system, size_t index);
+
+/**
+ * The time and state from which the model starts. `t` may be NULL.
+ */
+pc_status pc_system_start(const pc_system *system, double *t, double *y, size_t y_length, pc_error **error);
+
+/**
+ * The values of all parameters.
+ */
+pc_status pc_system_parameters(const pc_system *system, double *values, size_t length, pc_error **error);
+
+/**
+ * Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
+ * keep their values.
+ */
+pc_status pc_system_set_parameters(pc_system *system, const double *values, size_t length, pc_error **error);
+
+/**
+ * Sets one parameter, by its place; otherwise as pc_system_set_parameters.
+ */
+pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
+
+/**
+ * Writes the rate f(t, y) of the state to ydot.
+ */
+pc_status pc_system_rhs(pc_system *system,
+                        double t,
+                        const double *y,
+                        size_t y_length,
+                        double *ydot,
+                        size_t ydot_length,
+                        pc_error **error);
+
+/**
+ * Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
+ */
+pc_status pc_system_jacobian(pc_system *system,
+                             double t,
+                             const double *y,
+                             size_t y_length,
+                             double *jacobian,
+                             size_t length,
+                             pc_error **error);
+
+/**
+ * Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j, ascending,
+ * are the numbers of row_indices from place column_starts(j) up to but without place column_starts(j + 1).
+ * Gives pointers to dim + 1 and `entries` numbers that belong to the system and its copies. Each of the three
+ * places may be NULL.
+ */
+pc_status pc_system_jacobian_pattern(const pc_system *system,
+                                     size_t *entries,
+                                     const size_t **column_starts,
+                                     const size_t **row_indices,
+                                     pc_error **error);
+
+/**
+ * Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
+ */
+pc_status pc_system_sparse_jacobian(pc_system *system,
+                                    double t,
+                                    const double *y,
+                                    size_t y_length,
+                                    double *values,
+                                    size_t length,
+                                    pc_error **error);
+
+/**
+ * Writes the product (∂f/∂y) v; all three arrays have the length dim.
+ */
+pc_status pc_system_jvp(pc_system *system,
+                        double t,
+                        const double *y,
+                        size_t y_length,
+                        const double *v,
+                        size_t v_length,
+                        double *product,
+                        size_t product_length,
+                        pc_error **error);
+
+/**
+ * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and to the values at
+ * the start of the integrals of pc_model_keep. Where there is nothing to be kept it stays.
+ */
+pc_status pc_system_project(pc_system *system,
+                            double t,
+                            double *y,
+                            size_t y_length,
+                            pc_error **error);
+
+/**
+ * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
+ *
+ * In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
+ */
+pc_status pc_system_observe(pc_system *system,
+                            double t,
+                            const double *y,
+                            size_t y_length,
+                            double *values,
+                            size_t length,
+                            pc_error **error);
+
+/**
+ * Writes the energy y_s η_s − L at (t, y).
+ */
+pc_status pc_system_energy(pc_system *system,
+                           double t,
+                           const double *y,
+                           size_t y_length,
+                           double *energy,
+                           pc_error **error);
+
+/**
+ * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what they add to the
+ * forces Q_s is the sum of each times the derivative of its constraint by η_s.
+ */
+pc_status pc_system_reactions(pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              double *values,
+                              size_t length,
+                              pc_error **error);
+
+/**
+ * Writes what should be zero of each constraint that is kept by projection, as many as pc_system_constraint_count.
+ */
+pc_status pc_system_constraint_residuals(pc_system *system,
+                                         double t,
+                                         const double *y,
+                                         size_t y_length,
+                                         double *values,
+                                         size_t length,
+                                         pc_error **error);
+
+/**
+ * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so `length` is
+ * k*k; k is pc_system_dim less pc_system_coordinate_count. With multipliers their rows are not among it. The
+ * first call derives, as pc_system_new does.
+ */
+pc_status pc_system_mass_matrix(pc_system *system,
+                                double t,
+                                const double *y,
+                                size_t y_length,
+                                double *matrix,
+                                size_t length,
+                                pc_error **error);
+
+/**
+ * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one for each
+ * quasi-velocity of the state, then those that constraints say vanish, if any. The first call derives, as
+ * pc_system_new does.
+ */
+pc_status pc_system_operator_count(pc_system *system, size_t *operators, pc_error **error);
+
+/**
+ * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 … K, with 0 for
+ * time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K + 1)*K. The first call derives,
+ * as pc_system_new does.
+ */
+pc_status pc_system_structure_coefficients(pc_system *system,
+                                           double t,
+                                           const double *y,
+                                           size_t y_length,
+                                           double *c,
+                                           size_t length,
+                                           pc_error **error);
+
+/**
+ * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) = 0 take it: ẋ − b
+ * η − b_0, then M η̇ − r, where nothing is divided by M. With multipliers, whose reactions are eliminated, the
+ * second part is M times the difference of η̇ from what it should be; in the canonical form all is ẏ − f. The
+ * first call derives, as pc_system_new does.
+ */
+pc_status pc_system_residual(pc_system *system,
+                             double t,
+                             const double *y,
+                             size_t y_length,
+                             const double *ydot,
+                             size_t ydot_length,
+                             double *residual,
+                             size_t residual_length,
+                             pc_error **error);
+
+/**
+ * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
+ * pc_system_new does.
+ */
+pc_status pc_system_to_momenta(pc_system *system,
+                               double t,
+                               const double *y,
+                               size_t y_length,
+                               double *result,
+                               size_t result_length,
+                               pc_error **error);
+
+/**
+ * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives, as
+ * pc_system_new does.
+ */
+pc_status pc_system_to_quasi_velocities(pc_system *system,
+                                        double t,
+                                        const double *y,
+                                        size_t y_length,
+                                        double *result,
+                                        size_t result_length,
+                                        pc_error **error);
+
+/**
+ * Prints the equations, derived anew: kinematics, then M η̇ = r and the energy, or momenta, Hamiltonian and ẏ =
+ * …; with multipliers without the reactions. `format` is a pc_format. Free the text with pc_string_free.
+ */
+pc_status pc_system_print(const pc_system *system,
+                          int format,
+                          char **text,
+                          pc_error **error);
+
+/**
+ * Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
+ * where NAME is `name`, spelt as an identifier. The source has the right-hand side, its Jacobian, the mass
+ * matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
+ * system, and says at its head how it is used. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+ * capitals) to a program that integrates from the start of the model to that time. Free both texts with
+ * pc_string_free.
+ */
+pc_status pc_system_emit_c(const pc_system *system,
+                           const char *name,
+                           double t_end,
+                           char **header,
+                           char **source,
+                           pc_error **error);
+
+/**
+ * A kernel of the system with the parameters as they are now.
+ */
+pc_status pc_kernel_new(const pc_system *system, pc_kernel **kernel, pc_error **error);
+
+/**
+ * Frees a kernel. Null is allowed.
+ */
+void pc_kernel_free(pc_kernel *kernel);
+
+/**
+ * Sets all parameters of a kernel, in the order of pc_system_parameter_name.
+ */
+pc_status pc_kernel_set_parameters(pc_kernel *kernel, const double *values, size_t length, pc_error **error);
+
+/**
+ * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no memory. `kernel` is
+ * a pc_kernel of this thread's.
+ *
+ * Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step helps.
+ * pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes, with the kernel as
+ * `params`.
+ */
+int pc_kernel_rhs(double t,
+                  const double *y,
+                  double *ydot,
+                  void *kernel);
+
+/**
+ * Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
+ */
+int pc_kernel_jacobian(double t, const double *y, double *jacobian, void *kernel);
+
+/**
+ * The dimension of a kernel's state. 0 of NULL.
+ */
+size_t pc_kernel_dim(const pc_kernel *kernel);
+
+/**
+ * An integration of the system from the state y at the time t, with the parameters as they are now; from the
+ * start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
+ * constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
+ * values at this start. A model with events is refused with PC_UNSUPPORTED.
+ */
+pc_status pc_solver_new(const pc_system *system,
+                        const pc_solver_options *options,
+                        double t,
+                        const double *y,
+                        size_t y_length,
+                        pc_solver **solver,
+                        pc_error **error);
+
+/**
+ * Frees a solver. Null is allowed. In its own observer it does nothing.
+ */
+void pc_solver_free(pc_solver *solver);
+
+/**
+ * Integrates to the time t, in the direction of the first step, and writes the state there. After a failure
+ * pc_solver_time and pc_solver_state tell what was reached.
+ */
+pc_status pc_solver_advance(pc_solver *solver, double t, double *y, size_t y_length, pc_error **error);
+
+/**
+ * Takes one internal step in the direction of `towards`, and writes its end, which may lie beyond, and the
+ * state there.
+ */
+pc_status pc_solver_step(pc_solver *solver,
+                         double towards,
+                         double *t,
+                         double *y,
+                         size_t y_length,
+                         pc_error **error);
+
+/**
+ * Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
+ * during the call, and with `user`. PC_STOPPED if the observer stops it.
+ */
+pc_status pc_solver_run(pc_solver *solver,
+                        const double *times,
+                        size_t times_length,
+                        pc_observer observer,
+                        void *user,
+                        pc_error **error);
+
+/**
+ * Writes the time at which the integration stands.
+ */
+pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
+
+/**
+ * Writes the state at which the integration stands.
+ */
+pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
+
+/**
+ * Writes the work so far. `size` is sizeof(pc_statistics).
+ */
+pc_status pc_solver_statistics(const pc_solver *solver,
+                               pc_statistics *statistics,
+                               size_t size,
+                               pc_error **error);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* PC_H */
