@@ -45,7 +45,7 @@ fn unit_vectors_and_quaternions_stay_so() {
     for method in [Method::Adams, Method::Bdf] {
         for name in ["heavy-top-lagrange", "heavy-top-quaternion"] {
             let (norm, _) = drift(name, &["norm"], "norm", method);
-            assert!(norm < 1e-15, "{name} by {method}: {norm:e}"); // roundings of numbers below 1
+            assert!(norm < 1e-14, "{name} by {method}: {norm:e}"); // some roundings of numbers below 1
         }
     }
     // As far as it goes without: the test can fail.

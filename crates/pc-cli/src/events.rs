@@ -70,7 +70,7 @@ impl FlowEvents {
             reading: reading.clone(),
             functions: compiled(&functions)?,
             resets: resets.collect::<Result<_, ModelError>>()?,
-            constraints: held.then(|| watch.clone()),
+            constraints: held.then(|| watch.clone().without_kept()),
         })
     }
 

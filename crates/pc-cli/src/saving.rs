@@ -112,7 +112,8 @@ impl Saving {
         if !model.document().events.is_empty() {
             return Err(SavingError::Events.into());
         }
-        if fs::read(path).is_ok_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
+        let overwritten = arguments.checkpoint.as_ref().and_then(|path| fs::read(path).ok());
+        if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
             return Err(SavingError::Occupied { path: path.clone() }.into());
         }
         atomic::look(path).map_err(|source| write_error(path, source))?;

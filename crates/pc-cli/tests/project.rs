@@ -48,10 +48,10 @@ fn integrals_are_kept_when_asked_for() {
     assert!(drift(&plain) > 1e-6);
     let asked = pc(OSCILLATOR, &["--rtol", "1e-6", "--project", "radius"]);
     said(&asked, 0);
-    assert!(drift(&asked) < 1e-15); // roundings of numbers below 1
+    assert!(drift(&asked) < 1e-14); // some roundings of numbers below 1
     let written = pc(&format!("{OSCILLATOR}project = [\"radius\", \"energy\"]\n"), &["--rtol", "1e-6"]);
     said(&written, 0);
-    assert!(drift(&written) < 1e-15);
+    assert!(drift(&written) < 1e-14);
 }
 
 #[test]

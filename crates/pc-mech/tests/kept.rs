@@ -140,3 +140,83 @@ fn what_is_no_integral_is_refused() {
         "`are` is not an integral of the system; there are `norm`, `area`, `spin`, `energy`"
     );
 }
+
+/// φ̈ = −sin φ − ½ φ̇ from rest: its energy has no rate at the start.
+#[test]
+fn a_rate_that_vanishes_at_the_start_alone_is_seen() {
+    let graph = Graph::new();
+    let equations = System::builder(&graph)
+        .coordinates(["φ"])
+        .lagrangian(|_, x, v| v[0].square() / 2.0 + x[0].cos())
+        .dissipation(|_, _, v| v[0].square() / 4.0)
+        .build()
+        .unwrap()
+        .poincare()
+        .unwrap();
+    let kept = equations.kept(&["energy"]).unwrap();
+    let refused = equations.compile().unwrap().keep(kept, 0.0, &[1.0, 0.0]).unwrap_err();
+    assert!(
+        matches!(refused, MechError::NotAnIntegral { t, rate, .. } if t > 0.0 && rate < 0.0),
+        "{refused}"
+    );
+}
+
+/// What a constraint does not allow of y⁺ is not given to what it allows.
+#[test]
+fn an_impact_against_a_constraint_loses_its_part() {
+    let graph = Graph::new();
+    let particle = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let rod = Constraint::new("rod", x.square() + y.square() - 1.0);
+    let multipliers = particle.with_multipliers(&[rod]).unwrap();
+    let kept = multipliers.kept(&["energy"]).unwrap();
+    let mut motion = multipliers.compile().unwrap().keep(kept, 0.0, &[1.0, 0.0, 0.0, 2.0]).unwrap();
+    let mut state = [1.0, 0.0, 3.0, 0.5];
+    motion.restart(1.0, &state);
+    motion.project(1.0, &mut state).unwrap();
+    assert!(distance(&state, &[1.0, 0.0, 0.0, 0.5]) < 1e-15, "{state:?}");
+}
+
+/// tanh x has no value −2, and what Newton's method comes to is no state of its.
+#[test]
+fn a_value_that_cannot_be_reached_is_an_error() {
+    let graph = Graph::new();
+    let equations = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .integral("place", |_, x, _| x[0].tanh())
+        .build()
+        .unwrap()
+        .poincare()
+        .unwrap();
+    let kept = equations.kept(&["place"]).unwrap();
+    let mut motion = equations.compile().unwrap().keep(kept, 0.0, &[0.0, 0.0, 0.0, 1.0]).unwrap();
+    let mut near = [0.5, 0.0, 0.0, 1.0];
+    motion.project(0.0, &mut near).unwrap();
+    assert!(near[0].abs() < 1e-15, "{near:?}");
+    assert!(motion.project(0.0, &mut [1.2, 0.0, 0.0, 1.0]).is_err());
+}
+
+/// Near an equilibrium the energy is flat, and its rounding must not move the state.
+#[test]
+fn rounding_moves_nothing_near_an_equilibrium() {
+    let graph = Graph::new();
+    let equations = System::builder(&graph)
+        .coordinates(["φ"])
+        .lagrangian(|_, x, v| {
+            v[0].square() / 2.0 + 0.37 * x[0].cos() - 0.7 * (x[0] + 0.3).square() + 0.42 * x[0]
+        })
+        .build()
+        .unwrap()
+        .poincare()
+        .unwrap();
+    let kept = equations.kept(&["energy"]).unwrap();
+    let mut motion = equations.compile().unwrap().keep(kept, 0.0, &[1e-8, 0.0]).unwrap();
+    let mut state = [3e-9, 1e-8];
+    motion.project(0.0, &mut state).unwrap();
+    assert!(distance(&state, &[3e-9, 1e-8]) < 1e-10, "{state:?}"); // a hundredth of the motion
+}

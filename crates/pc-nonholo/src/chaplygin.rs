@@ -22,9 +22,9 @@ impl<'g> Voronets<'g> {
     ///
     ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
     ///
-    /// those of Lagrange, without a term of the constraints. With two degrees of freedom there is one exactly if N dx dp is
-    /// an invariant measure [Chaplygin 1911]; with more the equations are compared, and one is given only where they are
-    /// proved to be the same.
+    /// those of Lagrange, without a term of the constraints. With two degrees of freedom and T quadratic in the velocities
+    /// there is one exactly if N dx dp is an invariant measure [Chaplygin 1911]. The density of a measure is tried, and
+    /// given only where the equations are proved to be the same.
     ///
     /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///
@@ -64,8 +64,7 @@ impl<'g> Voronets<'g> {
         let parameters = in_time.parameters().iter();
         let system = parameters.fold(builder, |builder, &(p, value)| builder.parameter(p, value)).build()?;
         let reduced = ReducingMultiplier { multiplier, system };
-        let proved = v.len() <= 2 || reduced.has_the_motions_of(&in_time)?;
-        Ok(proved.then_some(reduced))
+        Ok(reduced.has_the_motions_of(&in_time)?.then_some(reduced))
     }
 
     fn has_forces(&self) -> bool {

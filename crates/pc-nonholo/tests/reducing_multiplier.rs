@@ -117,3 +117,18 @@ fn there_is_none_without_a_measure_or_symmetry_or_with_forces() {
     let voronets = Voronets::new(&dragged.with_multipliers(&[knife]).unwrap(), &at).unwrap();
     assert!(voronets.reducing_multiplier().unwrap().is_none());
 }
+
+/// The particle with 3 ż, a total derivative, in its Lagrangian: nothing moves otherwise, and no multiplier of ż is right.
+#[test]
+fn terms_linear_in_the_velocities_are_not_passed_over() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0 + 3.0 * v[2])
+        .build()
+        .unwrap();
+    let [y, vx, vz] = graph.symbols(["y", "x'", "z'"]);
+    let at: Vec<_> = ["x", "y", "z", "x'", "y'", "z'", "t"].map(|name| (graph.symbol(name), 0.2)).into();
+    let held = system.with_multipliers(&[Constraint::new("knife", vz - y * vx)]).unwrap();
+    assert!(Voronets::new(&held, &at).unwrap().reducing_multiplier().unwrap().is_none());
+}

@@ -213,9 +213,10 @@ fn checkpoints<F: VectorField>(
 ) -> Result<Vec<(f64, Vec<f64>)>, SolveError> {
     let mut checkpoints = vec![(motion.time(), motion.state().to_vec())];
     let mut steps = 0;
-    let keep = |t, y: &[f64]| {
+    let direction = 1.0_f64.copysign(t1 - motion.time());
+    let keep = |t: f64, y: &[f64]| {
         steps += 1;
-        if steps == interval && t != t1 {
+        if steps == interval && (t1 - t) * direction > 0.0 {
             steps = 0;
             checkpoints.push((t, y.to_vec()));
         }

@@ -100,25 +100,29 @@ impl Sides {
         let length = to - from.t;
         let mut sample = |t: f64| Ok(Sample { t, values: evaluate(t)? });
         let mut left = from;
-        let early = if self.sides.contains(&0.0) { Some(1e-3) } else { None };
-        for fraction in early.into_iter().chain([0.5]) {
-            let right = sample(left.t + fraction * (to - left.t))?;
+        if self.sides.contains(&0.0) {
+            let early = sample(left.t + 1e-3 * length)?;
+            if self.any_crossed(&early.values) {
+                return self.locate(left, early, &mut sample).map(Passage::Crossing);
+            }
+            self.pass(&early.values);
+            left = early;
+        }
+        let middle = sample(left.t + 0.5 * (to - left.t))?;
+        let end = match sample(to) {
+            Ok(end) => end,
+            // What is beyond a passage need not have values.
+            Err(_) if self.any_crossed(&middle.values) => {
+                return self.locate(left, middle, &mut sample).map(Passage::Crossing);
+            }
+            Err(error) => return Err(error),
+        };
+        let mut samples = self.hidden([&left, &middle, &end], &mut sample)?;
+        samples.extend([middle, end]);
+        samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
+        for right in samples {
             if self.any_crossed(&right.values) {
                 return self.locate(left, right, &mut sample).map(Passage::Crossing);
-            }
-            if fraction == 0.5 {
-                let end = sample(to)?;
-                let mut samples = self.hidden([&left, &right, &end], &mut sample)?;
-                samples.extend([right, end]);
-                samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
-                for right in samples {
-                    if self.any_crossed(&right.values) {
-                        return self.locate(left, right, &mut sample).map(Passage::Crossing);
-                    }
-                    self.pass(&right.values);
-                    left = right;
-                }
-                break;
             }
             self.pass(&right.values);
             left = right;
@@ -172,7 +176,7 @@ impl Sides {
         mut b: Sample,
         sample: &mut impl FnMut(f64) -> Result<Sample, E>,
     ) -> Result<Crossing, E> {
-        let scale = b.t.abs().max(1e-3 * (b.t - a.t).abs());
+        let scale = a.t.abs().max(b.t.abs()).max(1e-3 * (b.t - a.t).abs());
         let tolerance = LOCATED * scale;
         let (mut weight_a, mut weight_b, mut b_moved) = (1.0, 1.0, None);
         let (mut goal, mut tries) = ((b.t - a.t).abs() / 8.0, 0);
@@ -197,6 +201,9 @@ impl Sides {
             };
             let edge = 0.5 * tolerance / width.abs();
             let middle = sample(a.t + fraction.clamp(edge, 1.0 - edge) * width)?;
+            if middle.t == a.t || middle.t == b.t {
+                break; // there is no time between
+            }
             let moves_b = self.any_crossed(&middle.values);
             let repeated = if b_moved == Some(moves_b) { 0.5 } else { 1.0 };
             if moves_b {

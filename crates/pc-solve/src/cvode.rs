@@ -22,6 +22,7 @@ use crate::code::Code;
 use crate::context::Context;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::handles::{Memory, NonlinearIteration, Vector};
+use crate::inequality::Inequality;
 use crate::linear::{Linear, LinearSolver};
 use crate::options::finite;
 use crate::statistics::Statistics;
@@ -59,6 +60,7 @@ pub struct Cvode<F> {
     initial_step: Option<f64>,
     max_steps: u64,
     stop_time: Option<f64>,
+    inequalities: Vec<Inequality>,
     /// Steps in sequence that have ended at the same time, and the last failure got over in them.
     idle_steps: u32,
     idle_failure: Option<Failure>,
@@ -322,12 +324,7 @@ impl<F: VectorField> Cvode<F> {
         }
         let mut steps = 0;
         while self.direction.is_none_or(|direction| (t - self.step_time) * direction > 0.0) {
-            if steps == self.max_steps {
-                // Counted here, because CVODES is asked for one step at a time.
-                let message = format!("{steps} internal steps taken before reaching t = {t}.");
-                let reason = Reason::Cvode { code: Code::TooMuchWork, message };
-                return Err(self.failed(reason, None));
-            }
+            self.check_steps(steps, t)?;
             self.internal_step(end)?;
             steps += 1;
             if observe(self.step_time, self.step_state.as_slice()).is_break() {
@@ -340,6 +337,16 @@ impl<F: VectorField> Cvode<F> {
         }
         self.time = t;
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// That one more step may be taken after so many on the way to `t`: counted here, because CVODES is asked for one step
+    /// at a time.
+    fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+        if steps < self.max_steps {
+            return Ok(());
+        }
+        let message = format!("{steps} internal steps taken before reaching t = {t}.");
+        Err(self.failed(Reason::Cvode { code: Code::TooMuchWork, message }, None))
     }
 
     /// One step of CVODES.

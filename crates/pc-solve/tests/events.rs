@@ -479,3 +479,41 @@ fn many_events() {
     assert_eq!(saw.advance_to(20_000.5, check).unwrap(), Ending::Completed);
     assert_eq!(count, 20_000);
 }
+
+/// Steps that end at t = 0, where a time has no size of its own.
+#[test]
+fn passages_before_time_zero_are_located() {
+    for (start, at) in [(-1.0, -0.1), (1.0, 0.1), (10.0, 0.03)] {
+        let clock = from_fn(1, |_t, _y, rate| {
+            rate[0] = 1.0;
+            Ok(())
+        });
+        let events =
+            FnEvents::default().with(Event::new("noon"), move |t: f64, _y: &[f64]| Ok((t - at).sin()));
+        let found = solve_with_events(clock, start, &[start], &[0.0], &Options::default(), events).unwrap();
+        assert_eq!(found.occurrences.len() % 2, 1, "{start}");
+        let last = found.occurrences.last().unwrap().time;
+        assert!((last - at).abs() < 1e-12 * start.abs().max(1.0), "{last} for {at}");
+    }
+}
+
+/// An event is found where it was without the others.
+#[test]
+fn another_event_hides_no_passages() {
+    let times = |second: bool| {
+        let clock = from_fn(1, |_t, _y, rate| {
+            rate[0] = 1.0;
+            Ok(())
+        });
+        let mut events = FnEvents::default()
+            .with(Event::new("twice"), |_t: f64, y: &[f64]| Ok((y[0] - 30.0).powi(2) - 4.0));
+        if second {
+            events = events.with(Event::new("once"), |_t: f64, y: &[f64]| Ok(y[0] - 40.0));
+        }
+        let options = Options::default().initial_step(1.0);
+        let found = solve_with_events(clock, 0.0, &[0.0], &[100.0], &options, events).unwrap();
+        found.occurrences.iter().map(|o| (o.time * 1e6).round() / 1e6).collect::<Vec<_>>()
+    };
+    assert_eq!(times(false), [28.0, 32.0]);
+    assert_eq!(times(true), [28.0, 32.0, 40.0]);
+}

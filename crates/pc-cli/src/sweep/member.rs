@@ -74,7 +74,7 @@ impl Prototype {
         let mut flow = prototype.with_values(&parameters, start);
         drop(prototype);
         let start = flow.start.clone();
-        flow.motion.restart(t, &start);
+        flow.motion.keep_from(t, &start).ok()?;
         let mut nearest = flow.start.clone();
         flow.motion.project(t, &mut nearest).ok()?;
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs().max(1.0);

@@ -16,6 +16,9 @@ const MOST_STEPS: usize = 50;
 /// After a step so short against the state the next one would be rounding.
 const SHORT: f64 = 1e-8;
 
+/// Roundings in the value of an integral, in units of its terms.
+const ROUNDINGS: f64 = 4.0;
+
 /// A gradient of which less than this is left beside those before it adds nothing to them.
 const DEPENDENT: f64 = 1e-10;
 
@@ -135,7 +138,26 @@ impl Motion {
     /// assert!((state[0] - 0.6).abs() < 1e-15 && (state[1] - 0.8).abs() < 1e-15);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn keep(mut self, mut integrals: KeptIntegrals, t: f64, y: &[f64]) -> Result<Motion, MechError> {
+    pub fn keep(mut self, integrals: KeptIntegrals, t: f64, y: &[f64]) -> Result<Motion, MechError> {
+        self.set_kept(Some(integrals));
+        self.keep_from(t, y)?;
+        Ok(self)
+    }
+
+    /// Takes the values at (t, y) for those to be [kept](Motion::keep) from now on: at another start, or with other
+    /// parameters.
+    ///
+    /// # Errors
+    /// As for [`keep`](Motion::keep).
+    pub fn keep_from(&mut self, t: f64, y: &[f64]) -> Result<(), MechError> {
+        let Some(mut integrals) = self.set_kept(None) else { return Ok(()) };
+        let kept = self.try_to_keep(&mut integrals, t, y);
+        integrals.set_levels((t, y, self.parameters()));
+        self.set_kept(Some(integrals));
+        kept
+    }
+
+    fn try_to_keep(&mut self, integrals: &mut KeptIntegrals, t: f64, y: &[f64]) -> Result<(), MechError> {
         let rates = self.rates(t, y)?;
         integrals.check((t, y, self.parameters()), &rates)?;
         // At rest much that changes has no rate: a few short steps show it.
@@ -149,9 +171,13 @@ impl Motion {
             integrals.check((now, &state, self.parameters()), &rates)?;
             step *= 2.0;
         }
-        integrals.set_levels((t, y, self.parameters()));
-        self.set_kept(integrals);
-        Ok(self)
+        Ok(())
+    }
+
+    /// The same motion, projected to its constraints alone.
+    pub fn without_kept(mut self) -> Motion {
+        self.set_kept(None);
+        self
     }
 
     /// The state a step of the classical method later.
@@ -206,7 +232,7 @@ impl KeptIntegrals {
     /// # Errors
     /// [`Fault::NotKept`] if the way leads nowhere, [`Fault::Expr`] for values that are not finite.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        let mut before = f64::INFINITY;
+        let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
         let mut residuals = vec![0.0; self.levels.len()];
         for _ in 0..MOST_STEPS {
             self.values.eval(t, y, p, &mut residuals);
@@ -216,25 +242,31 @@ impl KeptIntegrals {
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let length = largest(&change);
             if length >= before / 2.0 {
-                return Ok(());
+                let small = length <= SHORT * largest(y) || length <= SHORT * first;
+                return if small { Ok(()) } else { Err(Fault::NotKept) };
             }
             y.iter_mut().zip(&change).for_each(|(y, change)| *y -= change);
             if length <= SHORT * largest(y) {
                 return Ok(());
             }
+            first = first.min(length);
             before = length;
         }
         Err(Fault::NotKept)
     }
 
-    /// The shortest δ with ∂I_j/∂y · δ = `residuals`\[j\], by orthogonalising the gradients one after the other.
+    /// The shortest δ with ∂I_j/∂y · δ = `residuals`\[j\], by orthogonalising the gradients one after the other. A residual
+    /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
     fn shortest(&mut self, at: (f64, &[f64], &[f64]), residuals: &[f64]) -> Result<Vec<f64>, Fault> {
         let gradients = self.gradients_at(at);
         let mut change = vec![0.0; at.1.len()];
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        for (row, residual) in gradients.iter().zip(residuals) {
+        for ((row, &residual), level) in gradients.iter().zip(residuals).zip(&self.levels) {
             check_finite(row, &self.gradients, at)?;
             let gradient = &row[1..];
+            let terms: f64 = gradient.iter().zip(at.1).map(|(g, y)| (g * y).abs()).sum();
+            let rounding = ROUNDINGS * f64::EPSILON * (terms + level.abs());
+            let residual = if residual.abs() <= rounding { 0.0 } else { residual };
             let mut direction = gradient.to_vec();
             for known in &basis {
                 let along = dot(known, &direction);

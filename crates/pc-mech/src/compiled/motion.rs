@@ -176,9 +176,9 @@ impl Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
-    /// Projects to the values of these integrals from now on.
-    pub(crate) fn set_kept(&mut self, integrals: KeptIntegrals) {
-        self.kept = Some(Box::new(integrals));
+    /// Projects to the values of these integrals from now on; those before are returned.
+    pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
+        std::mem::replace(&mut self.kept, integrals.map(Box::new)).map(|kept| *kept)
     }
 
     /// Names of the constraints.
@@ -319,9 +319,14 @@ impl VectorField for Motion {
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {
-        if let Some(kept) = &mut self.kept {
-            kept.set_levels((t, y, &self.parameters));
+        let Some(kept) = &mut self.kept else { return };
+        let mut state = y.to_vec();
+        if let Some(surface) = &mut self.surface
+            && surface.project(t, &mut state, &self.parameters).is_err()
+        {
+            state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
         }
+        kept.set_levels((t, &state, &self.parameters));
     }
 
     fn component_name(&self, i: usize) -> String {

@@ -11,8 +11,7 @@ use crate::resultant::{force_names, torque_names};
 /// What the reactions do to bodies, each component with its name.
 #[derive(Default)]
 struct Resultants<'g> {
-    /// Of all components that do not vanish identically; those across all motions that are possible do, whatever holds the
-    /// body there.
+    /// Of all vectors that do not vanish identically.
     columns: Vec<(String, Expr<'g>)>,
     /// The symbols of all components with what they are.
     known: Vec<(Expr<'g>, Expr<'g>)>,
@@ -76,7 +75,9 @@ impl<'g> Assembler<'g, '_> {
         let Some(vector) = vector else { return };
         let pairs: Vec<(String, Expr<'g>)> = names.into_iter().zip(vector.iter().copied()).collect();
         all.known.extend(pairs.iter().map(|(name, value)| (self.graph.symbol(name), *value)));
-        all.columns.extend(pairs.into_iter().filter(|(_, component)| !component.is_zero()));
+        if vector.iter().any(|component| !component.is_zero()) {
+            all.columns.extend(pairs);
+        }
     }
 
     /// That what the model names is determined.

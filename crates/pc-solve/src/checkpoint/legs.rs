@@ -46,13 +46,13 @@ pub fn solve_checkpointed<F: VectorField>(
         }
         let before = (stand.time, stand.statistics);
         let failed = |reached, error| Err(Box::new(SolveFailure { reached, error }));
-        // The steps to the next output are counted over all legs.
-        let left = limit.saturating_sub(stand.steps_since_output).max(1);
-        let mut cvode = match Cvode::resume(field(), &stand, &options.clone().max_steps(left)) {
+        // The steps to the next output are counted here, over all legs.
+        let unlimited = options.clone().max_steps(u64::MAX);
+        let mut cvode = match Cvode::resume(field(), &stand, &unlimited) {
             Ok(cvode) => cvode,
             Err(error) => return failed(stand.outputs, error),
         };
-        let (mut steps, mut stopped) = (0, false);
+        let (mut steps, mut stopped, mut exhausted) = (0, false, false);
         let since = Cell::new(stand.steps_since_output);
         let outputs = &mut stand.outputs;
         let push = |t, y: &[f64]| {
@@ -64,11 +64,17 @@ pub fn solve_checkpointed<F: VectorField>(
             steps += 1;
             since.set(since.get() + 1);
             stopped = step(t, y).is_break();
-            if stopped || steps == every.get() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            exhausted = since.get() > limit;
+            if stopped || exhausted || steps == every.get() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let ending = cvode.run_observed(times.get(done..).unwrap_or_default(), push, observed);
         stand.statistics = before.1.followed_by(&cvode.statistics());
         let ending = match ending {
+            Ok(Ending::Stopped) if exhausted => Err(too_much_work(&cvode, limit, times[stand.outputs.len()])),
             // Ended where its last step began.
             Ok(Ending::Stopped) if !stopped && cvode.time() == before.0 => Err(stalled(&cvode)),
             Ok(Ending::Stopped) if !stopped => {
@@ -76,9 +82,6 @@ pub fn solve_checkpointed<F: VectorField>(
                 stand.steps_since_output =
                     if passed.as_ref().is_ok_and(|n| *n > 0) { 0 } else { since.get() };
                 passed.map(|_| Ending::Stopped)
-            }
-            Err(error) if error.code() == Some(Code::TooMuchWork) => {
-                Err(too_much_work(&cvode, since.get(), times[stand.outputs.len()]))
             }
             ending => ending,
         };

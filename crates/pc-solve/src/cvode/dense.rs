@@ -23,13 +23,16 @@ impl<F: VectorField> Cvode<F> {
         mut segment: impl FnMut(Segment) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
         self.check_times(&[end])?;
+        let mut steps = 0;
         loop {
             let (from, state) = (self.time, self.state().to_vec());
             if from == end {
                 return Ok(Ending::Completed);
             }
             if from == self.step_time {
+                self.check_steps(steps, end)?;
                 self.internal_step(end)?;
+                steps += 1;
             }
             let direction = 1.0_f64.copysign(end - from);
             let next = if (self.step_time - end) * direction > 0.0 { end } else { self.step_time };

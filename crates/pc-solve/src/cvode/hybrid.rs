@@ -9,7 +9,7 @@ use pc_expr::{Failure, VectorField};
 
 use super::{Cvode, Ending};
 use crate::crossing::{Passage, Sample, Sides};
-use crate::error::{NonFinite, Reason, SolveError};
+use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::events::{Accumulation, Event, Events, History};
 use crate::statistics::Statistics;
 
@@ -64,6 +64,9 @@ impl<F: VectorField> Cvode<F> {
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there.
     pub fn with_events<E: Events>(self, events: E) -> Result<Hybrid<F, E>, SolveError> {
+        if self.sensitivity.is_some() && events.events().iter().any(Event::resets) {
+            return Err(InputError::Restart.into());
+        }
         let (t, state) = (self.time, self.state().to_vec());
         let n = events.events().len();
         let directions: Vec<_> = events.events().iter().map(Event::crosses).collect();

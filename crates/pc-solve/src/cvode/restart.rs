@@ -5,6 +5,7 @@ use sundials_sys as sys;
 
 use super::Cvode;
 use crate::error::{InputError, SolveError};
+use crate::inequality;
 use crate::options::{check_length, finite};
 
 impl<F: VectorField> Cvode<F> {
@@ -26,6 +27,7 @@ impl<F: VectorField> Cvode<F> {
         if self.sensitivity.is_some() {
             return Err(InputError::Restart.into());
         }
+        inequality::check(self.field(), y, &self.inequalities)?;
         let before = self.statistics();
         self.work.as_mut_slice().copy_from_slice(y);
         // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.

@@ -79,6 +79,7 @@ impl<F: VectorField> Cvode<F> {
             initial_step: options.initial_step,
             max_steps: options.max_steps,
             stop_time: None,
+            inequalities: options.inequalities.clone(),
             idle_steps: 0,
             idle_failure: None,
             earlier: Statistics::default(),

@@ -7,6 +7,7 @@ use pc_expr::{Failure, VectorField};
 use super::{Ending, Hybrid};
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::{Events, Occurrence};
+use crate::inequality;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does.
@@ -66,6 +67,10 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             let component = self.field().component_name(i);
             let event = self.name(event);
             result = Err(Failure::fatal(NonFinite::Reset { event, component, value: state[i], t }));
+        }
+        if result.is_ok() {
+            let allowed = inequality::check(self.field(), state, &self.engine.inequalities);
+            result = allowed.map_err(Failure::fatal);
         }
         if let Err(failure) = result {
             let reason = Reason::Reset { event: self.name(event), t };

@@ -84,6 +84,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
         self.engine.check_times(&[end])?;
+        let mut steps = 0;
         loop {
             let (from, state) = (self.time(), self.state().to_vec());
             let next = if self.is_before_front(end) { end } else { self.front.t };
@@ -101,9 +102,20 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             } else if from == end {
                 return Ok(Ending::Completed);
             } else {
+                self.check_steps(steps, end)?;
                 self.go_on(end)?;
+                steps += 1;
             }
         }
+    }
+
+    /// That one more step may be taken after so many on the way to `t`.
+    fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+        if steps < self.engine.max_steps {
+            return Ok(());
+        }
+        let message = format!("{steps} internal steps taken before reaching t = {t}.");
+        Err(self.failed(Reason::Cvode { code: Code::TooMuchWork, message }, None))
     }
 
     /// Goes to `t`, which has been checked, with internal steps towards `end` as far as needed.
@@ -126,10 +138,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             if t == self.front.t {
                 break;
             }
-            if steps == self.engine.max_steps {
-                let message = format!("{steps} internal steps taken before reaching t = {t}.");
-                return Err(self.failed(Reason::Cvode { code: Code::TooMuchWork, message }, None));
-            }
+            self.check_steps(steps, t)?;
             self.go_on(end)?;
             steps += 1;
             if observe(self.front.t, &self.front_state).is_break() {
