@@ -121,6 +121,19 @@ fn checkpoints() {
     }
 }
 
+/// A stop time beyond the end lets the last step pass it, which is no place to begin a piece of the way at.
+#[test]
+fn a_stop_time_beyond_the_end_changes_nothing() {
+    let p = [1.3, 0.1, 0.4];
+    let expected = forward(p, 0.0, 2.0);
+    for motion in precise() {
+        let options = AdjointOptions::new(motion.clone().stop_time(3.0)).checkpoint_interval(1);
+        let field = Offering(Pendulum(p), Offer::Jacobian);
+        let found = adjoint_gradient(field, Mixed(p), 0.0, &START, 2.0, &options).unwrap();
+        assert_agree(&found, &expected, 1e-8, &motion);
+    }
+}
+
 /// G = ∫ x dt of the oscillator: by x₀ it is sin(ωT)/ω, by ẋ₀ (1 − cos ωT)/ω².
 #[test]
 fn closed_form() {

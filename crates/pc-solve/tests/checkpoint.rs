@@ -203,3 +203,27 @@ fn damaged_bytes_are_refused() {
     next.extend(crc.to_le_bytes());
     assert_eq!(Checkpoint::from_bytes(&next), Err(CheckpointError::Version));
 }
+
+/// The limit is on the steps from one output to the next, wherever checkpoints lie between.
+#[test]
+fn the_step_limit_is_that_of_a_run_without_checkpoints() {
+    let times: Vec<f64> = (1..=40).map(|i| 0.5 * f64::from(i)).collect();
+    let circle = || {
+        from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {
+            ydot.copy_from_slice(&[y[1], -y[0]]);
+            Ok(())
+        })
+    };
+    // Steps of at most 0.01: about 50 to an output, some more after a new start.
+    let options = |most| Options::default().max_step(0.01).max_steps(most);
+    for steps in [50, 60, 70, 79] {
+        let run = |most| {
+            let from = Checkpoint::start(0.0, &[1.0, 0.0]);
+            solve_checkpointed(circle, from, &times, &options(most), every(steps), |_, _| (), GO_ON)
+        };
+        assert!(run(80).unwrap().is_complete(), "{steps}");
+        let failure = run(40).unwrap_err();
+        assert_eq!(failure.error.code(), Some(Code::TooMuchWork));
+        assert!(failure.reached.is_empty());
+    }
+}

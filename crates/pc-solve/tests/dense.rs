@@ -224,3 +224,12 @@ fn segments_of_projected_states_fit_together() {
         assert!(before.iter().zip(&after).all(|(a, b)| (a - b).abs() < 1e-14), "{before:?} {after:?} at {t}");
     }
 }
+
+#[test]
+fn the_step_limit_holds() {
+    let failed =
+        solve_dense(oscillator(), 0.0, &[1.0, 0.0], 1.0, &Options::default().max_steps(10).max_step(1e-3));
+    let error = failed.unwrap_err();
+    assert_eq!(error.code(), Some(pc_solve::Code::TooMuchWork));
+    assert!(error.to_string().contains("10 internal steps taken before reaching t = 1"), "{error}");
+}

@@ -114,3 +114,38 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     assert!(matches!(error, SolveError::Input(_)));
     assert_eq!(error.to_string(), "inequalities cannot be kept for a vector field that projects its states");
 }
+
+/// A new start, and the reset of an event, must satisfy them too.
+#[test]
+fn a_new_start_is_checked() {
+    let falling = || {
+        from_fn(1, |_t, _y, ydot: &mut [f64]| {
+            ydot[0] = -1.0;
+            Ok(())
+        })
+    };
+    let options = Options::default().inequalities(vec![Inequality::NotNegative]);
+    let mut cvode = Cvode::new(falling(), 0.0, &[1.0], &options).unwrap();
+    cvode.advance_to(0.1).unwrap();
+    let refused = cvode.restart(0.1, &[-1.0]).unwrap_err();
+    assert!(
+        matches!(refused, SolveError::Input(pc_solve::InputError::Inequality { value: -1.0, .. })),
+        "{refused}"
+    );
+    assert_eq!(cvode.time(), 0.1);
+
+    let events = pc_solve::FnEvents::new().with_reset(
+        pc_solve::Event::new("half").terminal(true),
+        |_t, y| Ok(y[0] - 0.5),
+        |_t, y| {
+            y[0] = -1.0;
+            Ok(())
+        },
+    );
+    let failure = pc_solve::solve_with_events(falling(), 0.0, &[1.0], &[0.9], &options, events).unwrap_err();
+    assert!(
+        failure.error.to_string().starts_with("the event half cannot reset the state"),
+        "{}",
+        failure.error
+    );
+}
