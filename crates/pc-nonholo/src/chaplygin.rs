@@ -23,7 +23,7 @@ impl<'g> Voronets<'g> {
     ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
     ///
     /// those of Lagrange, without a term of the constraints. With two degrees of freedom and T quadratic in the velocities
-    /// there is one exactly if N dx dp is an invariant measure [Chaplygin 1911]. The density of a measure is tried, and
+    /// there is one exactly if N dx dp is an invariant measure [Chaplygin 1911]. Else the density of a measure is tried, and
     /// given only where the equations are proved to be the same.
     ///
     /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
@@ -64,7 +64,16 @@ impl<'g> Voronets<'g> {
         let parameters = in_time.parameters().iter();
         let system = parameters.fold(builder, |builder, &(p, value)| builder.parameter(p, value)).build()?;
         let reduced = ReducingMultiplier { multiplier, system };
-        Ok(reduced.has_the_motions_of(&in_time)?.then_some(reduced))
+        let proved = v.len() <= 2 && self.is_quadratic() || reduced.has_the_motions_of(&in_time)?;
+        Ok(proved.then_some(reduced))
+    }
+
+    /// Whether L has no terms linear in the velocities.
+    fn is_quadratic(&self) -> bool {
+        let held = self.held();
+        let (graph, v) = (held.graph(), held.quasi_velocities());
+        let at_rest: Vec<_> = v.iter().map(|&v| (v, Expr::ZERO)).collect();
+        graph.substitute(&graph.gradient(held.lagrangian(), v), &at_rest).iter().all(|p| p.is_zero())
     }
 
     fn has_forces(&self) -> bool {
