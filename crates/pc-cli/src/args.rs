@@ -117,8 +117,8 @@ pub struct RunArguments {
     /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and with [bodies]
-    /// as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as far as
+    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and of models with
+    /// bodies as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as far as
     /// virtual work determines them
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
