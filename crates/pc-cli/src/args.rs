@@ -119,7 +119,7 @@ pub struct RunArguments {
     pub project: Vec<String>,
     /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and of models with
     /// bodies as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as far as
-    /// virtual work determines them
+    /// virtual work determines them: a component across all motion that is possible is 0 here, whatever holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
