@@ -3,10 +3,11 @@
 use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use pc_mech::{Motion, VectorField};
+use pc_mech::VectorField;
 
 use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
+use crate::field::Field;
 use crate::pointer::{apart, clear, handle, numbers, room, write};
 use crate::status::pc_status;
 use crate::system::{Inner, Inventory, inside, pc_system};
@@ -17,7 +18,7 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 /// It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
 /// return there are no locks.
 pub struct pc_kernel {
-    motion: Motion,
+    motion: Field,
     dim: usize,
 }
 
@@ -29,7 +30,7 @@ pub unsafe extern "C" fn pc_kernel_new(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let new = |inventory: &Inventory, inner: &mut Inner| {
-        let made = Box::new(pc_kernel { motion: inner.motion.clone(), dim: inventory.dim() });
+        let made = Box::new(pc_kernel { motion: inner.field.clone(), dim: inventory.dim() });
         // SAFETY: null or a place for a handle, as the preamble demands.
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
@@ -108,7 +109,7 @@ unsafe fn evaluate(
     target: *mut f64,
     kernel: *mut c_void,
     len: impl FnOnce(usize) -> usize,
-    function: impl FnOnce(&mut Motion, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
+    function: impl FnOnce(&mut Field, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
 ) -> c_int {
     let body = || {
         // SAFETY: as promised.

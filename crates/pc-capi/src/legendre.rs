@@ -2,7 +2,6 @@
 
 use pc_mech::{Graph, LegendreTransform, MechError};
 
-use crate::derivation::canonical;
 use crate::error::{Fault, pc_error};
 use crate::rates::{State, Target, slices};
 use crate::status::pc_status;
@@ -15,10 +14,10 @@ impl Inner {
             let model = &inventory.model;
             let graph = Graph::new();
             let assembly = model.assemble(&graph)?;
-            let canonical = canonical(model, &assembly, inventory.variables)?;
+            let canonical = model.canonical_in(&assembly, inventory.variables)?;
             let mut transform =
                 canonical.legendre_transform().map_err(|error| model.derivation_error(error))?;
-            transform.parameters_mut().copy_from_slice(self.motion.parameters());
+            transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }
         const MISSING: Fault = Fault::Unsupported { what: "the transform", why: "it was not derived" };

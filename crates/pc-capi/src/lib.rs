@@ -13,10 +13,10 @@
 #![expect(clippy::missing_safety_doc, reason = "one rule holds for all pointers: the preamble of the header")]
 
 mod builder;
-mod derivation;
 mod draft;
 mod entry;
 mod error;
+mod field;
 mod kernel;
 mod legendre;
 mod mechanics;

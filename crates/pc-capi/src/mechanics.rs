@@ -1,11 +1,11 @@
 //! The parts of the equations: mass matrix, structure coefficients, residual.
 
-use ::pc_model::Model;
+use ::pc_model::{Model, Variables};
 use pc_expr::{Evaluator, Inputs, Program};
 use pc_mech::{Backend, Equations, Expr, Graph, MechError, VectorField};
 
-use crate::derivation::{Variables, equations, state};
 use crate::error::{Fault, pc_error};
+use crate::field::Field;
 use crate::pointer::{apart, numbers, write};
 use crate::rates::{State, Target, slices};
 use crate::status::pc_status;
@@ -29,7 +29,7 @@ impl Mechanics {
     fn of(model: &Model, variables: Variables) -> Result<Mechanics, Fault> {
         let graph = Graph::new();
         let assembly = model.assemble(&graph)?;
-        let equations = equations(model, &assembly, variables)?;
+        let equations = model.equations_in(&assembly, variables)?;
         let structure = equations.system().structure();
         let operators = structure.operators();
         let all = || 0..=operators;
@@ -53,7 +53,7 @@ fn compile<'g>(equations: &Equations<'g>, values: &[Expr<'g>]) -> Result<Evaluat
     let system = equations.system();
     let inputs = Inputs {
         time: Some(system.frame().time()),
-        state: state(system),
+        state: [system.frame().coordinates(), system.quasi_velocities()].concat(),
         parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
     };
     Ok(Evaluator::new(Program::new(system.graph(), &inputs, values)?, Backend::Interpreter))
@@ -77,12 +77,12 @@ fn evaluate(
 
 impl Inner {
     /// The parts of the equations, derived when first asked for, with the motion.
-    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut pc_mech::Motion), Fault> {
+    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut Field), Fault> {
         if self.mechanics.is_none() {
             self.mechanics = Some(Mechanics::of(&inventory.model, inventory.variables)?);
         }
         const MISSING: Fault = Fault::Unsupported { what: "M η̇ = r", why: "it was not derived" };
-        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.motion))
+        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field))
     }
 
     /// The state (x, η) of a state.
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
-        let (dim, k) = (inventory.dim(), inventory.dim() - inner.motion.coordinates());
+        let (dim, k) = (inventory.dim(), inventory.dim() - inner.field.coordinates());
         let target = Target { data: matrix, length, expected: k * k, what: "matrix" };
         // SAFETY: as the preamble demands.
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;

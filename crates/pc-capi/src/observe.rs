@@ -23,7 +23,7 @@ pub unsafe extern "C" fn pc_system_observe(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.motion.observe(t, y));
+        values.copy_from_slice(&inner.field.observe(t, y));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn pc_system_energy(
         // SAFETY: as the preamble demands.
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         // The last of those that should stay constant.
-        energy[0] = inner.motion.observe(t, y)[inventory.conserved - 1];
+        energy[0] = inner.field.observe(t, y)[inventory.conserved - 1];
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn pc_system_reactions(
         let target = Target { data: values, length, expected: reactions.len(), what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        let all = inner.motion.observe(t, y);
+        let all = inner.field.observe(t, y);
         for (value, &place) in values.iter_mut().zip(reactions) {
             *value = all[place];
         }
@@ -95,11 +95,11 @@ pub unsafe extern "C" fn pc_system_constraint_residuals(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let observe = |inventory: &Inventory, inner: &mut Inner| {
-        let expected = inner.motion.constraint_names().len();
+        let expected = inner.field.constraint_names().len();
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.motion.constraint_residuals(t, y));
+        values.copy_from_slice(&inner.field.constraint_residuals(t, y));
         Ok(())
     };
     // SAFETY: as the preamble demands.

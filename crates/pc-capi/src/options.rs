@@ -2,6 +2,7 @@
 
 use std::ffi::c_int;
 
+use ::pc_model::Variables;
 use pc_solve::{Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
 use crate::error::Fault;
@@ -30,6 +31,17 @@ pub struct pc_system_options {
 impl Default for pc_system_options {
     fn default() -> Self {
         pc_system_options { size: size_of::<Self>(), form: pc_form::PC_POINCARE as c_int }
+    }
+}
+
+impl pc_system_options {
+    /// The variables of the state.
+    pub(crate) fn variables(&self) -> Result<Variables, Fault> {
+        match self.form {
+            0 => Ok(Variables::QuasiVelocities),
+            1 => Ok(Variables::Momenta),
+            value => Err(Fault::Choice { what: "pc_form", value: value.into() }),
+        }
     }
 }
 

@@ -56,7 +56,7 @@ pub unsafe extern "C" fn pc_system_rhs(
         let target = Target { data: ydot, length: ydot_length, expected: dim, what: "ydot" };
         // SAFETY: as the preamble demands.
         let (y, ydot) = unsafe { slices(state, dim, target) }?;
-        Ok(inner.motion.rhs(t, y, ydot)?)
+        Ok(inner.field.rhs(t, y, ydot)?)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn pc_system_jacobian(
         let target = Target { data: jacobian, length, expected: dim * dim, what: "jacobian" };
         // SAFETY: as the preamble demands.
         let (y, jacobian) = unsafe { slices(state, dim, target) }?;
-        Ok(inner.motion.jacobian(t, y, jacobian)?)
+        Ok(inner.field.jacobian(t, y, jacobian)?)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn pc_system_sparse_jacobian(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, dim, target) }?;
-        Ok(inner.motion.sparse_jacobian(t, y, values)?)
+        Ok(inner.field.sparse_jacobian(t, y, values)?)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -169,7 +169,7 @@ pub unsafe extern "C" fn pc_system_jvp(
         let (y, product) = unsafe { slices(state, dim, target) }?;
         let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
         let mut values = vec![0.0; pattern.len()];
-        inner.motion.sparse_jacobian(t, y, &mut values)?;
+        inner.field.sparse_jacobian(t, y, &mut values)?;
         product.fill(0.0);
         for ((i, j), value) in pattern.entries().zip(values) {
             product[i] += value * v[j];
@@ -193,8 +193,8 @@ pub unsafe extern "C" fn pc_system_project(
     let project = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: as the preamble demands.
         let mut projected = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
-        if inner.motion.has_projection() {
-            inner.motion.project(t, &mut projected)?;
+        if inner.field.has_projection() {
+            inner.field.project(t, &mut projected)?;
         }
         // SAFETY: as the preamble demands.
         unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&projected);

@@ -4,11 +4,12 @@ use std::ffi::{c_int, c_void};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use pc_mech::{Motion, VectorField};
+use pc_mech::VectorField;
 use pc_solve::{Cvode, Ending};
 
 use crate::entry::{entry, free, is_held, locked};
 use crate::error::{Fault, pc_error};
+use crate::field::Field;
 use crate::options::{pc_solver_options, take};
 use crate::pointer::{clear, handle, numbers, room, write};
 use crate::status::pc_status;
@@ -16,7 +17,7 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {
-    pub(crate) inner: Mutex<Cvode<Motion>>,
+    pub(crate) inner: Mutex<Cvode<Field>>,
     dim: usize,
 }
 
@@ -41,7 +42,7 @@ pub unsafe extern "C" fn pc_solver_new(
 ) -> pc_status {
     let new = |inventory: &Inventory, inner: &mut Inner| {
         let dim = inventory.dim();
-        if !inventory.model.document().events.is_empty() {
+        if !inner.events.is_empty() {
             let why = "the model has events, which this library does not follow";
             return Err(Fault::Unsupported { what: "an integration", why });
         }
@@ -53,7 +54,7 @@ pub unsafe extern "C" fn pc_solver_new(
             // SAFETY: `y_length` numbers, as the preamble demands.
             (t, unsafe { numbers(y, y_length, dim, "y") }?)
         };
-        let mut motion = inner.motion.clone();
+        let mut motion = inner.field.clone();
         motion.restart(t, y);
         let integration = Cvode::new(motion, t, y, &options)?;
         let made = Box::new(pc_solver { inner: Mutex::new(integration), dim });
@@ -89,7 +90,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&mut Cvode<Motion>, usize) -> Result<(), Fault>,
+    body: impl FnOnce(&mut Cvode<Field>, usize) -> Result<(), Fault>,
 ) -> pc_status {
     let body = || {
         // SAFETY: as promised.
@@ -110,7 +111,7 @@ pub unsafe extern "C" fn pc_solver_advance(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let advance = |integration: &mut Cvode<Motion>, dim: usize| {
+    let advance = |integration: &mut Cvode<Field>, dim: usize| {
         // SAFETY: null or room for `y_length` numbers, as the preamble demands.
         let y = unsafe { room(y, y_length, dim, "y") }?;
         y.copy_from_slice(integration.advance_to(t)?);
@@ -131,7 +132,7 @@ pub unsafe extern "C" fn pc_solver_step(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let step = |integration: &mut Cvode<Motion>, dim: usize| {
+    let step = |integration: &mut Cvode<Field>, dim: usize| {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { write(t, f64::NAN, "t") }?;
         // SAFETY: as above.
@@ -156,7 +157,7 @@ pub unsafe extern "C" fn pc_solver_run(
     user: *mut c_void,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let run = |integration: &mut Cvode<Motion>, _: usize| {
+    let run = |integration: &mut Cvode<Field>, _: usize| {
         // SAFETY: null or `times_length` numbers, as the preamble demands.
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
         let observer = observer.ok_or(Fault::Null { what: "observer" })?;
@@ -195,7 +196,7 @@ pub unsafe extern "C" fn pc_solver_state(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let state = |integration: &mut Cvode<Motion>, dim: usize| {
+    let state = |integration: &mut Cvode<Field>, dim: usize| {
         // SAFETY: null or room for `y_length` numbers, as the preamble demands.
         unsafe { room(y, y_length, dim, "y") }?.copy_from_slice(integration.state());
         Ok(())

@@ -2,9 +2,9 @@
 
 use std::ffi::{c_char, c_int};
 
+use ::pc_model::Variables;
 use pc_mech::{EmitOptions, Expr, Graph, Language, Style, System};
 
-use crate::derivation::{Variables, canonical, equations};
 use crate::entry::entry;
 use crate::error::{Fault, pc_error};
 use crate::pointer::{clear, handle, text, write};
@@ -68,7 +68,7 @@ fn parts(inventory: &Inventory, style: Style) -> Result<Vec<Part>, Fault> {
     };
     Ok(match inventory.variables {
         Variables::QuasiVelocities => {
-            let equations = equations(model, &assembly, inventory.variables)?;
+            let equations = model.equations_in(&assembly, inventory.variables)?;
             vec![
                 ("Kinematics", kinematics(equations.system(), equations.velocities())),
                 ("Equations", equations.balance(style)),
@@ -76,7 +76,7 @@ fn parts(inventory: &Inventory, style: Style) -> Result<Vec<Part>, Fault> {
             ]
         }
         Variables::Momenta => {
-            let canonical = canonical(model, &assembly, inventory.variables)?;
+            let canonical = model.canonical_in(&assembly, inventory.variables)?;
             vec![
                 ("Kinematics", kinematics(canonical.system(), canonical.velocities())),
                 ("Momenta", pairs(canonical.momenta(), canonical.momenta_of_velocities())),
@@ -149,7 +149,8 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
         options = options.title(title.value.clone());
     }
     if t_end.is_finite() {
-        let state = crate::derivation::state(equations.system());
+        let state =
+            [equations.system().frame().coordinates(), equations.system().quasi_velocities()].concat();
         options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
     }
     let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;

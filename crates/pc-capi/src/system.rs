@@ -3,13 +3,13 @@
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, Mutex};
 
-use ::pc_model::Model;
+use ::pc_model::{Flow, FlowEvents, Model, Variables};
 use pc_expr::Pattern;
-use pc_mech::{LegendreTransform, Motion, VectorField};
+use pc_mech::{Graph, LegendreTransform, VectorField};
 
-use crate::derivation::{Derived, Variables, derive};
 use crate::entry::{entry, free, is_held, locked};
 use crate::error::{Fault, pc_error};
+use crate::field::Field;
 use crate::mechanics::Mechanics;
 use crate::model::pc_model;
 use crate::options::{pc_system_options, take};
@@ -54,7 +54,9 @@ impl Inventory {
 
 #[derive(Clone)]
 pub(crate) struct Inner {
-    pub(crate) motion: Motion,
+    pub(crate) field: Field,
+    /// What happens where; none in most models.
+    pub(crate) events: FlowEvents,
     /// Derived when first asked for.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
@@ -63,7 +65,12 @@ pub(crate) struct Inner {
 impl pc_system {
     /// `reactions` says whether there are reactions among the outputs.
     fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, Fault> {
-        let Derived { motion, parameters, t_start, start } = derive(&model, variables)?;
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph)?;
+        let flow = Flow::new(&model, &assembly, variables)?;
+        let motion = &flow.motion;
+        let parameters: Vec<_> =
+            assembly.system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
         let observables = motion.observable_names();
         let constraints = &model.document().constraints;
         let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
@@ -79,11 +86,11 @@ impl pc_system {
             constraints: c_strings(motion.constraint_names()),
             reactions: reactions.collect(),
             pattern: motion.sparsity().cloned(),
-            t_start,
-            start,
+            t_start: assembly.t_start,
+            start: flow.start.clone(),
             model,
         };
-        let inner = Inner { motion, mechanics: None, legendre: None };
+        let inner = Inner { field: flow.motion, events: flow.events, mechanics: None, legendre: None };
         Ok(pc_system { inventory: Arc::new(inventory), inner: Mutex::new(inner) })
     }
 }
@@ -102,7 +109,7 @@ pub unsafe extern "C" fn pc_system_new(
         unsafe { clear(system, "system") }?;
         // SAFETY: as above.
         let options = unsafe { take(options, "options") }?;
-        let variables = Variables::try_from(options.form)?;
+        let variables = options.variables()?;
         // SAFETY: as above.
         let contents = locked(&unsafe { handle(model, "model") }?.contents)?.clone();
         let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
@@ -269,7 +276,7 @@ pub unsafe extern "C" fn pc_system_parameters(
     let get = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: null or room for `length` numbers, as the preamble demands.
         let values = unsafe { room(values, length, inventory.parameters.len(), "values") }?;
-        values.copy_from_slice(inner.motion.parameters());
+        values.copy_from_slice(inner.field.parameters());
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -321,7 +328,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
 
 impl Inner {
     fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
-        set(self.motion.parameters_mut());
+        set(self.field.parameters_mut());
         if let Some(legendre) = &mut self.legendre {
             set(legendre.parameters_mut());
         }

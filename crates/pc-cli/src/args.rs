@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pc_model::Variables;
 
 use crate::saving::SavingArguments;
 use crate::sweep::arguments::SweepArguments;
@@ -211,6 +212,15 @@ pub enum RunForm {
     Poincare,
     /// Equations for the momenta.
     Canonical,
+}
+
+impl From<RunForm> for Variables {
+    fn from(form: RunForm) -> Variables {
+        match form {
+            RunForm::Poincare => Variables::QuasiVelocities,
+            RunForm::Canonical => Variables::Momenta,
+        }
+    }
 }
 
 /// Integration method.

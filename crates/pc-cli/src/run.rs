@@ -4,13 +4,13 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use pc_mech::Graph;
-use pc_model::Model;
+use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
 
 use crate::args::{Outputs, RunArguments, RunForm};
 use crate::binding::{choice, dropped, say_choice, say_moved, say_negative_energy, say_undetermined};
 use crate::error::CliError;
-use crate::flow::Flow;
+use crate::follow::follow;
 use crate::output::Destination;
 use crate::plan::Plan;
 use crate::plot::Picture;
@@ -135,7 +135,7 @@ pub fn integrate_saved(
     say_moved(&assembly);
     say_negative_energy(&assembly);
     say_undetermined(&assembly);
-    let mut flow = Flow::new(model, &assembly, form)?;
+    let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
     let mut saving = Saving::new(saving, model, &plan, form)?;
     let free = assembly.free_system().map_err(|error| model.constraint_error(error));
@@ -152,7 +152,7 @@ pub fn integrate_saved(
     let start = Instant::now();
     let (solved, error) = match &mut saving {
         Some(saving) => saving.solve(&flow, &plan, observer)?,
-        None => flow.follow(plan.t_start, &plan.times(), &plan.options(), observer),
+        None => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
     };
     let wall = start.elapsed();
     drop(progress);

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use pc_model::Model;
+use pc_model::{Flow, Model};
 use pc_solve::{Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_checkpointed};
 
 use crate::args::RunForm;
 use crate::error::CliError;
-use crate::flow::{Flow, without_events};
+use crate::follow::without_events;
 use crate::identity::{self, Identity};
 use crate::output::atomic;
 use crate::plan::Plan;

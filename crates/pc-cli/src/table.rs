@@ -1,8 +1,7 @@
 //! The table of a motion: t, coordinates, quasi-velocities, integrals, energy, outputs.
 
+use pc_model::Flow;
 use pc_solve::Trajectory;
-
-use crate::flow::Flow;
 
 /// A row for each output time.
 #[derive(Clone, Debug, PartialEq)]

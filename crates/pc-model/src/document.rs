@@ -10,6 +10,7 @@
 
 use std::ops::Range;
 
+use pc_expr::Direction;
 use pc_expr::parse::{Ast, Span, nearest};
 
 use crate::error::{ErrorKind, ModelError, SECTIONS};
@@ -271,17 +272,6 @@ pub struct Event {
     pub terminal: Option<Located<bool>>,
     /// New values; a velocity keeps its prime in the name.
     pub reset: Vec<NamedExpression>,
-}
-
-/// How an expression passes through zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// From below.
-    Rising,
-    /// From above.
-    Falling,
-    /// Either way.
-    Both,
 }
 
 /// How the motion is computed; what is left out is left to the program.

@@ -1,8 +1,6 @@
 //! What happens to a motion where an expression passes through zero.
 
-use pc_expr::Expr;
-
-use crate::document::Direction;
+use pc_expr::{Direction, Expr};
 
 /// An event of a model, in expressions of time, coordinates, all quasi-velocities of the system and parameters.
 #[derive(Clone, Debug)]

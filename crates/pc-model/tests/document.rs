@@ -1,9 +1,9 @@
 //! The text of a model: what is read, what is refused and with which words, and that no input can upset it.
 
+use pc_expr::Direction;
 use pc_expr::parse::{Ast, AstKind, Span};
 use pc_model::document::{
-    AlgebraDefinition, ConstraintKind, Direction, Expression, Form, Inertia, Method, NamedExpression,
-    Orientation,
+    AlgebraDefinition, ConstraintKind, Expression, Form, Inertia, Method, NamedExpression, Orientation,
 };
 use pc_model::{Category, Document, ErrorKind, Source};
 use proptest::prelude::*;

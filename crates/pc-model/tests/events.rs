@@ -1,7 +1,7 @@
 //! `[events.NAME]`: what becomes of it, and every refusal in full.
 
+use pc_expr::Direction;
 use pc_mech::Graph;
-use pc_model::document::Direction;
 use pc_model::{Category, Document, Model, ModelError, Source};
 
 const PENDULUM: &str = r#"[parameters]

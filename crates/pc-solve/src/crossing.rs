@@ -1,6 +1,6 @@
 //! Where functions along a step pass through zero first.
 
-use crate::events::Direction;
+use pc_expr::Direction;
 
 /// Times closer than so many units of rounding are the same: events between are simultaneous.
 const SAME: f64 = 64.0 * f64::EPSILON;

@@ -61,13 +61,13 @@ pub use cvode::{Cvode, Ending, Hybrid};
 pub use dense::{DenseOutput, Segment};
 pub use ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
 pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
-pub use events::{Accumulation, Direction, Event, Events, FnEvents, Occurrence};
+pub use events::{Accumulation, FnEvents, Occurrence};
 pub use fn_field::{FnField, from_fn};
 pub use inequality::Inequality;
 pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use options::{Method, NonlinearSolver, Options, Tolerance};
-pub use pc_expr::{Failure, Pattern, VectorField};
+pub use pc_expr::{Direction, Event, Events, Failure, Pattern, VectorField};
 pub use sensitivity::{Correction, Sensitivities, SensitivityStatistics};
 pub use sensitivity_trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};
 pub use solve::{

@@ -4,12 +4,12 @@ use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
 
-use pc_expr::VectorField;
+use pc_expr::{Events, VectorField};
 
 use crate::cvode::{Cvode, Ending};
 use crate::dense::DenseOutput;
 use crate::error::{SolveError, SolveFailure};
-use crate::events::{Events, Occurrence};
+use crate::events::Occurrence;
 use crate::options::Options;
 use crate::trajectory::Trajectory;
 

@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use pc_mech::{Graph, VectorField};
-use pc_model::{Model, ModelError};
+use pc_model::{Flow, Model, ModelError};
 use pc_solve::{Ending, HybridMotion, Options, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
 use crate::args::RunForm;
-use crate::flow::Flow;
+use crate::follow::follow;
 use crate::interrupt;
 use crate::plan::Plan;
 use crate::table::Table;
@@ -56,7 +56,7 @@ impl Prototype {
         if !assembly.bound.redundant().is_empty() {
             return None;
         }
-        let flow = Flow::new(model, &assembly, form).ok()?;
+        let flow = Flow::new(model, &assembly, form.into()).ok()?;
         let names = model.start_names();
         let state = flow.motion.names();
         let places = state.iter().map(|x| names.iter().position(|name| name == x)).collect();
@@ -126,7 +126,7 @@ impl Members {
                 ControlFlow::Continue(())
             }
         };
-        let (motion, error) = flow.follow(self.t_start, &self.times, &self.options, observer);
+        let (motion, error) = follow(&mut flow, self.t_start, &self.times, &self.options, observer);
         let HybridMotion { trajectory, ending, .. } = motion;
         if ending == Some(Ending::Stopped) {
             return None;
@@ -157,7 +157,7 @@ impl Members {
             return Ok(flow);
         }
         let graph = Graph::new();
-        Flow::new(model, &model.assemble(&graph)?, self.form)
+        Flow::new(model, &model.assemble(&graph)?, self.form.into())
     }
 
     /// All rows, or the last one with the drifts; what was `reached` is one more.

@@ -1,10 +1,10 @@
 //! The section `[events.NAME]`.
 
-use pc_mech::Expr;
+use pc_expr::{Direction, Expr};
 
 use super::Assembler;
 use crate::bound::{Bound, Form};
-use crate::document::{self, Direction, NamedExpression};
+use crate::document::{self, NamedExpression};
 use crate::error::ModelError;
 use crate::event::Event;
 use crate::fault::Fault;

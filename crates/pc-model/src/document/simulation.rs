@@ -1,7 +1,9 @@
 //! The sections that say how the motion is followed: events and simulation.
 
 use super::reader::{Item, Table};
-use super::{Direction, Event, Form, Located, Method, NamedExpression, Simulation};
+use pc_expr::Direction;
+
+use super::{Event, Form, Located, Method, NamedExpression, Simulation};
 use crate::error::{ErrorKind, ModelError};
 
 /// More rows than any file should hold.

@@ -5,12 +5,12 @@ mod run;
 
 use std::fmt;
 
-use pc_expr::{Failure, VectorField};
+use pc_expr::{Event, Events, Failure, VectorField};
 
 use super::{Cvode, Ending};
 use crate::crossing::{Passage, Sample, Sides};
 use crate::error::{InputError, NonFinite, Reason, SolveError};
-use crate::events::{Accumulation, Event, Events, History};
+use crate::events::{Accumulation, History};
 use crate::statistics::Statistics;
 
 /// An integration of ẏ = f(t, y) by [`Cvode`] with [`Events`].

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use pc_expr::{Failure, VectorField};
+use pc_expr::{Events, Failure, VectorField};
 
 use super::{Ending, Hybrid};
 use crate::error::{NonFinite, Reason, SolveError};
-use crate::events::{Events, Occurrence};
+use crate::events::Occurrence;
 use crate::inequality;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {

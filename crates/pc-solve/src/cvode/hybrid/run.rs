@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use pc_expr::VectorField;
+use pc_expr::{Events, VectorField};
 
 use super::{Ending, Hybrid};
 use crate::code::Code;
 use crate::dense::Segment;
 use crate::error::{Reason, SolveError};
-use crate::events::{Events, Occurrence};
+use crate::events::Occurrence;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Integrates to `t`, or to a terminal event before, and tells what occurs, events at `t` included, to `occurred`,

@@ -1,11 +1,13 @@
 //! The events of a model on the states that are integrated, whatever their form.
 
-use pc_expr::{Backend, Evaluator, Program};
+use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, VectorField};
-use pc_model::{Assembly, Form, Model, ModelError, document};
-use pc_solve::{Direction, Event, Events, Failure};
 
-use crate::flow::{Reading, inputs};
+use super::inputs;
+use super::reading::Reading;
+use crate::bound::Form;
+use crate::error::ModelError;
+use crate::model::{Assembly, Model};
 
 /// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
 /// larger, is no rounding.
@@ -44,7 +46,7 @@ impl FlowEvents {
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be compiled.
-    pub fn new(
+    pub(super) fn new(
         model: &Model,
         assembly: &Assembly<'_>,
         reading: &Reading,
@@ -75,7 +77,7 @@ impl FlowEvents {
     }
 
     /// The same with other values of the parameters.
-    pub(crate) fn with_parameters(&self, parameters: &[f64]) -> FlowEvents {
+    pub(super) fn with_parameters(&self, parameters: &[f64]) -> FlowEvents {
         let mut events = FlowEvents { reading: self.reading.with_parameters(parameters), ..self.clone() };
         if let Some(motion) = &mut events.constraints {
             motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
@@ -89,14 +91,9 @@ impl FlowEvents {
     }
 }
 
-fn event(event: &pc_model::Event<'_>) -> Event {
-    let direction = match event.direction {
-        document::Direction::Rising => Direction::Rising,
-        document::Direction::Falling => Direction::Falling,
-        document::Direction::Both => Direction::Both,
-    };
+fn event(event: &crate::event::Event<'_>) -> Event {
     let resets = !event.resets.is_empty();
-    Event::new(&event.name).direction(direction).terminal(event.terminal).resetting(resets)
+    Event::new(&event.name).direction(event.direction).terminal(event.terminal).resetting(resets)
 }
 
 impl Events for FlowEvents {

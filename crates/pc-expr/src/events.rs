@@ -1,0 +1,124 @@
+//! What may happen to a motion on its way: zeros of functions g(t, y), and resets of the state there.
+
+use crate::vector_field::Failure;
+
+/// In which direction a function passes through zero as the integration goes: against time where it goes backwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either way.
+    #[default]
+    Both,
+}
+
+impl Direction {
+    /// Whether a function that leaves the side of this sign passes through zero in this direction.
+    pub fn leaves(self, side: f64) -> bool {
+        match self {
+            Direction::Rising => side < 0.0,
+            Direction::Falling => side > 0.0,
+            Direction::Both => side != 0.0,
+        }
+    }
+}
+
+/// What is to be known of an event beside its function.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Event {
+    name: String,
+    direction: Direction,
+    terminal: bool,
+    resets: bool,
+}
+
+impl Event {
+    /// An event of either direction that changes nothing.
+    pub fn new(name: impl Into<String>) -> Event {
+        Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
+    }
+
+    /// The same with a direction.
+    pub fn direction(self, direction: Direction) -> Event {
+        Event { direction, ..self }
+    }
+
+    /// Where its function rises through zero.
+    pub fn rising(self) -> Event {
+        self.direction(Direction::Rising)
+    }
+
+    /// Where its function falls through zero.
+    pub fn falling(self) -> Event {
+        self.direction(Direction::Falling)
+    }
+
+    /// Whether the integration ends there.
+    pub fn terminal(self, terminal: bool) -> Event {
+        Event { terminal, ..self }
+    }
+
+    /// Whether [`Events::reset`] changes the state there.
+    pub fn resetting(self, resets: bool) -> Event {
+        Event { resets, ..self }
+    }
+
+    /// Its name, for messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its direction.
+    pub fn crosses(&self) -> Direction {
+        self.direction
+    }
+
+    /// Whether the integration ends there.
+    pub fn is_terminal(&self) -> bool {
+        self.terminal
+    }
+
+    /// Whether it resets the state.
+    pub fn resets(&self) -> bool {
+        self.resets
+    }
+}
+
+/// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
+///
+/// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to be
+/// exactly zero at the end of a step. A function that only touches zero causes none. A function that is zero at the
+/// start, or is brought to zero by a reset, has to leave zero first. A reset that carries a function from one sign to
+/// the other is no passage through zero.
+pub trait Events {
+    /// The events, in the order in which simultaneous ones are dealt with.
+    fn events(&self) -> &[Event];
+
+    /// Writes g_i(t, y) to `values`, as many as there are events.
+    ///
+    /// # Errors
+    /// [`Failure`] where one is not defined; it ends the integration.
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+
+    /// Turns y⁻ into y⁺ at event number `event`; called only if that [resets](Event::resets).
+    ///
+    /// # Errors
+    /// [`Failure`] where the new state is not defined; it ends the integration.
+    fn reset(&mut self, _event: usize, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+impl<E: Events + ?Sized> Events for &mut E {
+    fn events(&self) -> &[Event] {
+        (**self).events()
+    }
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        (**self).evaluate(t, y, values)
+    }
+    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        (**self).reset(event, t, y)
+    }
+}

@@ -1,0 +1,68 @@
+//! States read as coordinates and all quasi-velocities of a model.
+
+use pc_expr::Evaluator;
+use pc_mech::{LegendreTransform, MechError};
+
+/// How a state is read as coordinates and all quasi-velocities of the model, and written.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    /// Number of coordinates.
+    pub(super) coordinates: usize,
+    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η) with the free η.
+    pub(super) quasi_velocities: Evaluator,
+    /// Which of them are the free ones.
+    pub(super) free: Vec<usize>,
+    pub(super) parameters: Vec<f64>,
+    /// From momenta to quasi-velocities, where the state has momenta.
+    pub(super) transform: Option<LegendreTransform>,
+}
+
+impl Reading {
+    /// (x, η) with all η of a state.
+    ///
+    /// # Errors
+    /// [`MechError`] where momenta have no quasi-velocities.
+    pub(super) fn read(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        match &mut self.transform {
+            Some(transform) => {
+                let free = transform.to_quasi_velocities(t, state)?;
+                Ok(self.complete(t, &free))
+            }
+            None => Ok(self.complete(t, state)),
+        }
+    }
+
+    /// (x, η) with all η of one with the free ones.
+    pub(super) fn complete(&mut self, t: f64, free: &[f64]) -> Vec<f64> {
+        let n = self.coordinates;
+        let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
+        let (coordinates, quasi_velocities) = all.split_at_mut(n);
+        coordinates.copy_from_slice(&free[..n]);
+        self.quasi_velocities.eval(t, free, &self.parameters, quasi_velocities);
+        all
+    }
+
+    /// The state of an (x, η) with all η.
+    ///
+    /// # Errors
+    /// [`MechError`] where the quasi-velocities have no momenta.
+    pub(super) fn write(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
+        let (coordinates, eta) = all.split_at(self.coordinates);
+        let mut state = coordinates.to_vec();
+        state.extend(self.free.iter().map(|&s| eta[s]));
+        match &mut self.transform {
+            Some(transform) => transform.to_momenta(t, &state),
+            None => Ok(state),
+        }
+    }
+
+    /// The same with other values of the parameters.
+    pub(super) fn with_parameters(&self, parameters: &[f64]) -> Reading {
+        Reading { parameters: parameters.to_vec(), ..self.clone() }
+    }
+
+    /// Values of the parameters.
+    pub(super) fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+}

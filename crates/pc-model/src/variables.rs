@@ -1,0 +1,74 @@
+//! The equations of a model in the variables of their state.
+
+use pc_mech::{Canonical, Equations, Expr, System};
+
+use crate::bound::Form;
+use crate::error::ModelError;
+use crate::model::{Assembly, Model};
+
+/// The variables of the state beside the coordinates, and so which equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variables {
+    /// The quasi-velocities of (9), or of (30): independent ones if constraints say that the others vanish, all of
+    /// them with multipliers otherwise.
+    QuasiVelocities,
+    /// The momenta of (10).
+    Momenta,
+}
+
+impl Model {
+    /// The system whose quasi-velocities are those of the state, or those of its momenta.
+    ///
+    /// # Errors
+    /// [`ModelError`] at the constraint that there are no independent velocities under.
+    pub fn system_in<'g>(
+        &self,
+        assembly: &Assembly<'g>,
+        variables: Variables,
+    ) -> Result<System<'g>, ModelError> {
+        let free = || assembly.free_system().map_err(|error| self.constraint_error(error));
+        Ok(match (variables, assembly.bound.form()) {
+            (Variables::QuasiVelocities, Form::Held(_)) => assembly.system.without_observed(),
+            // What is observed may contain velocities that are not among the free ones.
+            (Variables::Momenta, Form::Held(_)) => free()?.without_observed(),
+            (_, Form::Free | Form::Vanishing(_)) => free()?,
+        })
+    }
+
+    /// M η̇ = r in these quasi-velocities; without the reactions of multipliers.
+    ///
+    /// # Errors
+    /// As [`system_in`](Model::system_in).
+    pub fn equations_in<'g>(
+        &self,
+        assembly: &Assembly<'g>,
+        variables: Variables,
+    ) -> Result<Equations<'g>, ModelError> {
+        match (variables, assembly.bound.form()) {
+            (Variables::QuasiVelocities, Form::Held(held)) => Ok(held.multipliers.equations().clone()),
+            _ => assembly.equations().map_err(|error| self.constraint_error(error)),
+        }
+    }
+
+    /// The canonical equations of the momenta of these quasi-velocities, η looked for from their start where they are
+    /// not closed.
+    ///
+    /// # Errors
+    /// [`ModelError`] if there are none.
+    pub fn canonical_in<'g>(
+        &self,
+        assembly: &Assembly<'g>,
+        variables: Variables,
+    ) -> Result<Canonical<'g>, ModelError> {
+        let system = self.system_in(assembly, variables)?;
+        let start = assembly.start_of(&state(&system));
+        let n = system.frame().coordinates().len();
+        let canonical = system.canonical().and_then(|canonical| canonical.with_guess(&start[n..]));
+        canonical.map_err(|error| self.derivation_error(error))
+    }
+}
+
+/// x, η
+pub(crate) fn state<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    [system.frame().coordinates(), system.quasi_velocities()].concat()
+}
