@@ -10,6 +10,7 @@ use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
 use crate::error::NonFinite;
+use crate::handles::numbers_of;
 use crate::linear::Work;
 use crate::offset::Offset;
 use crate::variation::Variation;
@@ -185,8 +186,8 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` and `ydot` are live serial vectors of length `dim`, distinct from each other.
     let (y, ydot) = unsafe {
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
-        (y, nan_slice(sys::N_VGetArrayPointer(ydot), callbacks.dim))
+        let y = slice::from_raw_parts(numbers_of(y), callbacks.dim);
+        (y, nan_slice(numbers_of(ydot), callbacks.dim))
     };
     callbacks.rhs(t, y, ydot)
 }

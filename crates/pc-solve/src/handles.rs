@@ -24,9 +24,9 @@ impl Vector {
         let raw = unsafe { sys::N_VNew_Serial(values.len() as sys::sunindextype, context.raw()) };
         let raw = context.check_new("N_VNew_Serial", raw)?;
         let mut vector = Vector { raw, data: NonNull::dangling(), len: values.len() };
-        // SAFETY: the vector is live; its data stay in place as long as it lives.
-        let data = unsafe { sys::N_VGetArrayPointer(vector.raw()) };
-        vector.data = context.check_new("N_VGetArrayPointer", data)?;
+        // SAFETY: the vector is live and serial; its data stay in place as long as it lives.
+        let data = unsafe { numbers_of(vector.raw()) };
+        vector.data = context.check_new("N_VNew_Serial", data)?;
         // SAFETY: the data have room for `values.len()` numbers and are not part of `values`.
         unsafe { vector.data.as_ptr().copy_from_nonoverlapping(values.as_ptr(), values.len()) };
         Ok(vector)
@@ -55,6 +55,17 @@ impl Vector {
         // SAFETY: as for `as_slice`, and borrowed exclusively.
         unsafe { slice::from_raw_parts_mut(self.data.as_ptr(), self.len) }
     }
+}
+
+/// Where the numbers of a vector are; `N_VGetArrayPointer` finds them by a call through a table, which would be felt in each
+/// evaluation of a small system.
+///
+/// # Safety
+/// The vector is live and serial.
+#[inline]
+pub(crate) unsafe fn numbers_of(vector: sys::N_Vector) -> *mut f64 {
+    // SAFETY: that is what a serial vector consists of.
+    unsafe { (*(*vector).content.cast::<sys::_N_VectorContent_Serial>()).data }
 }
 
 /// The least quotient of components, at most 0.5/0.9.

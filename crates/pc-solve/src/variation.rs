@@ -8,6 +8,7 @@ use sundials_sys as sys;
 
 use crate::callback::{Callbacks, nan_slice};
 use crate::error::NonFinite;
+use crate::handles::numbers_of;
 use crate::linearisation::Linearisation;
 
 /// The equations of the columns of S = ∂y/∂(p, y₀).
@@ -73,14 +74,14 @@ pub(crate) unsafe extern "C" fn rates<F: VectorField>(
     let (dim, count) = (callbacks.dim, usize::try_from(count).unwrap_or(0));
     // SAFETY: `y` is a live serial vector of length `dim`, the others are arrays of `count` vectors.
     let (y, columns, rates) = unsafe {
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), dim);
+        let y = slice::from_raw_parts(numbers_of(y), dim);
         (y, slice::from_raw_parts(columns, count), slice::from_raw_parts(rates, count))
     };
     let columns = columns.iter().zip(rates).map(|(&s, &rate)| {
         // SAFETY: all are live serial vectors of length `dim`, and the rates distinct from all others.
         unsafe {
-            let s = slice::from_raw_parts(sys::N_VGetArrayPointer(s), dim);
-            (s, nan_slice(sys::N_VGetArrayPointer(rate), dim))
+            let s = slice::from_raw_parts(numbers_of(s), dim);
+            (s, nan_slice(numbers_of(rate), dim))
         }
     });
     let mut variation = std::mem::take(&mut callbacks.variation);

@@ -9,7 +9,7 @@ use sundials_sys as sys;
 use super::Cvode;
 use crate::callback::{Callbacks, nan_slice};
 use crate::error::SolveError;
-use crate::handles::Vector;
+use crate::handles::{Vector, numbers_of};
 
 /// A vector field with integrals q̇ = r(t, y) that do not act on it.
 pub(crate) trait Quadratures {
@@ -72,8 +72,8 @@ unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: the vectors are live, of these lengths and distinct.
     let (y, rates) = unsafe {
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
-        (y, nan_slice(sys::N_VGetArrayPointer(rates), callbacks.field.count()))
+        let y = slice::from_raw_parts(numbers_of(y), callbacks.dim);
+        (y, nan_slice(numbers_of(rates), callbacks.field.count()))
     };
     callbacks.guard(|field, _| field.integrands(t, y, rates))
 }

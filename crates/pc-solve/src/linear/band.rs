@@ -7,6 +7,7 @@ use pc_expr::VectorField;
 use sundials_sys as sys;
 
 use crate::callback::Callbacks;
+use crate::handles::numbers_of;
 
 /// `CVLsJacFn`, from the field's sparse Jacobian.
 ///
@@ -30,7 +31,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     let (y, ldim, diagonal, data) = unsafe {
         let ldim = sys::SUNBandMatrix_LDim(matrix) as usize;
         let data = slice::from_raw_parts_mut(sys::SUNBandMatrix_Data(matrix), ldim * callbacks.dim);
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
+        let y = slice::from_raw_parts(numbers_of(y), callbacks.dim);
         (y, ldim, sys::SUNBandMatrix_StoredUpperBandwidth(matrix) as usize, data)
     };
     callbacks.entries(t, y, |(i, j), value, _| data[j * ldim + diagonal + i - j] = value)

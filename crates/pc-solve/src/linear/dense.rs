@@ -15,7 +15,7 @@ use super::handles::{Matrix, Solver};
 use crate::callback::{Callbacks, nan_slice};
 use crate::context::Context;
 use crate::error::{NonFinite, SolveError};
-use crate::handles::Vector;
+use crate::handles::{Vector, numbers_of};
 
 /// From this many components on the blocked factorisation is used. Measured interleaved, it takes 1/4 of the time of
 /// SUNDIALS' at 64 components, 1/5 at 100, 1/8 at 200 and 1/25 at 400, a solve 1/1.4, 1/1.7, 1/2 and 1/3; below some 20
@@ -117,7 +117,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim, column-major and contiguous.
     let (y, matrix) = unsafe {
-        let y = slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim);
+        let y = slice::from_raw_parts(numbers_of(y), callbacks.dim);
         (y, nan_slice(sys::SUNDenseMatrix_Data(matrix), callbacks.dim * callbacks.dim))
     };
     callbacks.jacobian(t, y, matrix)

@@ -9,6 +9,7 @@ use sundials_sys as sys;
 use super::handles::{Matrix, Solver};
 use crate::context::Context;
 use crate::error::SolveError;
+use crate::handles::numbers_of;
 
 const SUCCESS: c_int = 0;
 /// Of `SUNLinSolSetup`: a smaller step, so a smaller γ, may help.
@@ -86,8 +87,8 @@ unsafe extern "C" fn solve<S: Factors>(
     // SAFETY: both are live serial vectors of the same length; they are distinct.
     let (x, b) = unsafe {
         let len = sys::N_VGetLength(x) as usize;
-        let x = slice::from_raw_parts_mut(sys::N_VGetArrayPointer(x), len);
-        (x, slice::from_raw_parts(sys::N_VGetArrayPointer(b), len))
+        let x = slice::from_raw_parts_mut(numbers_of(x), len);
+        (x, slice::from_raw_parts(numbers_of(b), len))
     };
     x.copy_from_slice(b);
     // SAFETY: CVODES gives the matrix that it has set the solver up with.

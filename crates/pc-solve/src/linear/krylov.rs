@@ -12,7 +12,7 @@ use super::preconditioner::Preconditioner;
 use crate::callback::{Callbacks, FATAL, nan_slice};
 use crate::context::Context;
 use crate::error::{InputError, NonFinite, SolveError};
-use crate::handles::{Memory, Vector};
+use crate::handles::{Memory, Vector, numbers_of};
 use crate::options::positive;
 
 /// On which side of A = I − γ ∂f/∂y the inverse of the preconditioner P stands.
@@ -179,8 +179,8 @@ unsafe extern "C" fn product<F: VectorField>(
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `product` distinct from the others.
     let (y, v, product) = unsafe {
-        let numbers = |vector| slice::from_raw_parts(sys::N_VGetArrayPointer(vector), callbacks.dim);
-        (numbers(y), numbers(v), nan_slice(sys::N_VGetArrayPointer(product), callbacks.dim))
+        let numbers = |vector| slice::from_raw_parts(numbers_of(vector), callbacks.dim);
+        (numbers(y), numbers(v), nan_slice(numbers_of(product), callbacks.dim))
     };
     callbacks.product(t, y, v, product)
 }
@@ -201,7 +201,7 @@ unsafe extern "C" fn set_up<F: VectorField>(
     // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`.
-    let y = unsafe { slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim) };
+    let y = unsafe { slice::from_raw_parts(numbers_of(y), callbacks.dim) };
     let renew = may_keep == 0;
     // SAFETY: a place for the result.
     unsafe { *is_current = renew.into() };
@@ -233,8 +233,8 @@ unsafe extern "C" fn precondition<F: VectorField>(
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `z` distinct from the others.
     let (y, r, z) = unsafe {
-        let numbers = |vector| slice::from_raw_parts(sys::N_VGetArrayPointer(vector), callbacks.dim);
-        (numbers(y), numbers(r), nan_slice(sys::N_VGetArrayPointer(z), callbacks.dim))
+        let numbers = |vector| slice::from_raw_parts(numbers_of(vector), callbacks.dim);
+        (numbers(y), numbers(r), nan_slice(numbers_of(z), callbacks.dim))
     };
     let solve = |preconditioner: &mut dyn Preconditioner, field: &mut F, _y: &[f64]| {
         preconditioner.solve(r, z)?;

@@ -8,7 +8,7 @@ use sundials_sys as sys;
 
 use super::sparse;
 use crate::callback::{Callbacks, FATAL, SUCCESS};
-use crate::handles::Memory;
+use crate::handles::{Memory, numbers_of};
 use crate::inequality::Inequality;
 
 /// Difference quotients of f in the directions of sums of unit vectors, columns of one colour at once, with CVODE's
@@ -95,7 +95,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     };
     // SAFETY: all are live serial vectors of length `dim`, distinct from each other; `matrix` is ours.
     let (z, f, weights, matrix) = unsafe {
-        let numbers = |vector| slice::from_raw_parts(sys::N_VGetArrayPointer(vector), callbacks.dim);
+        let numbers = |vector| slice::from_raw_parts(numbers_of(vector), callbacks.dim);
         (numbers(z), numbers(f), numbers(weights), sparse::content(matrix))
     };
     let answer = if codes == [SUCCESS; 2] {

@@ -11,6 +11,7 @@ use super::handles::Matrix;
 use crate::callback::Callbacks;
 use crate::context::Context;
 use crate::error::{NonFinite, SolveError};
+use crate::handles::numbers_of;
 
 const SUCCESS: c_int = 0;
 
@@ -192,7 +193,6 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is ours, and CVODES has set it to 0.
-    let (y, matrix) =
-        unsafe { (slice::from_raw_parts(sys::N_VGetArrayPointer(y), callbacks.dim), content(matrix)) };
+    let (y, matrix) = unsafe { (slice::from_raw_parts(numbers_of(y), callbacks.dim), content(matrix)) };
     callbacks.entries(t, y, |_, value, k| matrix.set(k, value))
 }

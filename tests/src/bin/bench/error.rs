@@ -51,6 +51,9 @@ pub(crate) enum Error {
     /// The program to be timed failed.
     #[error("`{command}` failed: {message}")]
     Failed { command: String, message: String },
+    /// libpc refused a call.
+    #[error("libpc refused {call}")]
+    Refused { call: &'static str },
     /// A program could not be started.
     #[error("cannot start `{command}`")]
     Start { command: String, source: io::Error },

@@ -3,6 +3,7 @@
 //! Each prints a Markdown table as it goes and leaves it in `target/bench/NAME.md`. Only the ratios between variants
 //! of one run mean anything: variants are run in turns, so that whatever slows the machine slows all of them.
 
+mod capi;
 mod derive;
 mod error;
 mod hand;
@@ -34,6 +35,7 @@ const BENCHMARKS: &[Benchmark] = &[
     },
     Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
     Benchmark { name: "solve", about: "a whole integration, by us and by plain C", run: solve::run },
+    Benchmark { name: "capi", about: "one evaluation, from Rust and through libpc", run: capi::run },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];
 
