@@ -1,13 +1,15 @@
 //! `cargo xtask c-examples`: builds the examples in C and C++ with every compiler there is, runs them, and runs them again
-//! under the sanitizers.
+//! under the sanitizers and valgrind.
 
-use std::path::Path;
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{announce_and_run, cargo, target_directory, workspace_root};
+use crate::command::{announce_and_run, cargo, succeeds, target_directory, workspace_root};
 use crate::error::Error;
 use crate::tools::Machine;
-use crate::{install, setup};
+use crate::{c_fresh, c_interface, install, setup};
 
 /// A C compiler with its C++ compiler.
 const COMPILERS: [(&str, &str); 2] = [("gcc", "g++"), ("clang", "clang++")];
@@ -15,15 +17,26 @@ const COMPILERS: [(&str, &str); 2] = [("gcc", "g++"), ("clang", "clang++")];
 /// Memory errors, leaks and undefined behaviour end a program.
 const SANITIZED: &str = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all";
 
+/// Races end a program: those of its own code, for that of the library is not instrumented.
+const THREADS: &str = "-O1 -g -fsanitize=thread";
+
+/// Memory errors and leaks end a program, in the machine code of the library and in what it compiles as well.
+const MEMORY: &str = "valgrind --quiet --error-exitcode=9 --leak-check=full";
+
+/// Races, likewise.
+const RACES: &str = "valgrind --quiet --error-exitcode=9 --tool=helgrind";
+
+/// All of it, against an installation of what is built for debugging.
+///
+/// # Errors
+/// That of the first program that is wrong.
 pub(crate) fn run() -> Result<(), Error> {
     setup::native_tools()?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
     let place = target_directory()?.join("c-examples");
-    let installed = place.join("installed");
-    install::place(&target_directory()?.join("debug"), &installed)?;
-    let libraries = installed.join("lib");
-    let lib = libraries.display();
-    let shared = format!("-L{lib} -lpc -Wl,-rpath,{lib}");
+    let (built, installed) = (target_directory()?.join("debug"), place.join("installed"));
+    install::place(&built, &installed)?;
+    let library = Library::shared(&installed.join("lib"), &place);
 
     let machine = Machine::this();
     let compilers: Vec<_> =
@@ -32,34 +45,109 @@ pub(crate) fn run() -> Result<(), Error> {
         let remedy = "install gcc with g++, or clang".to_owned();
         return Err(Error::Missing { tools: vec!["a C and C++ compiler"], remedy });
     }
-    for (c, cpp) in compilers {
+    c_interface::symbols(&installed.join("lib"))?;
+    for compiler @ (c, _) in compilers {
+        let sundials = c_interface::sundials(&built);
+        c_interface::headers(compiler, &installed.join("include"), &sundials, &place.join("headers"))?;
         for (flags, build) in [("-O2", "plain"), (SANITIZED, "sanitized")] {
-            let build = place.join(c).join(build);
-            announce_and_run(&mut check(c, cpp, flags, &shared, &build))?;
+            announce_and_run(&mut library.check(compiler, flags, &format!("{c}/{build}")))?;
         }
     }
-    let archive = format!("{lib}/libpc.a {}", install::STATIC_LIBS);
-    announce_and_run(&mut check("cc", "c++", "-O2", &archive, &place.join("static")))?;
-    with_cmake(&installed, &place.join("cmake"))?;
-    if machine.has_program("pkg-config") {
-        let mut find = Command::new("pkg-config");
-        find.env("PKG_CONFIG_PATH", libraries.join("pkgconfig"));
-        announce_and_run(find.args(["--cflags", "--libs", "libpc"]))?;
+    if machine.has_program("valgrind") {
+        announce_and_run(library.check(("cc", "c++"), "-O1 -g", "valgrind").arg(format!("UNDER={MEMORY}")))?;
+        announce_and_run(threads_alone(
+            library.check(("cc", "c++"), "-O1 -g", "valgrind").arg(format!("UNDER={RACES}")),
+        ))?;
+    } else {
+        println!("skipped: valgrind, which is not installed");
     }
-    install::uninstall(&installed)
+    if works("cc", THREADS, &place) {
+        announce_and_run(threads_alone(&mut library.check(("cc", "c++"), THREADS, "threads")))?;
+    } else {
+        println!("skipped: ThreadSanitizer, which does not run here");
+    }
+    let archive = format!("{} {}", installed.join("lib/libpc.a").display(), install::STATIC_LIBS);
+    let archive = Library { flags: archive, place: place.clone() };
+    announce_and_run(&mut archive.check(("cc", "c++"), "-O2", "static"))?;
+    with_cmake(&installed, &place.join("cmake"))?;
+    c_fresh::run(&installed)?;
+    install::uninstall(&installed)?;
+    match &install::left(&installed)?[..] {
+        [] => Ok(()),
+        left => Err(Error::Installed { wrong: format!("not removed: {left:?}") }),
+    }
 }
 
-/// `make check` of the examples, everything built anew.
-fn check(c: &str, cpp: &str, flags: &str, library: &str, build: &Path) -> Command {
-    let mut make = Command::new("make");
-    make.current_dir(workspace_root().join("examples-c")).args(["--silent", "--always-make", "check"]);
-    make.args([format!("CC={c}"), format!("CXX={cpp}"), format!("CFLAGS={flags}")]);
-    make.args([
-        format!("CXXFLAGS={flags}"),
-        format!("PC_LIBS={library}"),
-        format!("BUILD={}", build.display()),
-    ]);
-    make
+/// The same with the compiler of the system only, plain and under the sanitizers, against what the tests have built.
+///
+/// # Errors
+/// That of the first program that is wrong.
+pub(crate) fn quick() -> Result<(), Error> {
+    let machine = Machine::this();
+    if let Some(missing) = ["cc", "c++", "make"].into_iter().find(|program| !machine.has_program(program)) {
+        println!("skipped: there is no `{missing}`");
+        return Ok(());
+    }
+    let (built, place) = (target_directory()?.join("debug"), target_directory()?.join("c-examples/quick"));
+    let (shared, libraries) = (built.join("deps/libpc.so"), place.join("lib"));
+    if !shared.exists() {
+        announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
+    }
+    let wrong = |source| Error::File { path: libraries.display().to_string(), source };
+    fs::create_dir_all(&libraries).map_err(wrong)?;
+    for name in ["libpc.so".to_owned(), format!("libpc.so.{}", crate::header::abi_version()?)] {
+        let _ = fs::remove_file(libraries.join(&name)); // one that is there would be in the way
+        symlink(&shared, libraries.join(name)).map_err(wrong)?;
+    }
+    let (compiler, include) = (("cc", "c++"), workspace_root().join("include"));
+    c_interface::headers(compiler, &include, &c_interface::sundials(&built), &place.join("headers"))?;
+    let library = Library::shared(&libraries, &place);
+    announce_and_run(&mut library.check(compiler, "-O1", "plain"))?;
+    if !works("cc", SANITIZED, &place) {
+        println!("skipped: the sanitizers, which do not run here");
+        return Ok(());
+    }
+    announce_and_run(&mut library.check(compiler, SANITIZED, "sanitized"))
+}
+
+/// How the examples are linked, and where they are built.
+struct Library {
+    flags: String,
+    place: PathBuf,
+}
+
+impl Library {
+    fn shared(libraries: &Path, place: &Path) -> Library {
+        let lib = libraries.display();
+        Library { flags: format!("-L{lib} -lpc -Wl,-rpath,{lib}"), place: place.to_owned() }
+    }
+
+    /// `make check` of the examples, everything built anew.
+    fn check(&self, (c, cpp): (&str, &str), flags: &str, build: &str) -> Command {
+        let mut make = Command::new("make");
+        make.current_dir(workspace_root().join("examples-c")).args(["--silent", "--always-make", "check"]);
+        make.args([format!("CC={c}"), format!("CXX={cpp}"), format!("CFLAGS={flags}")]);
+        make.args([
+            format!("CXXFLAGS={flags}"),
+            format!("PC_LIBS={}", self.flags),
+            format!("BUILD={}", self.place.join(build).display()),
+        ]);
+        make
+    }
+}
+
+/// Of the examples that one alone.
+fn threads_alone(make: &mut Command) -> &mut Command {
+    make.args(["PROGRAMS=threads", "WITH_GSL=", "WITH_SUNDIALS="])
+}
+
+/// Whether a program compiled with such flags can be built and run.
+fn works(compiler: &str, flags: &str, place: &Path) -> bool {
+    let (source, program) = (place.join("nothing.c"), place.join("nothing"));
+    let written = fs::write(&source, "int main(void) { return 0; }\n").is_ok();
+    let mut compile = Command::new(compiler);
+    compile.args(flags.split_whitespace()).arg(source).arg("-o").arg(&program);
+    written && succeeds(&mut compile) && succeeds(&mut Command::new(program))
 }
 
 fn with_cmake(installed: &Path, build: &Path) -> Result<(), Error> {
@@ -73,8 +161,6 @@ fn with_cmake(installed: &Path, build: &Path) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     #[test]
@@ -82,13 +168,16 @@ mod tests {
         let examples = workspace_root().join("examples-c");
         let [make, cmake] =
             ["Makefile", "CMakeLists.txt"].map(|name| fs::read_to_string(examples.join(name)).unwrap());
+        let words = |text: &str, name: &str| {
+            text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|w| w == name)
+        };
         for entry in fs::read_dir(examples).unwrap() {
             let path = entry.unwrap().path();
             if !path.extension().is_some_and(|ending| ending == "c" || ending == "cpp") {
                 continue;
             }
             let name = path.file_stem().unwrap().to_str().unwrap();
-            assert!(make.contains(name) && cmake.contains(name), "{name} is not built");
+            assert!(words(&make, name) && words(&cmake, name), "{name} is not built");
             assert!(fs::read_to_string(&path).unwrap().lines().count() < 120, "{name} is long");
         }
     }

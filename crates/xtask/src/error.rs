@@ -27,6 +27,8 @@ pub(crate) enum Error {
     Failed { command: String, status: ExitStatus },
     /// Tests failed, or their programs did.
     Tests { counts: Counts, failure: Box<Error> },
+    /// The installed library is not as it should be.
+    Installed { wrong: String },
     /// Every test binary was empty, or none was run.
     NoTests,
 }
@@ -59,6 +61,7 @@ impl fmt::Display for Error {
             Error::File { path, source } => write!(f, "{path}: {source}"),
             Error::Failed { command, status } => write!(f, "`{command}` failed: {status}"),
             Error::Tests { failure, .. } => failure.fmt(f),
+            Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::NoTests => f.write_str("no test was run"),
         }
     }

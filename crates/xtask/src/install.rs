@@ -10,8 +10,11 @@ use crate::error::Error;
 use crate::header::{abi_version, functions_of_header, macro_of_header};
 use crate::setup;
 
-/// What a program linked with the archive needs beside it.
-pub(crate) const STATIC_LIBS: &str = "-lm -lpthread -ldl -lrt -lutil -lgcc_s";
+/// What a program linked with the archive needs beside it, and what compilers add by themselves.
+pub(crate) const STATIC_LIBS: &str = "-lm -lpthread -ldl -lrt -lutil";
+
+/// Directories of ours alone.
+const OWN: [&str; 2] = ["lib/cmake/pc", "include/pc"];
 
 /// A file of the installation, below the prefix.
 struct Installed {
@@ -79,9 +82,28 @@ pub(crate) fn uninstall(prefix: &Path) -> Result<(), Error> {
             _ => {}
         }
     }
-    // Of our own, and only if nothing else is in it.
-    let _ = fs::remove_dir(prefix.join("lib/cmake/pc"));
+    for directory in OWN {
+        let _ = fs::remove_dir(prefix.join(directory)); // only if nothing else is in it
+    }
     Ok(())
+}
+
+/// The files and links below a directory, in order.
+///
+/// # Errors
+/// [`Error::File`] where one cannot be read.
+pub(crate) fn left(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory).map_err(|source| file(directory, source))? {
+        let path = entry.map_err(|source| file(directory, source))?.path();
+        if path.is_dir() && !path.is_symlink() {
+            found.append(&mut left(&path)?);
+        } else {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
 /// The files of the library that was built in a directory.
@@ -93,6 +115,7 @@ fn files(built: &Path, prefix: &Path) -> Result<Vec<Installed>, Error> {
     Ok(vec![
         of("include/pc.h", Contents::Copy(root.join("include/pc.h"))),
         of("include/pc.hpp", Contents::Copy(root.join("include/pc.hpp"))),
+        of("include/pc/cvode.h", Contents::Copy(root.join("include/pc/cvode.h"))),
         of(&format!("lib/libpc.so.{abi}"), Contents::Copy(built.join("libpc.so"))),
         of("lib/libpc.so", Contents::Link(format!("libpc.so.{abi}"))),
         of("lib/libpc.a", Contents::Archive(built.join("libpc.a"))),
@@ -171,6 +194,23 @@ mod tests {
         for Installed { path, .. } in files(Path::new("/built"), Path::new("/opt/pc")).unwrap() {
             assert!(path.starts_with("lib/") || path.starts_with("include/"), "{path}");
         }
+    }
+
+    #[test]
+    fn all_that_is_installed_is_removed_and_nothing_else() {
+        let prefix = tempfile::tempdir().unwrap();
+        let prefix = std::path::absolute(prefix.path()).unwrap();
+        let own = ["include/other.h", "lib/cmake/pc/other.cmake"].map(|path| prefix.join(path));
+        let files: Vec<_> = files(Path::new("/built"), &prefix).unwrap();
+        for path in files.iter().map(|file| prefix.join(&file.path)).chain(own.clone()) {
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "").unwrap();
+        }
+        assert_eq!(left(&prefix).unwrap().len(), files.len() + own.len());
+        uninstall(&prefix).unwrap();
+        assert_eq!(left(&prefix).unwrap(), own);
+        assert!(!prefix.join("include/pc").exists() && prefix.join("lib/cmake/pc").exists());
+        uninstall(&prefix).unwrap(); // there is nothing, which is no failure
     }
 
     #[test]

@@ -5,6 +5,8 @@
 
 mod bench;
 mod c_examples;
+mod c_fresh;
+mod c_interface;
 mod command;
 mod counts;
 mod demo;
@@ -29,7 +31,7 @@ usage: cargo xtask <command>
   test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
   header           write include/pc.h from the sources of the C interface
-  c-examples       build the examples in C and C++, run them, and run them under the sanitizers
+  c-examples       build the examples in C and C++, run them, and run them under sanitizers and valgrind
   install --prefix DIR     build the C library and install it with its headers; `uninstall` removes it
   setup            install what the build needs (the commands above do it by themselves)
   help             this text";

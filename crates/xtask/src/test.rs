@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::command::{announce_and_run, announce_and_tee, cargo, succeeds};
 use crate::counts::{Counter, Counts};
 use crate::error::Error;
-use crate::setup;
+use crate::{c_examples, setup};
 
 /// Runs the stages in order and stops at the first that fails.
 ///
@@ -19,6 +19,7 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
     cargo_stage("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     let counts = tests()?;
     if !quick {
+        stage("C examples", c_examples::quick)?;
         let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
         cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
         stage("licences", licences)?;

@@ -1,0 +1,262 @@
+/*
+ * pc/cvode.h: the equations of a pc_system for CVODE or CVODES of SUNDIALS 6 or 7, your own one, in C99 or C++.
+ *
+ *     pc_cvode equations;
+ *     if (pc_cvode_init(&equations, system, &error) == PC_OK) {
+ *         CVodeInit(cvode, pc_cvode_rhs, t, y);
+ *         CVodeSetUserData(cvode, &equations);
+ *         CVodeSetLinearSolver(cvode, solver, matrix);   the matrix dense, or sparse by columns
+ *         CVodeSetJacFn(cvode, pc_cvode_jac);
+ *         CVodeSetProjFn(cvode, pc_cvode_proj);          for CV_BDF, where there is something to be kept
+ *         CVode(cvode, ...);
+ *     }
+ *     pc_cvode_free(&equations);
+ *
+ * The user data of all functions is a pc_cvode; each integration has its own. Nothing here is compiled into libpc, which has
+ * another SUNDIALS inside and shows none of it: the two know nothing of each other. Vectors are those whose numbers
+ * N_VGetArrayPointer gives, such as N_VNew_Serial's, of the length pc_system_dim.
+ *
+ * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that CVODE tries a smaller step;
+ * -1 for what no step helps. Then `error` of the pc_cvode says why.
+ */
+
+#ifndef PC_CVODE_H
+#define PC_CVODE_H
+
+#include <stdlib.h>
+
+#include <sundials/sundials_matrix.h>
+#include <sundials/sundials_nvector.h>
+#include <sundials/sundials_types.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+#include <pc.h>
+
+#ifndef SUNDIALS_DOUBLE_PRECISION
+#error "pc/cvode.h needs a SUNDIALS of double precision"
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A root: where the observable of this place, as pc_system_observable_name counts, has this value. */
+typedef struct {
+    size_t observable;
+    double value;
+} pc_cvode_root;
+
+/* The equations of an integration. Made by pc_cvode_init; what is not said to be yours to set, leave. */
+typedef struct {
+    /* Copies of its own. Their parameters are set by pc_kernel_set_parameters and pc_system_set_parameters, both. */
+    pc_kernel *kernel;
+    pc_system *system;
+    /* Yours to set, for pc_cvode_roots: an array that you keep, as long as the number given to CVodeRootInit. */
+    const pc_cvode_root *roots;
+    size_t roots_length;
+    /* Why a function here failed last, or NULL. */
+    pc_error *error;
+    /* Room for all observables. */
+    double *observables;
+} pc_cvode;
+
+/* Frees what pc_cvode_init made. Twice does no harm. */
+static inline void pc_cvode_free(pc_cvode *equations)
+{
+    pc_kernel_free(equations->kernel);
+    pc_system_free(equations->system);
+    pc_error_free(equations->error);
+    free(equations->observables);
+    equations->kernel = NULL;
+    equations->system = NULL;
+    equations->error = NULL;
+    equations->observables = NULL;
+}
+
+/* Takes the equations of a system with its parameters as they are now, and no roots. After a failure there is nothing to be
+ * freed; PC_INTERNAL without an error is that there is no memory. */
+static inline pc_status pc_cvode_init(pc_cvode *equations, const pc_system *system, pc_error **error)
+{
+    const size_t observables = pc_system_observable_count(system);
+    pc_status status;
+    equations->kernel = NULL;
+    equations->system = NULL;
+    equations->roots = NULL;
+    equations->roots_length = 0;
+    equations->error = NULL;
+    equations->observables = NULL;
+    status = pc_system_clone(system, &equations->system, error);
+    if (status == PC_OK) {
+        status = pc_kernel_new(equations->system, &equations->kernel, error);
+    }
+    if (status == PC_OK && observables > 0) {
+        equations->observables = (double *)malloc(observables * sizeof(double));
+        status = equations->observables ? PC_OK : PC_INTERNAL;
+    }
+    if (status != PC_OK) {
+        pc_cvode_free(equations);
+    }
+    return status;
+}
+
+/* The numbers of a vector, if they are `dim`. */
+static inline double *pc_cvode_numbers(N_Vector vector, size_t dim)
+{
+    return N_VGetLength(vector) == (sunindextype)dim ? N_VGetArrayPointer(vector) : NULL;
+}
+
+/* What CVODE is told of a status. */
+static inline int pc_cvode_answer(pc_status status)
+{
+    return status == PC_OK ? 0 : status == PC_EVALUATION ? 1 : -1;
+}
+
+/* Where the next error goes, in place of the last one. */
+static inline pc_error **pc_cvode_error(pc_cvode *equations)
+{
+    pc_error_free(equations->error);
+    equations->error = NULL;
+    return &equations->error;
+}
+
+/* CVRhsFn: ẏ = f(t, y). */
+static inline int pc_cvode_rhs(double t, N_Vector y, N_Vector ydot, void *user_data)
+{
+    pc_cvode *equations = (pc_cvode *)user_data;
+    const size_t n = pc_kernel_dim(equations->kernel);
+    double *from = pc_cvode_numbers(y, n), *to = pc_cvode_numbers(ydot, n);
+    int answer = from && to ? pc_kernel_rhs(t, from, to, equations->kernel) : -1;
+    if (answer != 0 && from && to) {
+        /* Only the system says why. */
+        pc_system_rhs(equations->system, t, from, n, to, n, pc_cvode_error(equations));
+    }
+    return answer;
+}
+
+/* The Jacobian as a sparse matrix by columns. */
+static inline int pc_cvode_sparse_jac(double t, const double *y, SUNMatrix jacobian, pc_cvode *equations)
+{
+    const size_t n = pc_kernel_dim(equations->kernel);
+    size_t entries = 0, i;
+    const size_t *starts = NULL, *rows = NULL;
+    pc_status status = pc_system_jacobian_pattern(equations->system, &entries, &starts, &rows, pc_cvode_error(equations));
+    if (status != PC_OK) {
+        return pc_cvode_answer(status);
+    }
+    if (SM_SPARSETYPE_S(jacobian) != CSC_MAT || SM_NNZ_S(jacobian) < (sunindextype)entries) {
+        return -1;
+    }
+    for (i = 0; i <= n; i++) {
+        SM_INDEXPTRS_S(jacobian)[i] = (sunindextype)starts[i];
+    }
+    for (i = 0; i < entries; i++) {
+        SM_INDEXVALS_S(jacobian)[i] = (sunindextype)rows[i];
+    }
+    status = pc_system_sparse_jacobian(equations->system, t, y, n, SM_DATA_S(jacobian), entries, pc_cvode_error(equations));
+    return pc_cvode_answer(status);
+}
+
+/* CVLsJacFn: ∂f/∂y, for SUNDenseMatrix, and for SUNSparseMatrix of type CSC_MAT with room for the entries that
+ * pc_system_jacobian_pattern counts. */
+static inline int pc_cvode_jac(double t, N_Vector y, N_Vector fy, SUNMatrix jacobian, void *user_data, N_Vector tmp1,
+                               N_Vector tmp2, N_Vector tmp3)
+{
+    pc_cvode *equations = (pc_cvode *)user_data;
+    const size_t n = pc_kernel_dim(equations->kernel);
+    const double *from = pc_cvode_numbers(y, n);
+    int answer;
+    (void)fy, (void)tmp1, (void)tmp2, (void)tmp3;
+    if (from && SUNMatGetID(jacobian) == SUNMATRIX_SPARSE && SM_COLUMNS_S(jacobian) == (sunindextype)n) {
+        return pc_cvode_sparse_jac(t, from, jacobian, equations);
+    }
+    if (!from || SUNMatGetID(jacobian) != SUNMATRIX_DENSE || SM_LDATA_D(jacobian) != (sunindextype)(n * n)) {
+        return -1;
+    }
+    answer = pc_kernel_jacobian(t, from, SM_DATA_D(jacobian), equations->kernel);
+    if (answer != 0) {
+        pc_system_jacobian(equations->system, t, from, n, SM_DATA_D(jacobian), n * n, pc_cvode_error(equations));
+    }
+    return answer;
+}
+
+/* CVLsJacTimesVecFn: (∂f/∂y) v, for Krylov solvers. */
+static inline int pc_cvode_jtimes(N_Vector v, N_Vector product, double t, N_Vector y, N_Vector fy, void *user_data,
+                                  N_Vector tmp)
+{
+    pc_cvode *equations = (pc_cvode *)user_data;
+    const size_t n = pc_kernel_dim(equations->kernel);
+    (void)fy, (void)tmp;
+    return pc_cvode_answer(pc_system_jvp(equations->system, t, pc_cvode_numbers(y, n), n, pc_cvode_numbers(v, n), n,
+                                         pc_cvode_numbers(product, n), n, pc_cvode_error(equations)));
+}
+
+/* CVProjFn: the correction c that moves the state to Π(y) = y + c, where constraints are satisfied and the integrals of
+ * pc_model_keep have their values at the start of the model (so start CVODE there), to rounding, whatever `tolerance` is.
+ *
+ * The error estimate e is projected as CVODE asks, by the derivative of Π at y + c, which is Π(y + c + e) - (y + c) but for
+ * terms of the order e². It is what an error leaves after projection; across the surface nothing is left.
+ *
+ * CVODE projects at the ends of steps, with CV_BDF only, and interpolates between them: states that CVode gives in CV_NORMAL
+ * are off the surface by the error of a step. Let it stop at the times wanted (CVodeSetStopTime), or use pc_system_project. */
+static inline int pc_cvode_proj(double t, N_Vector y, N_Vector correction, double tolerance, N_Vector error_estimate,
+                                void *user_data)
+{
+    pc_cvode *equations = (pc_cvode *)user_data;
+    const size_t n = pc_kernel_dim(equations->kernel);
+    const double *from = pc_cvode_numbers(y, n);
+    double *c = pc_cvode_numbers(correction, n), *e = error_estimate ? pc_cvode_numbers(error_estimate, n) : NULL;
+    pc_status status;
+    size_t i;
+    (void)tolerance;
+    if (!from || !c || (error_estimate && !e)) {
+        return -1;
+    }
+    for (i = 0; i < n; i++) {
+        c[i] = from[i];
+    }
+    status = pc_system_project(equations->system, t, c, n, pc_cvode_error(equations));
+    if (status == PC_OK && e) {
+        for (i = 0; i < n; i++) {
+            e[i] += c[i];
+        }
+        status = pc_system_project(equations->system, t, e, n, pc_cvode_error(equations));
+        for (i = 0; i < n; i++) {
+            e[i] -= c[i];
+        }
+    }
+    for (i = 0; i < n; i++) {
+        c[i] -= from[i];
+    }
+    return pc_cvode_answer(status);
+}
+
+/* CVRootFn: each of `roots`, its observable less its value. */
+static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_data)
+{
+    pc_cvode *equations = (pc_cvode *)user_data;
+    const size_t n = pc_kernel_dim(equations->kernel), observables = pc_system_observable_count(equations->system);
+    pc_status status = pc_system_observe(equations->system, t, pc_cvode_numbers(y, n), n, equations->observables, observables,
+                                         pc_cvode_error(equations));
+    size_t i;
+    if (status != PC_OK) {
+        return pc_cvode_answer(status);
+    }
+    for (i = 0; i < equations->roots_length; i++) {
+        const pc_cvode_root root = equations->roots[i];
+        if (root.observable >= observables) {
+            return -1;
+        }
+        gout[i] = equations->observables[root.observable] - root.value;
+        if (gout[i] != gout[i]) {
+            return -1; /* CVODE would pass over what is no number. */
+        }
+    }
+    return 0;
+}
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* PC_CVODE_H */
