@@ -18,6 +18,12 @@ pub trait VectorField {
     /// [`Failure`] where f is not defined; a recoverable one lets an integrator try a smaller step.
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
+    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not, integrators look
+    /// at each.
+    fn checks_rates(&self) -> bool {
+        false
+    }
+
     /// Whether [`jacobian`](VectorField::jacobian) is implemented; if not, integrators take difference
     /// quotients.
     fn has_jacobian(&self) -> bool {
@@ -119,6 +125,9 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         (**self).rhs(t, y, ydot)
+    }
+    fn checks_rates(&self) -> bool {
+        (**self).checks_rates()
     }
     fn has_jacobian(&self) -> bool {
         (**self).has_jacobian()

@@ -38,6 +38,9 @@ impl<F: VectorField> Callbacks<F> {
         self.guard(|field, offset| {
             let y = offset.map_or(y, |offset| offset.state_of(y));
             field.rhs(t, y, ydot)?;
+            if field.checks_rates() {
+                return Ok(());
+            }
             match ydot.iter().position(|rate| !rate.is_finite()) {
                 None => Ok(()),
                 Some(i) => Err(Failure::recoverable(NonFinite::Rate {

@@ -373,7 +373,10 @@ impl<F: VectorField> Cvode<F> {
         if code != sys::CV_SUCCESS && code != sys::CV_TSTOP_RETURN {
             return Err(self.failed(Reason::Cvode { code: code.into(), message }, failure));
         }
-        if let Some(i) = self.work.as_slice().iter().position(|value| !value.is_finite()) {
+        // Looked at several at a time; which it is matters only if there is one.
+        if !self.work.as_slice().iter().fold(true, |finite, value| finite & value.is_finite())
+            && let Some(i) = self.work.as_slice().iter().position(|value| !value.is_finite())
+        {
             let component = self.field().component_name(i);
             let value = self.work.as_slice()[i];
             return Err(self.failed(Reason::Overflow { component, value, t }, failure));

@@ -48,27 +48,32 @@ impl Fault {
     }
 }
 
-/// Finds what is to blame for values that are not finite.
+/// That all values are finite.
 ///
 /// # Errors
-/// [`Fault::Expr`] for the first such value on the way to them, if there is one.
+/// [`Fault::Expr`] for the first that is not on the way to them.
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
 ) -> Result<(), Fault> {
-    if values.iter().all(|value| value.is_finite()) {
+    // Without an early end, which would keep the numbers from being looked at several at a time.
+    if values.iter().fold(true, |finite, value| finite & value.is_finite()) {
         Ok(())
     } else {
-        blame(evaluator, (t, state, parameters))
+        Err(blame(evaluator, (t, state, parameters)))
     }
 }
 
-/// As [`check_finite`] for values that are known not to be.
+/// What is to blame for values that are not finite.
 #[cold]
-pub(crate) fn blame(
-    evaluator: &Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
-) -> Result<(), Fault> {
-    evaluator.diagnose(t, state, parameters).map_or(Ok(()), |error| Err(Fault::Expr(error)))
+pub(crate) fn blame(evaluator: &Evaluator, (t, state, parameters): (f64, &[f64], &[f64])) -> Fault {
+    // The operations of the interpreter, which are not fused, may all end where those of machine code do not.
+    let fused = || ExprError::NotFinite {
+        expression: "a result of fused operations".to_owned(),
+        value: f64::NAN,
+        t,
+        state: Vec::new(),
+    };
+    Fault::Expr(evaluator.diagnose(t, state, parameters).unwrap_or_else(fused))
 }

@@ -260,6 +260,10 @@ impl VectorField for Motion {
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
+    fn checks_rates(&self) -> bool {
+        true
+    }
+
     fn has_jacobian(&self) -> bool {
         self.options.jacobian
     }

@@ -83,13 +83,12 @@ impl Unrolled {
         let (rates, moving) = self.outputs.split_at(y.len());
         self.pivots.check(y, p, moving)?;
         // One pass, number by number: a copy in wider pieces would wait for the numbers just written.
+        let mut finite = true;
         for (ydot, &rate) in ydot.iter_mut().zip(rates) {
             *ydot = rate;
-            if !rate.is_finite() {
-                blame(&self.rates, (t, y, p))?;
-            }
+            finite &= rate.is_finite();
         }
-        Ok(())
+        if finite { Ok(()) } else { Err(blame(&self.rates, (t, y, p))) }
     }
 
     pub(crate) fn jacobian(

@@ -6,7 +6,7 @@ use std::ffi::{CString, c_int, c_void};
 use std::hint::black_box;
 use std::ptr;
 
-use pc::{pc_kernel, pc_model, pc_status, pc_system};
+use pc::{pc_kernel, pc_status, pc_system};
 use pc_mech::{Graph, VectorField};
 use pc_model::{Builtin, Model};
 
@@ -74,7 +74,7 @@ struct Handles {
 impl Handles {
     fn of(name: &'static str) -> Result<Handles, Error> {
         let (mut model, mut system, mut kernel) =
-            (ptr::null_mut::<pc_model>(), ptr::null_mut(), ptr::null_mut());
+            (ptr::null_mut::<pc::pc_model>(), ptr::null_mut(), ptr::null_mut());
         let text = CString::new(name).unwrap_or_default();
         // SAFETY: places for handles, a zero-terminated text, and null where the header allows it.
         let made = unsafe {
