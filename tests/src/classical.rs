@@ -18,8 +18,8 @@ mod tops;
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
 pub use nonholonomic::{
     appell_hamel, ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle,
-    snakeboard, stiff_sleigh, suslov, suslov_in_gravity, tilted_disk, vertical_disk, vertical_disk_driven,
-    voronets,
+    rocking_disk, snakeboard, stick_slip_sleigh, stiff_sleigh, suslov, suslov_in_gravity, tilted_disk,
+    vertical_disk, vertical_disk_driven, voronets,
 };
 pub use orbit::Satellite;
 pub use particles::{
@@ -73,12 +73,14 @@ pub const MODELS: &[&str] = &[
     "relativistic-particle",
     "rigid-body-spring",
     "rocking-block",
+    "rocking-disk",
     "rotating-oscillator",
     "snakeboard",
     "snakeboard-driven",
     "spherical-pendulum-cartesian",
     "spherical-pendulum-meridian",
     "stick-slip-block",
+    "stick-slip-sleigh",
     "stiff-sleigh",
     "suslov",
     "suslov-in-gravity",
@@ -125,6 +127,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
         "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
         "rocking-block" => |_, y, dy| dy.copy_from_slice(&[y[2], 0.0, y[0] - 0.2 * y[1]]),
+        "rocking-disk" => |_, y, dy| rocking_disk(y, dy),
         "rotating-oscillator" => |_, y, dy| rotating_oscillator(y, dy),
         "snakeboard" => |_, y, dy| snakeboard([0.0, 0.0], y, dy),
         "snakeboard-driven" => |t, y, dy| snakeboard([(2.0 * t).sin() / 2.0, (3.0 * t).cos() / 5.0], y, dy),
@@ -132,6 +135,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "spherical-pendulum-meridian" => |_, y, dy| spherical_pendulum_on_meridians(y, dy),
         // σ = 1 slips, σ = 0 is held
         "stick-slip-block" => |t, y, dy| dy.copy_from_slice(&[y[2], 0.0, y[1] * (t / 2.0 - y[0] - 0.5)]),
+        "stick-slip-sleigh" => |_, y, dy| stick_slip_sleigh(y, dy),
         "stiff-sleigh" => stiff_sleigh,
         "suslov" => |_, y, dy| suslov(y, dy),
         "suslov-in-gravity" => |_, y, dy| suslov_in_gravity(y, dy),
@@ -178,8 +182,9 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
         }
         "damped-oscillator" | "damped-oscillator-scaled-frame" => (rng.uniform(0.0, 3.0), rng.normals(2)),
         "bouncing-ball" => (0.0, rng.normals(2)),
-        "rocking-block" => (0.0, rng.normals(3)),
+        "rocking-block" | "rocking-disk" => (0.0, rng.normals(3)),
         "stick-slip-block" => (rng.uniform(0.0, 3.0), rng.normals(3)),
+        "stick-slip-sleigh" => (0.0, rng.normals(6)),
         "double-pendulum-cartesian" | "double-pendulum-links" => {
             let mut y = hanging_links(rng, 2);
             y.extend(rng.normals(2));

@@ -152,6 +152,7 @@ fn lagranges_equations_are_poincares() {
             "ball-in-cylinder",
             "stick-slip-block",
             "rocking-block",
+            "stick-slip-sleigh",
         ]
     );
 }

@@ -205,6 +205,7 @@ fn lagranges_equations_reach_the_references() {
             "turning-hoop",
             "turning-wire",
             "ball-in-cylinder",
+            "stick-slip-sleigh",
             "suslov",
             "suslov-in-gravity",
             "turntable",

@@ -97,6 +97,7 @@ impl<'g> Report<'g> {
         {
             integrals::add_energy_of_all(&mut integrals, equations, &near, energy);
         }
+        integrals::say_what_jumps(&mut integrals, assembly);
         Ok(Report {
             title: input::title(model).to_owned(),
             coordinates: names(frame.coordinates()),

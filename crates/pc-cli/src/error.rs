@@ -41,6 +41,12 @@ pub enum CliError {
     /// `--project` of something that is not an integral.
     #[error("--project: {0}")]
     UnknownIntegral(UnknownIntegral),
+    /// Two `--set` of one parameter.
+    #[error("--set: `{name}` is given two values; leave one out")]
+    SetTwice {
+        /// The parameter.
+        name: String,
+    },
     /// `--set` to something that is not a number.
     #[error("--set {name}={value}: `{value}` is not a finite number; {}", known_parameters(known))]
     BadValue {
@@ -127,6 +133,7 @@ impl CliError {
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
             | CliError::UnknownIntegral(_)
+            | CliError::SetTwice { .. }
             | CliError::BadValue { .. }
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }

@@ -21,7 +21,10 @@ use crate::error::CliError;
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
     model.project_start(arguments.project_start);
-    for Setting { name, value } in &arguments.set {
+    for (i, Setting { name, value }) in arguments.set.iter().enumerate() {
+        if arguments.set[..i].iter().any(|known| known.name == *name) {
+            return Err(CliError::SetTwice { name: name.clone() });
+        }
         match value.parse::<f64>() {
             Ok(value) if value.is_finite() => model.set(name, value)?,
             _ => {

@@ -9,11 +9,12 @@ use std::time::Instant;
 
 use clap::Args;
 use pc_model::{Flow, Model};
-use pc_solve::{Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_checkpointed};
+use pc_solve::{
+    Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_with_events_checkpointed,
+};
 
 use crate::args::RunForm;
 use crate::error::CliError;
-use crate::follow::without_events;
 use crate::identity::{self, Identity};
 use crate::output::atomic;
 use crate::plan::Plan;
@@ -71,9 +72,6 @@ pub enum SavingError {
         /// What is different, then and now.
         what: String,
     },
-    /// A model whose motion jumps.
-    #[error("--checkpoint: a run of a model with [events] cannot be saved")]
-    Events,
     /// A checkpoint would overwrite something else.
     #[error("--checkpoint {}: the file is there and is no checkpoint; give another name", path.display())]
     Occupied {
@@ -109,9 +107,6 @@ impl Saving {
         let Some(path) = arguments.checkpoint.as_ref().or(arguments.resume.as_ref()) else {
             return if arguments.every.is_some() { Err(SavingError::Nowhere.into()) } else { Ok(None) };
         };
-        if !model.document().events.is_empty() {
-            return Err(SavingError::Events.into());
-        }
         let overwritten = arguments.checkpoint.as_ref().and_then(|path| fs::read(path).ok());
         if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
             return Err(SavingError::Occupied { path: path.clone() }.into());
@@ -175,9 +170,13 @@ impl Saving {
             }
         };
         // The equations as they were compiled, without memory of what they were evaluated at.
-        let field = || flow.motion.clone();
-        let solved = solve_checkpointed(field, from, &plan.times(), &plan.options(), self.every, save, step);
-        let (motion, error) = without_events(solved);
+        let parts = || (flow.motion.clone(), flow.events.clone());
+        let (times, options) = (plan.times(), plan.options());
+        let solved = solve_with_events_checkpointed(parts, from, &times, &options, self.every, save, step);
+        let (motion, error) = match solved {
+            Ok(motion) => (motion, None),
+            Err(failure) => (failure.reached, Some(failure.error)),
+        };
         if motion.ending == Some(Ending::Stopped) {
             let path = self.path.display();
             text::say(format_args!(

@@ -104,7 +104,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     journal.remove()?;
     text::say(format_args!("{}", summary(&title, &plan, &tally, before, elapsed)));
     match tally.others.first() {
-        Some((_, _, first)) if tally.completed == 0 => {
+        Some((_, _, first)) if tally.completed + tally.by_event == 0 => {
             Err(SweepError::NoneCompleted { members, first: first.clone() }.into())
         }
         _ => Ok(()),
@@ -154,8 +154,11 @@ fn summary(title: &str, plan: &Plan, tally: &journal::Tally, before: u64, elapse
     let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
     line("method", format!("{}, rtol {:e}, atol {:e}", plan.method, plan.rtol, plan.atol));
     line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));
-    let others = tally.done - tally.completed;
+    let others = tally.done - tally.completed - tally.by_event;
     let mut members = format!("{}, {} completed", tally.done, tally.completed);
+    if tally.by_event > 0 {
+        members += &format!(", {} ended by an event", tally.by_event);
+    }
     if others > 0 {
         members += &format!(", {others} not");
     }

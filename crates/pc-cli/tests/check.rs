@@ -282,3 +282,33 @@ fn no_steady_motion_is_claimed_where_there_is_none() {
         assert_eq!(report(model)["steady_motion"], Value::Null);
     }
 }
+
+/// What resets change is conserved between them; what they leave as it is, always.
+#[test]
+fn resets_may_change_what_is_conserved() {
+    let verdict =
+        |report: &Value, name: &str| integral(report, name)["verdict"].as_str().expect("text").to_owned();
+    let between = "conserved between events (proved)";
+    assert_eq!(verdict(&report("bouncing-ball"), "energy"), between);
+    assert_eq!(verdict(&report("rocking-disk"), "energy"), between);
+    assert!(check("bouncing-ball").contains("energy  conserved between events (proved)\n"));
+    // A ball in the plane: the floor takes of what goes down, and leaves what goes on.
+    let plane = |reset: &str| {
+        format!(
+            "[parameters]\ne = 1.0\n[coordinates]\nx = 0.0\ny = 1.0\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
+             potential = \"y\"\n[integrals]\nalong = \"x'\"\n[events.floor]\nwhen = \"y\"\n{reset}[simulation]\nt_end = 1.0\n"
+        )
+    };
+    let of = |reset: &str| {
+        let report = report(&plane(reset));
+        ["along", "energy"].map(|name| verdict(&report, name))
+    };
+    let always = "conserved (proved)";
+    assert_eq!(of(""), [always, always]);
+    assert_eq!(of("terminal = true\n"), [always, always]);
+    // With e = 1 nothing is lost.
+    let here = "conserved for these parameters (proved)";
+    assert_eq!(of("reset = { \"y'\" = \"-e*y'\" }\n"), [always, here]);
+    assert_eq!(of("reset = { \"y'\" = \"-e*y'/2\" }\n"), [always, between]);
+    assert_eq!(of("reset = { \"y'\" = \"-y'\", \"x'\" = \"x'/2\" }\n"), [between, between]);
+}

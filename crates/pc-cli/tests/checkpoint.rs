@@ -203,3 +203,119 @@ fn what_is_not_a_checkpoint_of_this_run_is_refused() {
     // --every is known from the file.
     assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
 }
+
+/// The checkpoints that a run writes, as they are seen on its way, and what it has written at its end.
+fn seen(run: &Run, output: &str) -> (Vec<Vec<u8>>, Vec<u8>) {
+    let mut child = pc(&run.arguments(output, "--checkpoint", "seen.check", &[])).spawn().expect("pc starts");
+    let mut all: Vec<Vec<u8>> = Vec::new();
+    while child.try_wait().expect("a child").is_none() {
+        let now = fs::read(run.at("seen.check")).unwrap_or_default();
+        if !now.is_empty() && all.last() != Some(&now) {
+            all.push(now);
+        }
+    }
+    let output_of = child.wait_with_output().expect("pc ends");
+    assert!(output_of.status.success(), "{}", stderr(&output_of));
+    (all, fs::read(run.at(output)).expect("a table"))
+}
+
+const WITH_EVENTS: [(&str, &[&str]); 4] = [
+    ("bouncing-ball", &["--set", "e=1", "--t-end", "8000"]),
+    ("stick-slip-block", &["--t-end", "6000"]),
+    ("rocking-block", &["--set", "r=1", "--t-end", "12000"]),
+    ("stick-slip-sleigh", &["--set", "V=0.5", "--t-end", "2500"]),
+];
+
+/// Tables, times of events and all: bouncing, sticking and rocking go on from wherever they were.
+#[test]
+fn a_run_with_events_gives_the_same_bytes_from_each_checkpoint() {
+    for (model, options) in WITH_EVENTS {
+        let run =
+            Run::new(model, &[options, &["--samples", "40", "--every", "97", "--rtol", "1e-7"]].concat());
+        let (checkpoints, json) = seen(&run, "a.json");
+        let csv = run.whole("a.csv", "--checkpoint", "a.check", &[]);
+        let text = String::from_utf8(json.clone()).expect("UTF-8");
+        assert!(text.matches("\"time\"").count() > 100, "{model} has events");
+        assert!(checkpoints.len() > 1, "{model} is over too soon: {}", checkpoints.len());
+        for bytes in checkpoints.iter().step_by(checkpoints.len().div_ceil(4)).chain(checkpoints.last()) {
+            for (output, expected) in [("b.json", &json), ("b.csv", &csv)] {
+                fs::write(run.at("b.check"), bytes).expect("written");
+                assert!(run.whole(output, "--resume", "b.check", &[]) == *expected, "{model}: {output}");
+            }
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_with_events_killed_again_and_again_gives_the_same_bytes() {
+    let run =
+        Run::new("bouncing-ball", &["--set", "e=1", "--t-end", "3000", "--samples", "40", "--every", "97"]);
+    let undisturbed = run.whole("a.json", "--checkpoint", "a.check", &[]);
+    let (mut how, mut kills, mut before) = ("--checkpoint", 0, Vec::new());
+    for signal in ["-KILL", "-INT", "-TERM", "-KILL"] {
+        let child = pc(&run.arguments("b.json", how, "b.check", &[])).spawn().expect("pc starts");
+        let output = signalled(child, signal, &run.at("b.check"), &before);
+        kills += u32::from(!output.status.success());
+        before = fs::read(run.at("b.check")).expect("a checkpoint");
+        how = "--resume";
+    }
+    assert!(kills >= 2, "the run is over too soon for this test: {kills}");
+    assert!(run.whole("b.json", "--resume", "b.check", &[]) == undisturbed);
+}
+
+#[test]
+fn what_is_not_a_checkpoint_of_this_run_with_events_is_refused() {
+    let run = Run::new("rocking-block", &["--every", "20"]);
+    let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &[]);
+    let bytes = fs::read(run.at("a.check")).expect("a checkpoint");
+    for k in 0..50 {
+        let mut damaged = bytes.clone();
+        let place = (k * 7919 + 13) % bytes.len();
+        if k % 2 == 0 {
+            damaged.truncate(place);
+        } else {
+            damaged[place] ^= 1 << (k % 8);
+        }
+        fs::write(run.at("b.check"), &damaged).expect("written");
+        run.refused("b.check", &[], "begin anew without --resume");
+    }
+    // That of the version before this one, which knew no events.
+    let old = [b"pc checkpoint 1\n", &bytes[16..]].concat();
+    fs::write(run.at("b.check"), old).expect("written");
+    run.refused(
+        "b.check",
+        &[],
+        "it is a checkpoint of version 1 of the format, not 2; begin anew without --resume",
+    );
+    let other = Run::new("bouncing-ball", &["--every", "20"]);
+    fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");
+    other.refused("a.check", &[], "it is of a run with");
+    assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
+}
+
+/// A run that events bring to an end, good or bad, ends so again.
+#[test]
+fn a_run_that_events_end_ends_so_again() {
+    let fall = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"y\"\n\
+                [events.floor]\nwhen = \"y\"\nterminal = true\n[simulation]\nt_end = 3.0\n";
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    fs::write(file.path(), fall).expect("written");
+    let run = Run::new(file.path().to_str().expect("UTF-8"), &["--every", "10"]);
+    let ended = run.whole("a.json", "--checkpoint", "a.check", &[]);
+    assert!(
+        String::from_utf8_lossy(&ended).contains("\"ending\":\"event\""),
+        "{}",
+        String::from_utf8_lossy(&ended)
+    );
+    assert!(run.whole("b.json", "--resume", "a.check", &[]) == ended);
+
+    let run = Run::new("bouncing-ball", &["--t-end", "9", "--set", "e=0.5", "--every", "50"]);
+    let failed = |output: &str, how| {
+        let output_of = pc(&run.arguments(output, how, "a.check", &[])).output().expect("pc runs");
+        assert_eq!(output_of.status.code(), Some(5));
+        assert!(stderr(&output_of).contains("the event bounce occurs without end near t = 1.35457"));
+        fs::read(run.at(output)).expect("a table")
+    };
+    assert!(failed("a.csv", "--checkpoint") == failed("b.csv", "--resume"));
+}

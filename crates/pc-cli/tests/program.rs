@@ -217,6 +217,11 @@ fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
     refuses(&["run", "euler-top", "--set", "I1=one"], 2, "the parameters of this model are I1, I2, I3");
     refuses(&["run", "euler-top", "--set", "I1=inf"], 2, "not a finite number");
     refuses(&["run", "euler-top", "--set", "I1"], 2, "NAME=VALUE");
+    refuses(
+        &["run", "euler-top", "--set", "I1=1", "--set", "I1=1"],
+        2,
+        "`I1` is given two values; leave one out",
+    );
     refuses(&["run", "euler-top", "--samples", "1"], 2, "from 2");
     refuses(&["run", "euler-top", "--rtol", "-1e-9"], 2, "positive");
     refuses(&["run", "euler-top", "--atol", "NaN"], 2, "finite");

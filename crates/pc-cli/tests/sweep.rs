@@ -270,6 +270,30 @@ fn a_member_that_fails_is_reported_and_the_others_finish() {
     assert!(!table[2][at("message")].is_empty());
 }
 
+/// ÿ = −1 from height h: the floor is reached at √(2h), if that is not beyond 3.
+#[test]
+fn a_member_that_an_event_ends_says_which() {
+    let place = Place::new(
+        "[parameters]\nh = 1.0\n[coordinates]\ny = \"h\"\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"y\"\n\
+         [events.floor]\nwhen = \"y\"\nterminal = true\n[simulation]\nt_end = 3.0\n",
+    );
+    let arguments = place.sweep("a.csv", &["--vary", "h=2:8:3"]);
+    ends(&strs(&arguments), 0, &["  members  3, 2 completed, 1 ended by an event\n"]);
+    let table = lines(&fs::read(place.at("a.csv")).expect("a table"));
+    let at = |name: &str| table[0].iter().position(|column| column == name).expect("a column");
+    let of = |name: &str| table[1..].iter().map(|row| row[at(name)].as_str()).collect::<Vec<_>>();
+    assert_eq!(of("status"), ["event", "completed", "completed"]);
+    assert_eq!(of("message"), ["ended by the event floor", "", ""]);
+    let t: Vec<f64> = of("t").iter().map(|t| t.parse().expect("a number")).collect();
+    // rtol 1e-9
+    assert!((t[0] - 2.0).abs() < 1e-8 && t[1..] == [3.0, 3.0], "{t:?}");
+    let json = String::from_utf8(place.swept("a.json", &["--vary", "h=2:8:3"])).expect("UTF-8");
+    assert_eq!(json.matches("\"event\"").count(), 1, "{json}");
+    // None fails, though none is completed.
+    let arguments = place.sweep("a.csv", &["--vary", "h=1:2:2"]);
+    ends(&strs(&arguments), 0, &["  members  2, 0 completed, 2 ended by an event\n"]);
+}
+
 #[test]
 fn wrong_usage_says_what_would_be_right() {
     let place = Place::new(MASSES);
@@ -282,6 +306,14 @@ fn wrong_usage_says_what_would_be_right() {
         (&["--vary", "m=1:2:3", "--vary", "m=1:2:3"], "`m` is given values twice"),
         (&["--vary", "m=1:2:3", "--set", "m=1"], "`m` is given values twice"),
         (&["--vary", "m=1:2"], "NAME=FROM:TO:N"),
+        (
+            &["--vary", "m=1:2:1"],
+            "one value cannot be at both ends; give 2 values, or the same number at both ends",
+        ),
+        (
+            &["--vary", "m=1:2:3", "--set", "k=1", "--set", "k=2"],
+            "pc: --set: `k` is given two values; leave one out",
+        ),
         (&["--samples", "3", "--random", "m=cauchy(0,1)"], "lognormal(m,s)"),
         (&["--samples", "0", "--random", "m=normal(0,1)"], "0 is not in"),
         (&["--vary", "m=1:2:3", "--threads", "0"], "--threads"),

@@ -65,6 +65,8 @@ pub const BUILTIN: &[Builtin] = models![
     "bouncing-ball",
     "stick-slip-block",
     "rocking-block",
+    "stick-slip-sleigh",
+    "rocking-disk",
     "appell-hamel",
 ];
 

@@ -17,6 +17,8 @@
 //! assert_eq!(motion.advance_to(4.0)?, later.advance_to(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//! With events it keeps, beside the state, what is known of them: on which side of zero each function is, when they
+//! occurred last, and which are due.
 
 mod encoding;
 mod legs;
@@ -24,15 +26,16 @@ mod legs;
 use pc_expr::VectorField;
 
 pub use self::encoding::CheckpointError;
-pub use self::legs::solve_checkpointed;
+pub use self::legs::{solve_checkpointed, solve_with_events_checkpointed};
 
 use crate::cvode::Cvode;
 use crate::error::SolveError;
+use crate::events::{History, Occurrence};
 use crate::options::Options;
 use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
-/// Time and state of a motion, the outputs before it, and the work so far.
+/// Time and state of a motion, the outputs and occurrences before it, and the work so far.
 ///
 /// The state is y, projected where the field has a projection: the offset d of y = z + d is taken into it, and is zero
 /// again after the restart.
@@ -41,9 +44,35 @@ pub struct Checkpoint {
     pub(crate) time: f64,
     pub(crate) state: Vec<f64>,
     pub(crate) outputs: Trajectory,
+    pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) statistics: Statistics,
-    /// Steps since the last output, which are limited.
+    /// Steps since the last output or occurrence, which are limited.
     pub(crate) steps_since_output: u64,
+    /// Of a motion with events that has begun.
+    pub(crate) past: Option<Past>,
+}
+
+/// What an integration with events knows of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Past {
+    /// When the motion began.
+    pub(crate) start: f64,
+    /// For each event.
+    pub(crate) events: Vec<EventPast>,
+    /// The events that occur at the time of the checkpoint and have yet to be dealt with, each with what its function has
+    /// to exceed then to be told from zero.
+    pub(crate) due: Vec<(usize, f64)>,
+}
+
+/// What is known of one event.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EventPast {
+    /// On which side of zero its function is: 1, −1, or 0 while it is at zero.
+    pub(crate) side: f64,
+    /// What the function has to exceed to have left zero.
+    pub(crate) noise: f64,
+    /// When it occurred.
+    pub(crate) history: History,
 }
 
 impl Checkpoint {
@@ -53,8 +82,10 @@ impl Checkpoint {
             time: t0,
             state: y0.to_vec(),
             outputs: Trajectory::new(y0.len()),
+            occurrences: Vec::new(),
             statistics: Statistics::default(),
             steps_since_output: 0,
+            past: None,
         }
     }
 
@@ -71,6 +102,11 @@ impl Checkpoint {
     /// The outputs of [`solve_checkpointed`] up to that time.
     pub fn outputs(&self) -> &Trajectory {
         &self.outputs
+    }
+
+    /// What occurred up to that time in [`solve_with_events_checkpointed`].
+    pub fn occurrences(&self) -> &[Occurrence] {
+        &self.occurrences
     }
 
     /// The work up to that time.

@@ -43,11 +43,24 @@ pub(crate) struct Crossing {
 }
 
 impl Sides {
-    pub(crate) fn new(directions: Vec<Direction>, values: &[f64]) -> Sides {
+    /// Functions that pass in these directions, of which nothing else is known.
+    pub(crate) fn new(directions: Vec<Direction>) -> Sides {
         let n = directions.len();
-        let mut sides = Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] };
-        sides.pass(values);
-        sides
+        Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] }
+    }
+
+    /// The side of each function, and what it has to exceed to have left zero.
+    pub(crate) fn known(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.sides.iter().copied().zip(self.noise.iter().copied())
+    }
+
+    /// The functions on these sides, as [`known`](Sides::known).
+    pub(crate) fn from_known(
+        directions: Vec<Direction>,
+        known: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Sides {
+        let (sides, noise) = known.into_iter().unzip();
+        Sides { directions, sides, noise }
     }
 
     /// Where the functions are after a jump of the state.
@@ -78,7 +91,7 @@ impl Sides {
     }
 
     /// Takes note of values at which nothing has occurred.
-    fn pass(&mut self, values: &[f64]) {
+    pub(crate) fn pass(&mut self, values: &[f64]) {
         for ((side, noise), &value) in self.sides.iter_mut().zip(&mut self.noise).zip(values) {
             if value.abs() > *noise {
                 *side = 1.0_f64.copysign(value);
@@ -97,6 +110,9 @@ impl Sides {
         to: f64,
         evaluate: &mut impl FnMut(f64) -> Result<Vec<f64>, E>,
     ) -> Result<Passage, E> {
+        if self.sides.is_empty() {
+            return Ok(Passage::Clear(Sample { t: to, ..from }));
+        }
         let length = to - from.t;
         let mut sample = |t: f64| Ok(Sample { t, values: evaluate(t)? });
         let mut left = from;

@@ -336,6 +336,15 @@ pub enum InputError {
         found: usize,
     },
 
+    /// A checkpoint of a motion with another number of events.
+    #[error("the checkpoint is of a motion with {found} events, not {expected}")]
+    EventCount {
+        /// Number of events of the motion.
+        expected: usize,
+        /// Number of events in the checkpoint.
+        found: usize,
+    },
+
     /// An input is NaN or infinite.
     #[error("{what} is {value}")]
     NotFinite {

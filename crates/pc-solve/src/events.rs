@@ -134,9 +134,9 @@ impl Default for Accumulation {
 }
 
 /// The last times of one event, and how often it has occurred.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct History {
-    times: VecDeque<f64>,
+    pub(crate) times: VecDeque<f64>,
     pub(crate) occurrences: u64,
 }
 

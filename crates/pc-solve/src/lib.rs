@@ -55,7 +55,7 @@ mod trajectory;
 mod variation;
 
 pub use adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
-pub use checkpoint::{Checkpoint, CheckpointError, solve_checkpointed};
+pub use checkpoint::{Checkpoint, CheckpointError, solve_checkpointed, solve_with_events_checkpointed};
 pub use code::Code;
 pub use cvode::{Cvode, Ending, Hybrid};
 pub use dense::{DenseOutput, Segment};

@@ -17,6 +17,7 @@ mod packages;
 mod setup;
 mod test;
 mod tools;
+mod valgrind;
 
 use std::env;
 use std::path::Path;
@@ -32,6 +33,7 @@ usage: cargo xtask <command>
   bench [NAME…]    run the benchmarks, all of them or those named
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, and run them under sanitizers and valgrind
+  valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
   install --prefix DIR     build the C library and install it with its headers; `uninstall` removes it
   setup            install what the build needs (the commands above do it by themselves)
   help             this text";
@@ -72,6 +74,10 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         "c-examples" => {
             no_more(name, rest)?;
             c_examples::run()
+        }
+        "valgrind" => {
+            no_more(name, rest)?;
+            valgrind::run()
         }
         "install" => install::install(prefix(name, rest)?),
         "uninstall" => install::uninstall(prefix(name, rest)?),

@@ -45,6 +45,29 @@ pub fn stiff_sleigh(t: f64, y: &[f64], dy: &mut [f64]) {
     sleigh(along_the_blade(t, y[3]), moment, y, dy);
 }
 
+/// The sleigh with m = J = k = 1, a = 0.1 on a spring to a peg at rest, with friction 0.8 along the blade: ahead for σ = 1, back
+/// for σ = −1, and what holds it for σ = 0. y = (ξ, η, φ, σ, v, ω), (ξ, η) the place seen from the peg, in the sleigh's axes.
+pub fn stick_slip_sleigh(y: &[f64], dy: &mut [f64]) {
+    let [along, across, mode, v, omega] = [y[0], y[1], y[3], y[4], y[5]];
+    let ahead = 0.1 * omega * omega - along;
+    let held = (1.0 - mode * mode) * ahead;
+    dy.copy_from_slice(&[
+        v + omega * across,
+        -omega * along,
+        omega,
+        0.0,
+        ahead - 0.8 * mode - held,
+        -0.1 * v * omega / 1.01,
+    ]);
+}
+
+/// A disk with m = R = 1, J = 0.3, its mass centre ½ under its centre. y = (X, θ, ω): the moments about the point of contact.
+pub fn rocking_disk(y: &[f64], dy: &mut [f64]) {
+    let ((sin, cos), omega) = (y[1].sin_cos(), y[2]);
+    let inertia = 0.3 + 0.25 * sin * sin + (1.0 - 0.5 * cos).powi(2);
+    dy.copy_from_slice(&[omega, omega, -0.5 * sin * (9.81 + omega * omega) / inertia]);
+}
+
 /// Drive and friction of the steered sleigh.
 pub(crate) fn along_the_blade(t: f64, v: f64) -> f64 {
     let friction = v / 5.0 + (0.5 + 0.5 * (-4.0 * v * v).exp()) * (10.0 * v).tanh();

@@ -331,6 +331,14 @@ pub(super) const HOLONOMIC: &[Reference] = &[
         state: &[-19.97156361224559, 1.0, -20.17131573702792],
         conserved: &["energy"],
     },
+    Reference {
+        model: "rocking-disk",
+        t_end: 5.0,
+        columns: &["X", "θ", "ω"],
+        start: &[0.0, 0.0, 3.0],
+        state: &[-0.9465898496696981, -0.9465898496696981, 0.9511352366892792],
+        conserved: &["energy"],
+    },
     // Between events: slipping for ever, V t − x = F_k + (F_s − F_k) cos t + V sin t.
     Reference {
         model: "rotating-oscillator",

@@ -105,6 +105,22 @@ pub(super) const NONHOLONOMIC: &[Reference] = &[
         ],
         conserved: &[],
     },
+    // Between events: slipping ahead for ever.
+    Reference {
+        model: "stick-slip-sleigh",
+        t_end: 20.0,
+        columns: &["ξ", "η", "φ", "σ", "v", "ω"],
+        start: &[-3.0, 0.0, 0.0, 1.0, 0.0, 2.0],
+        state: &[
+            -2.405853209088163,
+            1.967478160512461,
+            53.13790570032099,
+            1.0,
+            -0.8341618023104335,
+            2.515545480198905,
+        ],
+        conserved: &[],
+    },
     Reference {
         model: "stiff-sleigh",
         t_end: 2.0,

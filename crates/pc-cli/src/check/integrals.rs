@@ -1,6 +1,7 @@
 //! What the motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
 
 use pc_mech::{Conservation, Equations, Expr, Graph, Neighbourhood, Number, Rates, Style, System};
+use pc_model::{Assembly, Form};
 use serde_json::{Value, json};
 
 use crate::text::{columns, combination, short};
@@ -21,6 +22,8 @@ pub(super) struct Integral<'g> {
     /// Where it comes from.
     how: &'static str,
     verdict: Verdict<'g>,
+    /// Whether an event may change it.
+    jumps: bool,
 }
 
 /// What is known of the rate of change of a function along the motion.
@@ -64,6 +67,26 @@ pub(super) fn say_energy_is_kept(list: &mut [Integral<'_>]) {
     }
 }
 
+/// Says of what keeps its value between events that resets may change it: those that do not leave it as it is whatever the
+/// state, or that end with a projection to the constraints.
+pub(super) fn say_what_jumps<'g>(list: &mut [Integral<'g>], assembly: &Assembly<'g>) {
+    let system = &assembly.system;
+    let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let projected = matches!(assembly.bound.form(), Form::Held(_));
+    for reset in assembly.events.iter().map(|event| &event.resets).filter(|reset| !reset.is_empty()) {
+        let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
+        for integral in &mut *list {
+            let after = system.graph().substitute(&[integral.value], &new)[0];
+            let jump = after - integral.value;
+            if projected || !bind(system, jump).is_zero() {
+                integral.jumps = true;
+            } else if integral.verdict == Verdict::Conserved && !jump.is_zero() {
+                integral.verdict = Verdict::ConservedHere;
+            }
+        }
+    }
+}
+
 /// Adds the energy of all velocities, that of a run; y·η − L of the independent ones is called Jacobi's then.
 pub(super) fn add_energy_of_all<'g>(
     list: &mut Vec<Integral<'g>>,
@@ -75,7 +98,7 @@ pub(super) fn add_energy_of_all<'g>(
         integral.name = "Jacobi's".to_owned();
     }
     let verdict = Search::new(equations, near).verdict(value);
-    list.push(Integral { name: "energy".to_owned(), value, how: ENERGY_OF_ALL, verdict });
+    list.push(Integral { name: "energy".to_owned(), value, how: ENERGY_OF_ALL, verdict, jumps: false });
 }
 
 /// Where integrals are looked for.
@@ -136,6 +159,7 @@ impl<'a, 'g> Search<'a, 'g> {
             value,
             how: DECLARED,
             verdict: self.verdict(value),
+            jumps: false,
         };
         integrals.map(with_verdict).collect()
     }
@@ -156,7 +180,7 @@ impl<'a, 'g> Search<'a, 'g> {
             }
             verdict => verdict,
         };
-        Integral { name: "energy".to_owned(), value, how: ENERGY, verdict }
+        Integral { name: "energy".to_owned(), value, how: ENERGY, verdict, jumps: false }
     }
 
     /// The momenta of cyclic displacements that are not declared, for the values of the parameters.
@@ -179,6 +203,7 @@ impl<'a, 'g> Search<'a, 'g> {
             value: cyclic.momentum,
             how: CYCLIC,
             verdict: self.proved(cyclic.momentum),
+            jumps: false,
         })
         .collect()
     }
@@ -233,7 +258,8 @@ impl<'a, 'g> Search<'a, 'g> {
         for ((value, verdict), bound) in casimirs.into_iter().zip(values) {
             if self.is_new(&known, bound) {
                 number += 1;
-                list.push(Integral { name: format!("Casimir {number}"), value, how: CASIMIR, verdict });
+                let name = format!("Casimir {number}");
+                list.push(Integral { name, value, how: CASIMIR, verdict, jumps: false });
                 known.push(bound);
             }
         }
@@ -253,7 +279,8 @@ impl<'a, 'g> Search<'a, 'g> {
         for (number, value) in (1..).zip(rates.integrals(&ansatz)) {
             let verdict = self.proved(value);
             let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
-            list.push(Integral { name: format!("found {number}"), value, how: FOUND, verdict });
+            let name = format!("found {number}");
+            list.push(Integral { name, value, how: FOUND, verdict, jumps: false });
         }
     }
 
@@ -294,10 +321,12 @@ impl Verdict<'_> {
         !matches!(self, Verdict::Rate { .. })
     }
 
-    fn words(self) -> String {
+    /// `jumps`: whether an event may change it.
+    fn words(self, jumps: bool) -> String {
+        let between = if jumps { " between events" } else { "" };
         match self {
-            Verdict::Conserved => "conserved (proved)".to_owned(),
-            Verdict::ConservedHere => "conserved for these parameters (proved)".to_owned(),
+            Verdict::Conserved => format!("conserved{between} (proved)"),
+            Verdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
             // Rounding of a rate that is zero there.
             Verdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
                 "not proved to be conserved, though it does not change at the start".to_owned()
@@ -328,7 +357,7 @@ impl Integral<'_> {
 
     /// The verdict, with the formula of what is not declared, and of the rate of the energy.
     pub(super) fn lines(&self) -> Vec<String> {
-        let words = self.verdict.words();
+        let words = self.verdict.words(self.jumps);
         if let (ENERGY, Verdict::Rate { rate, at_start }) = (self.how, self.verdict) {
             let formula = rate.display(Style::Book);
             let at_start =
@@ -360,7 +389,7 @@ impl Integral<'_> {
             "name": self.name,
             "expression": self.value.to_string(),
             "how": self.how,
-            "verdict": self.verdict.words(),
+            "verdict": self.verdict.words(self.jumps),
         });
         if let Verdict::Rate { rate, at_start } = self.verdict {
             object["rate"] = json!(rate.to_string());

@@ -15,7 +15,7 @@ use crate::saving::SavingArguments;
     after_help = "Members of a grid are all combinations of the values, the last --vary changing fastest. \
                   lognormal(m,s) is exp of normal(m,s).\n\
                   A row has the number of the member, the varied values (start values as NAME(start)), how it ended \
-                  (completed; failed: the row is what was reached; refused: it could not start; panicked), the \
+                  (completed; event: it was ended by the event of the message; failed: the row is what was reached; refused: it could not start; panicked), the \
                   columns of `pc run` at the end, the drift of each integral, the number of steps, and a message \
                   where it was not completed.\n\
                   What is finished is kept in FILE.partial until FILE is complete: after an interruption of any kind \
@@ -131,6 +131,11 @@ fn vary(text: &str) -> Result<Vary, String> {
     let count = count.ok_or("the number of values is a whole number from 1")?;
     if !(to - from).is_finite() {
         return Err("the range is too large".to_owned());
+    }
+    if count == 1 && from != to {
+        return Err(
+            "one value cannot be at both ends; give 2 values, or the same number at both ends".to_owned()
+        );
     }
     match name.trim() {
         "" => Err(usage()),

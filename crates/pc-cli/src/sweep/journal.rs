@@ -35,6 +35,8 @@ pub(crate) struct Tally {
     pub(crate) done: u64,
     /// Of these, the completed ones.
     pub(crate) completed: u64,
+    /// Those that a terminal event has ended.
+    pub(crate) by_event: u64,
     /// The first few others, with their messages.
     pub(crate) others: Vec<(u64, Status, String)>,
 }
@@ -47,6 +49,7 @@ impl Tally {
         self.done += 1;
         match record.status {
             Status::Completed => self.completed += 1,
+            Status::Event => self.by_event += 1,
             status if self.others.len() < MESSAGES => {
                 self.others.push((record.member, status, record.message.clone()));
             }

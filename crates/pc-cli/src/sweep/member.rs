@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pc_mech::{Graph, VectorField};
 use pc_model::{Flow, Model, ModelError};
-use pc_solve::{Ending, HybridMotion, Options, Stop, Trajectory};
+use pc_solve::{Ending, Events, HybridMotion, Options, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
@@ -132,10 +132,17 @@ impl Members {
             return None;
         }
         let reached = error.as_ref().and_then(|error| error.reached());
+        let (status, message) = match (&error, ending) {
+            (Some(error), _) => (Status::Failed, line(&chain(error))),
+            (None, Some(Ending::Event { event })) => {
+                (Status::Event, format!("ended by the event {}", flow.events.events()[event].name()))
+            }
+            (None, _) => (Status::Completed, String::new()),
+        };
         Some(Record {
-            status: if error.is_none() { Status::Completed } else { Status::Failed },
+            status,
             steps: trajectory.statistics().steps,
-            message: error.as_ref().map(|error| line(&chain(error))).unwrap_or_default(),
+            message,
             rows: self.rows(&mut flow, &trajectory, reached),
             ..blank
         })

@@ -11,10 +11,13 @@ pub(crate) enum Status {
     Refused,
     /// Its computation panicked.
     Panicked,
+    /// By a terminal event.
+    Event,
 }
 
 impl Status {
-    const ALL: [Status; 4] = [Status::Completed, Status::Failed, Status::Refused, Status::Panicked];
+    const ALL: [Status; 5] =
+        [Status::Completed, Status::Failed, Status::Refused, Status::Panicked, Status::Event];
 
     /// In a word.
     pub(crate) fn word(self) -> &'static str {
@@ -23,6 +26,7 @@ impl Status {
             Status::Failed => "failed",
             Status::Refused => "refused",
             Status::Panicked => "panicked",
+            Status::Event => "event",
         }
     }
 }
@@ -36,7 +40,7 @@ pub(crate) struct Record {
     pub(crate) status: Status,
     /// Internal steps.
     pub(crate) steps: u64,
-    /// Why it was not completed, else empty.
+    /// Why it was not completed, or which event ended it; else empty.
     pub(crate) message: String,
     /// What was varied.
     pub(crate) values: Vec<f64>,

@@ -1,19 +1,24 @@
 //! Checkpoints as bytes.
 //!
 //! ```text
-//! pc checkpoint 1\n
+//! pc checkpoint 2\n
 //! length of the label, label
-//! t, dim, y; number of outputs, times, states; the work
+//! t, dim, y; number of outputs, times, states
+//! number of occurrences, of each: event, t, y⁻, y⁺
+//! the work
+//! 0, or 1 and what is known of events: start; number of events, of each: side, noise, how often, number of the last
+//!     times, these; number of those due, of each: event, noise
 //! CRC-32 of all that is before
 //! ```
 //! All numbers are little-endian, integers and floats of 64 bits.
 
-use super::Checkpoint;
+use super::{Checkpoint, EventPast, Past};
+use crate::events::{History, Occurrence};
 use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
-const VERSION: &[u8] = b"1\n";
+const VERSION: u64 = 2;
 
 /// Why bytes are not a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -23,8 +28,11 @@ pub enum CheckpointError {
     #[error("it is not a checkpoint")]
     Foreign,
     /// A checkpoint of another version of the format.
-    #[error("it is a checkpoint of another version of the format")]
-    Version,
+    #[error("it is a checkpoint of version {found} of the format, not {VERSION}")]
+    Version {
+        /// Its version.
+        found: u64,
+    },
     /// A checkpoint of which a part is missing or changed.
     #[error("the checkpoint is damaged: a part of it is missing or changed")]
     Damaged,
@@ -33,19 +41,22 @@ pub enum CheckpointError {
 impl Checkpoint {
     /// The checkpoint as bytes. The `label` says what it is a checkpoint of.
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
-        let mut bytes = [MAGIC, VERSION].concat();
-        let integer = |bytes: &mut Vec<u8>, value: u64| bytes.extend(value.to_le_bytes());
-        let numbers = |bytes: &mut Vec<u8>, values: &[f64]| {
-            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-        };
-        integer(&mut bytes, label.len() as u64);
+        let mut bytes = [MAGIC, format!("{VERSION}\n").as_bytes()].concat();
+        put_integer(&mut bytes, label.len() as u64);
         bytes.extend(label.as_bytes());
-        numbers(&mut bytes, &[self.time]);
-        integer(&mut bytes, self.state.len() as u64);
-        numbers(&mut bytes, &self.state);
-        integer(&mut bytes, self.outputs.len() as u64);
-        numbers(&mut bytes, self.outputs.times());
-        numbers(&mut bytes, self.outputs.states());
+        put_numbers(&mut bytes, &[self.time]);
+        put_integer(&mut bytes, self.state.len() as u64);
+        put_numbers(&mut bytes, &self.state);
+        put_integer(&mut bytes, self.outputs.len() as u64);
+        put_numbers(&mut bytes, self.outputs.times());
+        put_numbers(&mut bytes, self.outputs.states());
+        put_integer(&mut bytes, self.occurrences.len() as u64);
+        for occurrence in &self.occurrences {
+            put_integer(&mut bytes, occurrence.event as u64);
+            put_numbers(&mut bytes, &[occurrence.time]);
+            put_numbers(&mut bytes, &occurrence.state_before);
+            put_numbers(&mut bytes, &occurrence.state_after);
+        }
         let work = &self.statistics;
         for count in [
             work.steps,
@@ -65,9 +76,13 @@ impl Checkpoint {
             u64::from(work.current_order),
             self.steps_since_output,
         ] {
-            integer(&mut bytes, count);
+            put_integer(&mut bytes, count);
         }
-        numbers(&mut bytes, &[work.first_step, work.last_step, work.current_step, work.current_time]);
+        put_numbers(&mut bytes, &[work.first_step, work.last_step, work.current_step, work.current_time]);
+        put_integer(&mut bytes, u64::from(self.past.is_some()));
+        if let Some(past) = &self.past {
+            past.put(&mut bytes);
+        }
         bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
         bytes
     }
@@ -83,24 +98,59 @@ impl Checkpoint {
     /// [`CheckpointError`] unless they are all that [`to_bytes`](Checkpoint::to_bytes) wrote, unchanged.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Checkpoint, String), CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
+        // Another version may be written in another way from here on.
+        let line = rest.iter().position(|&byte| byte == b'\n').ok_or(CheckpointError::Damaged)?;
+        let found = std::str::from_utf8(&rest[..line]).ok().and_then(|version| version.parse().ok());
+        match found.ok_or(CheckpointError::Damaged)? {
+            VERSION => {}
+            found => return Err(CheckpointError::Version { found }),
+        }
         let (content, crc) = bytes.split_last_chunk::<4>().ok_or(CheckpointError::Damaged)?;
         if crc32fast::hash(content).to_le_bytes() != *crc {
             return Err(CheckpointError::Damaged);
         }
-        let rest = rest.strip_prefix(VERSION).ok_or(CheckpointError::Version)?;
-        let mut rest = rest.get(..rest.len().saturating_sub(4)).ok_or(CheckpointError::Damaged)?;
+        let mut rest = content.get(MAGIC.len() + line + 1..).ok_or(CheckpointError::Damaged)?;
         let read = decode(&mut rest).filter(|_| rest.is_empty());
         read.ok_or(CheckpointError::Damaged)
     }
 }
 
+impl Past {
+    fn put(&self, bytes: &mut Vec<u8>) {
+        put_numbers(bytes, &[self.start]);
+        put_integer(bytes, self.events.len() as u64);
+        for EventPast { side, noise, history } in &self.events {
+            put_numbers(bytes, &[*side, *noise]);
+            put_integer(bytes, history.occurrences);
+            put_integer(bytes, history.times.len() as u64);
+            history.times.iter().for_each(|&t| put_numbers(bytes, &[t]));
+        }
+        put_integer(bytes, self.due.len() as u64);
+        for &(event, noise) in &self.due {
+            put_integer(bytes, event as u64);
+            put_numbers(bytes, &[noise]);
+        }
+    }
+
+    fn take(bytes: &mut &[u8]) -> Option<Past> {
+        let start = number(bytes)?;
+        let events = list(bytes, |bytes| {
+            let (side, noise, occurrences) = (number(bytes)?, number(bytes)?, integer(bytes)?);
+            let history = History { times: list(bytes, number)?.into(), occurrences };
+            Some(EventPast { side, noise, history })
+        })?;
+        let due = list(bytes, |bytes| Some((index(bytes)?, number(bytes)?)))?;
+        due.iter().all(|&(event, _)| event < events.len()).then_some(Past { start, events, due })
+    }
+}
+
 fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
-    let length = usize::try_from(integer(bytes)?).ok()?;
+    let length = index(bytes)?;
     let label = String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()?;
-    let time = numbers(bytes, 1)?[0];
-    let dim = usize::try_from(integer(bytes)?).ok()?;
+    let time = number(bytes)?;
+    let dim = index(bytes)?;
     let mut checkpoint = Checkpoint::start(time, &numbers(bytes, dim)?);
-    let outputs = usize::try_from(integer(bytes)?).ok()?;
+    let outputs = index(bytes)?;
     let times = numbers(bytes, outputs)?;
     let states = numbers(bytes, outputs.checked_mul(dim)?)?;
     let mut trajectory = Trajectory::new(dim);
@@ -108,6 +158,11 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         times.iter().zip(states.chunks_exact(dim)).for_each(|(&t, y)| trajectory.push(t, y));
     }
     checkpoint.outputs = trajectory;
+    checkpoint.occurrences = list(bytes, |bytes| {
+        let (event, time) = (index(bytes)?, number(bytes)?);
+        let (state_before, state_after) = (numbers(bytes, dim)?, numbers(bytes, dim)?);
+        Some(Occurrence { event, time, state_before, state_after })
+    })?;
     checkpoint.statistics = Statistics {
         steps: integer(bytes)?,
         rhs_evaluations: integer(bytes)?,
@@ -128,20 +183,48 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
     };
     checkpoint.steps_since_output = integer(bytes)?;
     checkpoint.statistics = Statistics {
-        first_step: numbers(bytes, 1)?[0],
-        last_step: numbers(bytes, 1)?[0],
-        current_step: numbers(bytes, 1)?[0],
-        current_time: numbers(bytes, 1)?[0],
+        first_step: number(bytes)?,
+        last_step: number(bytes)?,
+        current_step: number(bytes)?,
+        current_time: number(bytes)?,
         ..checkpoint.statistics
     };
-    Some((checkpoint, label))
+    checkpoint.past = match integer(bytes)? {
+        0 => None,
+        1 => Some(Past::take(bytes)?),
+        _ => return None,
+    };
+    let events = checkpoint.past.as_ref().map_or(0, |past| past.events.len());
+    let known = checkpoint.occurrences.iter().all(|occurrence| occurrence.event < events);
+    known.then_some((checkpoint, label))
+}
+
+fn put_integer(bytes: &mut Vec<u8>, value: u64) {
+    bytes.extend(value.to_le_bytes());
+}
+
+fn put_numbers(bytes: &mut Vec<u8>, values: &[f64]) {
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
 }
 
 fn integer(bytes: &mut &[u8]) -> Option<u64> {
     Some(u64::from_le_bytes(bytes.split_off(..8)?.try_into().ok()?))
 }
 
+fn index(bytes: &mut &[u8]) -> Option<usize> {
+    usize::try_from(integer(bytes)?).ok()
+}
+
+fn number(bytes: &mut &[u8]) -> Option<f64> {
+    Some(f64::from_le_bytes(bytes.split_off(..8)?.try_into().ok()?))
+}
+
 fn numbers(bytes: &mut &[u8], count: usize) -> Option<Vec<f64>> {
     let numbers = bytes.split_off(..count.checked_mul(8)?)?.chunks_exact(8);
     numbers.map(|number| Some(f64::from_le_bytes(number.try_into().ok()?))).collect()
+}
+
+/// As many things as a number before them says.
+fn list<T>(bytes: &mut &[u8], mut one: impl FnMut(&mut &[u8]) -> Option<T>) -> Option<Vec<T>> {
+    (0..integer(bytes)?).map(|_| one(bytes)).collect()
 }

@@ -1,16 +1,19 @@
 //! A motion in legs from checkpoint to checkpoint.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
-use pc_expr::VectorField;
+use pc_expr::{Events, VectorField};
 
 use super::Checkpoint;
 use crate::code::Code;
-use crate::cvode::{Cvode, Ending};
+use crate::cvode::{Ending, Hybrid};
 use crate::error::{IntegrationError, Reason, SolveError, SolveFailure};
+use crate::events::{FnEvents, Occurrence};
 use crate::options::Options;
+use crate::solve::{HybridFailure, HybridMotion};
+use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
 /// As [`solve_observed`](crate::solve_observed), with a checkpoint after `every` so many internal steps.
@@ -30,113 +33,197 @@ pub fn solve_checkpointed<F: VectorField>(
     times: &[f64],
     options: &Options,
     every: NonZeroU64,
+    save: impl FnMut(&Checkpoint, bool),
+    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> Result<Trajectory, Box<SolveFailure>> {
+    let parts = || (field(), FnEvents::new());
+    match solve_with_events_checkpointed(parts, from, times, options, every, save, step) {
+        Ok(motion) => Ok(motion.trajectory),
+        Err(failure) => {
+            let HybridFailure { reached, error } = *failure;
+            Err(Box::new(SolveFailure { reached: reached.trajectory, error }))
+        }
+    }
+}
+
+/// As [`solve_with_events_observed`](crate::solve_with_events_observed), with checkpoints as in [`solve_checkpointed`].
+///
+/// The vector field and the events are those that `parts` makes for each leg of the motion. A part of a step that an event
+/// has ended counts as a step; a checkpoint at its end comes after all that occurs there. So a motion that goes on from any
+/// of its checkpoints gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was never
+/// interrupted.
+///
+/// ```
+/// use std::{num::NonZeroU64, ops::ControlFlow};
+/// use pc_solve::{Checkpoint, Event, FnEvents, Options, from_fn, solve_with_events_checkpointed};
+///
+/// // A ball that bounces.
+/// let parts = || {
+///     let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
+///     let bounce = FnEvents::new().with_reset(
+///         Event::new("bounce").falling(), |_t, y| Ok(y[0]), |_t, y| { y[1] *= -0.8; Ok(()) });
+///     (fall, bounce)
+/// };
+/// let (times, options, every) = ([1.0, 2.0, 3.0], Options::default(), NonZeroU64::new(7).unwrap());
+/// let mut kept = Vec::new();
+/// let start = Checkpoint::start(0.0, &[1.0, 0.0]);
+/// let whole = solve_with_events_checkpointed(parts, start, &times, &options, every,
+///     |checkpoint, _| kept.push(checkpoint.clone()), |_, _| ControlFlow::Continue(()))?;
+/// let later = kept.swap_remove(kept.len() / 2);
+/// let part = solve_with_events_checkpointed(parts, later, &times, &options, every,
+///     |_, _| (), |_, _| ControlFlow::Continue(()))?;
+/// assert_eq!(part, whole);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As for [`solve_with_events`](crate::solve_with_events), and
+/// [`InputError::EventCount`](crate::InputError::EventCount).
+pub fn solve_with_events_checkpointed<F: VectorField, E: Events>(
+    mut parts: impl FnMut() -> (F, E),
+    from: Checkpoint,
+    times: &[f64],
+    options: &Options,
+    every: NonZeroU64,
     mut save: impl FnMut(&Checkpoint, bool),
     mut step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<Trajectory, Box<SolveFailure>> {
+) -> Result<HybridMotion, Box<HybridFailure>> {
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
+    // The steps to the next output are counted here, over all legs, once the limit has been found valid.
     let limit = options.max_steps;
+    options.max_steps = if limit == 0 { 0 } else { u64::MAX };
+    let plan = Plan { times, every: every.get(), limit };
     let mut stand = from;
     loop {
         save(&stand, false);
-        let done = stand.outputs.len();
-        if done > 0 && done >= times.len() {
-            stand.outputs.finish(true, stand.statistics);
-            return Ok(stand.outputs);
+        if !stand.outputs.is_empty() && stand.outputs.len() >= times.len() {
+            return Ok(motion(stand.outputs, stand.occurrences, stand.statistics, Some(Ending::Completed)));
         }
-        let before = (stand.time, stand.statistics);
-        let failed = |reached, error| Err(Box::new(SolveFailure { reached, error }));
-        // The steps to the next output are counted here, over all legs.
-        let unlimited = options.clone().max_steps(u64::MAX);
-        let mut cvode = match Cvode::resume(field(), &stand, &unlimited) {
-            Ok(cvode) => cvode,
-            Err(error) => return failed(stand.outputs, error),
+        let (field, events) = parts();
+        let mut hybrid = match Hybrid::resume(field, events, &stand, &options) {
+            Ok(hybrid) => hybrid,
+            Err(error) => {
+                let reached = motion(stand.outputs, stand.occurrences, stand.statistics, None);
+                return Err(Box::new(HybridFailure { reached, error }));
+            }
         };
-        let (mut steps, mut stopped, mut exhausted) = (0, false, false);
+        let (work, outputs, occurrences) = (stand.statistics, stand.outputs.len(), stand.occurrences.len());
+        let result = plan.leg(&mut hybrid, &mut stand, &mut step);
+        stand.statistics = work.followed_by(&hybrid.statistics());
+        let Some(ending) = result.transpose() else {
+            let Checkpoint { time, state, past, .. } = hybrid.checkpoint();
+            stand = Checkpoint { time, state, past, ..stand };
+            continue;
+        };
+        let arrived = ending.as_ref().ok().copied();
+        let reached = motion(stand.outputs, stand.occurrences, stand.statistics, arrived);
+        if matches!(arrived, Some(Ending::Stopped) | None) {
+            let outputs = reached.trajectory.first(outputs);
+            let occurrences = reached.occurrences[..occurrences].to_vec();
+            save(&Checkpoint { outputs, occurrences, statistics: work, ..stand }, true);
+        }
+        return match ending {
+            Ok(_) => Ok(reached),
+            Err(error) => Err(Box::new(HybridFailure { reached, error })),
+        };
+    }
+}
+
+/// The motion that ends so.
+fn motion(
+    mut trajectory: Trajectory,
+    occurrences: Vec<Occurrence>,
+    statistics: Statistics,
+    ending: Option<Ending>,
+) -> HybridMotion {
+    trajectory.finish(ending == Some(Ending::Completed), statistics);
+    HybridMotion { trajectory, occurrences, ending }
+}
+
+/// What all legs have in common.
+struct Plan<'a> {
+    times: &'a [f64],
+    /// Steps of a leg.
+    every: u64,
+    /// Most steps from one output, or occurrence, to the next.
+    limit: u64,
+}
+
+/// Why a leg ends.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    Full,
+    Stopped,
+    Exhausted,
+}
+
+impl Plan<'_> {
+    /// Goes on by one leg, and adds outputs and occurrences to the checkpoint `stand` where it began; how the motion ends,
+    /// if it does.
+    ///
+    /// A leg has as many steps as it should, or more if the last of them did not get away from its start.
+    fn leg<F: VectorField, E: Events>(
+        &self,
+        hybrid: &mut Hybrid<F, E>,
+        stand: &mut Checkpoint,
+        step: &mut impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Option<Ending>, SolveError> {
+        let (start, remaining) = (stand.time, &self.times[stand.outputs.len()..]);
         let since = Cell::new(stand.steps_since_output);
-        let outputs = &mut stand.outputs;
-        let push = |t, y: &[f64]| {
-            outputs.push(t, y);
+        let outputs = RefCell::new(&mut stand.outputs);
+        let output = |t: f64, y: &[f64]| {
+            outputs.borrow_mut().push(t, y);
             since.set(0);
             ControlFlow::Continue(())
         };
-        let observed = |t, y: &[f64]| {
+        let occurrences = &mut stand.occurrences;
+        let mut occurred = |occurrence: &Occurrence| {
+            occurrences.push(occurrence.clone());
+            since.set(0);
+            ControlFlow::Continue(())
+        };
+        let (mut steps, mut end) = (0, None);
+        let observed = |t: f64, y: &[f64]| {
             steps += 1;
             since.set(since.get() + 1);
-            stopped = step(t, y).is_break();
-            exhausted = since.get() > limit;
-            if stopped || exhausted || steps == every.get() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
+            if step(t, y).is_break() {
+                end = Some(End::Stopped);
+            } else if since.get() > self.limit {
+                end = Some(End::Exhausted);
+            } else if steps >= self.every && t != start {
+                end = Some(End::Full);
             }
+            if end.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let ending = cvode.run_observed(times.get(done..).unwrap_or_default(), push, observed);
-        stand.statistics = before.1.followed_by(&cvode.statistics());
-        let ending = match ending {
-            Ok(Ending::Stopped) if exhausted => Err(too_much_work(&cvode, limit, times[stand.outputs.len()])),
-            // Ended where its last step began.
-            Ok(Ending::Stopped) if !stopped && cvode.time() == before.0 => Err(stalled(&cvode)),
-            Ok(Ending::Stopped) if !stopped => {
-                let passed = outputs_within(&mut cvode, times, &mut stand.outputs);
-                stand.steps_since_output =
-                    if passed.as_ref().is_ok_and(|n| *n > 0) { 0 } else { since.get() };
-                passed.map(|_| Ending::Stopped)
+        let ending = hybrid.run_observed(remaining, output, &mut occurred, observed)?;
+        match end {
+            Some(End::Full) => {}
+            Some(End::Exhausted) => {
+                let next = self.times[outputs.borrow().len()];
+                return Err(too_much_work(hybrid, self.limit, next));
             }
-            ending => ending,
-        };
-        match ending {
-            Ok(Ending::Stopped) if !stopped => {
-                stand.time = cvode.time();
-                stand.state.copy_from_slice(cvode.state());
-            }
-            ending => {
-                let complete = matches!(ending, Ok(Ending::Completed));
-                let mut reached = stand.outputs;
-                reached.finish(complete, stand.statistics);
-                if !complete {
-                    let outputs = reached.first(done);
-                    save(&Checkpoint { time: before.0, statistics: before.1, outputs, ..stand }, true);
-                }
-                return match ending {
-                    Ok(_) => Ok(reached),
-                    Err(error) => failed(reached, error),
-                };
-            }
+            Some(End::Stopped) | None => return Ok(Some(ending)),
         }
-    }
-}
-
-/// The outputs inside the step whose end the integration stands at, and their number.
-fn outputs_within<F: VectorField>(
-    cvode: &mut Cvode<F>,
-    times: &[f64],
-    outputs: &mut Trajectory,
-) -> Result<usize, SolveError> {
-    let (end, before) = (cvode.time(), outputs.len());
-    let direction = cvode.statistics().last_step;
-    for &t in times.iter().skip(before).take_while(|&&t| (end - t) * direction >= 0.0) {
-        if t == end {
-            outputs.push(t, cvode.state());
-        } else {
-            outputs.push(t, cvode.interpolate(t, 0)?);
+        let next = || self.times.get(outputs.borrow().len()).copied();
+        let here = hybrid.time();
+        while let Some(t) = next().filter(|&t| hybrid.is_before_front(t)) {
+            hybrid.stand_at(t)?;
+            let _ = output(t, hybrid.state());
         }
+        let ending = hybrid.settle(&mut occurred)?;
+        if ending.is_some() || next() == Some(here) {
+            let _ = output(here, hybrid.state());
+        }
+        stand.steps_since_output = since.get();
+        Ok(ending)
     }
-    Ok(outputs.len() - before)
-}
-
-/// A leg that led nowhere.
-fn stalled<F: VectorField>(cvode: &Cvode<F>) -> SolveError {
-    ended(cvode, Reason::Stalled)
 }
 
 /// Legs that lead too slowly to the output at `t`.
-fn too_much_work<F: VectorField>(cvode: &Cvode<F>, steps: u64, t: f64) -> SolveError {
+fn too_much_work<F: VectorField, E: Events>(hybrid: &Hybrid<F, E>, steps: u64, t: f64) -> SolveError {
     let message = format!("{steps} internal steps taken before reaching t = {t}.");
-    ended(cvode, Reason::Cvode { code: Code::TooMuchWork, message })
-}
-
-fn ended<F: VectorField>(cvode: &Cvode<F>, reason: Reason) -> SolveError {
-    let (time, state) = (cvode.time(), cvode.state().to_vec());
+    let reason = Reason::Cvode { code: Code::TooMuchWork, message };
+    let (time, state) = (hybrid.time(), hybrid.state().to_vec());
     SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure: None }))
 }

@@ -1,11 +1,12 @@
 //! An integration that events interrupt.
 
+mod checkpoint;
 mod occur;
 mod run;
 
 use std::fmt;
 
-use pc_expr::{Event, Events, Failure, VectorField};
+use pc_expr::{Direction, Event, Events, Failure, VectorField};
 
 use super::{Cvode, Ending};
 use crate::crossing::{Passage, Sample, Sides};
@@ -40,6 +41,8 @@ pub struct Hybrid<F, E> {
     front: Sample,
     front_state: Vec<f64>,
     sides: Sides,
+    /// The sides before the front moved there.
+    sides_before: Sides,
     /// The events that occur at the front and have yet to be dealt with.
     due: Vec<usize>,
     noise: Vec<f64>,
@@ -69,7 +72,7 @@ impl<F: VectorField> Cvode<F> {
         }
         let (t, state) = (self.time, self.state().to_vec());
         let n = events.events().len();
-        let directions: Vec<_> = events.events().iter().map(Event::crosses).collect();
+        let sides = Sides::new(directions(&events));
         let mut engine = self;
         if t != engine.step_time {
             engine.restart(t, &state)?;
@@ -84,14 +87,19 @@ impl<F: VectorField> Cvode<F> {
             front: Sample { t, values: Vec::new() },
             output: state.clone(),
             front_state: state.clone(),
-            sides: Sides::new(Vec::new(), &[]),
+            sides_before: sides.clone(),
+            sides,
             due: Vec::new(),
             noise: Vec::new(),
         };
         hybrid.front.values = hybrid.evaluate(t, &state)?;
-        hybrid.sides = Sides::new(directions, &hybrid.front.values);
+        hybrid.sides.pass(&hybrid.front.values);
         Ok(hybrid)
     }
+}
+
+fn directions(events: &impl Events) -> Vec<Direction> {
+    events.events().iter().map(Event::crosses).collect()
 }
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
@@ -175,7 +183,8 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             self.engine.work.as_slice()
         };
         self.front_state.copy_from_slice(state);
-        (self.front, self.sides, self.noise, self.due) = (front, sides, noise, due);
+        self.sides_before = std::mem::replace(&mut self.sides, sides);
+        (self.front, self.noise, self.due) = (front, noise, due);
         Ok(())
     }
 

@@ -150,13 +150,21 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok(None)
     }
 
+    /// Deals with what occurs where an observer has stopped the integration; how it ends, if it does.
+    pub(crate) fn settle(
+        &mut self,
+        occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Option<Ending>, SolveError> {
+        self.advance(self.front.t, self.front.t, occurred, &mut |_, _| ControlFlow::Continue(()))
+    }
+
     /// Whether it is known what occurs at `t`, and nothing does.
-    fn is_before_front(&self, t: f64) -> bool {
+    pub(crate) fn is_before_front(&self, t: f64) -> bool {
         self.direction.is_some_and(|direction| (self.front.t - t) * direction > 0.0)
     }
 
     /// Stands at a time up to the front, in the last internal step.
-    fn stand_at(&mut self, t: f64) -> Result<(), SolveError> {
+    pub(crate) fn stand_at(&mut self, t: f64) -> Result<(), SolveError> {
         if t != self.front.t && t != self.engine.time {
             if let Err(error) = self.engine.interpolate_to_work(t, 0) {
                 return Err(self.stay(error));
