@@ -107,7 +107,7 @@ typedef enum {
    */
   PC_STOPPED = 9,
   /**
-   * The handle is in use: by another thread, or by the call that called the observer.
+   * The handle is in use: by another thread, or by the call that called the observer or the force function.
    */
   PC_BUSY = 10,
   /**
@@ -197,6 +197,10 @@ typedef enum {
    * Displays of LaTeX with amsmath.
    */
   PC_LATEX = 1,
+  /**
+   * One JSON object, for programs.
+   */
+  PC_JSON = 2,
 } pc_format;
 
 /**
@@ -304,6 +308,36 @@ typedef struct {
    */
   double stop_time;
 } pc_solver_options;
+
+/**
+ * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
+ * pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a
+ * positive number where the forces are not defined, so that a smaller step may help; a negative one to give
+ * up. What is left unwritten is not a number, and treated as a positive answer. It must return: no exceptions,
+ * no longjmp.
+ */
+typedef int (*pc_force_function)(double t,
+                                 const double *y,
+                                 size_t y_length,
+                                 double *q,
+                                 size_t q_length,
+                                 void *user);
+
+/**
+ * Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to `dq[i + j*e]`
+ * for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
+ */
+typedef int (*pc_force_jacobian)(double t,
+                                 const double *y,
+                                 size_t y_length,
+                                 double *dq,
+                                 size_t dq_length,
+                                 void *user);
+
+/**
+ * Frees what the `user` of a function points to. It must return: no exceptions, no longjmp.
+ */
+typedef void (*pc_destroy)(void *user);
 
 /**
  * Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
@@ -573,7 +607,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint: the expression, of coordinates or of velocities, vanishes.
+ * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not affine in the
+ * velocities is said to be so by pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -614,6 +649,154 @@ pc_status pc_model_add_integral(pc_model *model, const char *name, const char *e
  * Adds an expression to be watched.
  */
 pc_status pc_model_add_output(pc_model *model, const char *name, const char *expression, pc_error **error);
+
+/**
+ * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its mass centre or
+ * of a point of it that is at rest, as expressions of coordinates. Energy and forces follow from bodies; no
+ * Lagrangian is needed beside them.
+ */
+pc_status pc_model_add_body(pc_model *model,
+                            const char *name,
+                            const char *mass,
+                            const char *x,
+                            const char *y,
+                            const char *z,
+                            pc_error **error);
+
+/**
+ * Sets the force on a body, which acts at its position, in axes of space.
+ */
+pc_status pc_model_set_body_force(pc_model *model,
+                                  const char *body,
+                                  const char *x,
+                                  const char *y,
+                                  const char *z,
+                                  pc_error **error);
+
+/**
+ * Sets the torque on a rigid body, in the axes of its angular velocity.
+ */
+pc_status pc_model_set_body_torque(pc_model *model,
+                                   const char *body,
+                                   const char *x,
+                                   const char *y,
+                                   const char *z,
+                                   pc_error **error);
+
+/**
+ * Sets the angular velocity of a rigid body, in axes of the body. Excludes pc_model_set_body_rotation.
+ */
+pc_status pc_model_set_body_angular_velocity(pc_model *model,
+                                             const char *body,
+                                             const char *x,
+                                             const char *y,
+                                             const char *z,
+                                             pc_error **error);
+
+/**
+ * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx, Iyy, Izz, or 6,
+ * which go on with Ixy, Iyz, Ixz.
+ */
+pc_status pc_model_set_body_inertia(pc_model *model,
+                                    const char *body,
+                                    const char *const *entries,
+                                    size_t length,
+                                    pc_error **error);
+
+/**
+ * Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of space, row by
+ * row.
+ */
+pc_status pc_model_set_body_rotation(pc_model *model,
+                                     const char *body,
+                                     const char *const *entries,
+                                     size_t length,
+                                     pc_error **error);
+
+/**
+ * Says what the model is.
+ */
+pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
+
+/**
+ * Says where the model comes from.
+ */
+pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
+
+/**
+ * Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where there are no
+ * quasi-velocities, to another number.
+ */
+pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
+
+/**
+ * Sets the same to an expression of parameters.
+ */
+pc_status pc_model_set_start_expression(pc_model *model,
+                                        const char *name,
+                                        const char *expression,
+                                        pc_error **error);
+
+/**
+ * Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or "nonlinear" of one that is
+ * not affine in the velocities and obeys Chetaev's condition.
+ */
+pc_status pc_model_set_constraint_kind(pc_model *model,
+                                       const char *constraint,
+                                       const char *kind,
+                                       pc_error **error);
+
+/**
+ * Adds an event: an expression passes through zero. `direction` is "rising", "falling" or "both"; NULL for both.
+ * If `terminal` is not 0 the motion ends there.
+ */
+pc_status pc_model_add_event(pc_model *model,
+                             const char *name,
+                             const char *when,
+                             const char *direction,
+                             int terminal,
+                             pc_error **error);
+
+/**
+ * Has an event set a coordinate, quasi-velocity or velocity `x'` to the value of an expression, in which all
+ * names stand for what was before the event.
+ */
+pc_status pc_model_add_reset(pc_model *model,
+                             const char *event,
+                             const char *name,
+                             const char *expression,
+                             pc_error **error);
+
+/**
+ * Sets the time at the start; 0 unless set.
+ */
+pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
+
+/**
+ * Sets the time to which the program `pc` runs the model. It is written to the text, as are the next four; a
+ * solver is told by its own options.
+ */
+pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
+
+/**
+ * Sets the number of rows, from 2, that the program `pc` writes.
+ */
+pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error);
+
+/**
+ * Sets the tolerances with which the program `pc` runs the model, both positive.
+ */
+pc_status pc_model_set_tolerances(pc_model *model, double relative, double absolute, pc_error **error);
+
+/**
+ * Sets the method by which the program `pc` runs the model: "adams", "bdf".
+ */
+pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);
+
+/**
+ * Sets the form of the equations that the program `pc` integrates: "poincare", "canonical".
+ */
+pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
 
 /**
  * Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
@@ -730,6 +913,45 @@ pc_status pc_system_set_parameters(pc_system *system, const double *values, size
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
+ * Declares that a force which a function of yours computes acts on a quasi-velocity; on a coordinate if the
+ * model declares no quasi-velocities. It adds to what else acts there. The function belongs to the system, not
+ * to the model: pc_system_set_force. An unknown name is found by pc_model_check and pc_system_new.
+ */
+pc_status pc_model_add_external_force(pc_model *model,
+                                      const char *on,
+                                      pc_error **error);
+
+/**
+ * The number of external forces. 0 of NULL.
+ */
+size_t pc_system_force_count(const pc_system *system);
+
+/**
+ * The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+ */
+const char *pc_system_force_name(const pc_system *system, size_t index);
+
+/**
+ * Sets the function that computes the external forces, all at once: the Q_s of the declared quasi-velocities.
+ * Until then nothing that needs them can be evaluated. `jacobian` may be NULL: the derivatives of the forces,
+ * and only these, are then difference quotients.
+ *
+ * Copies, kernels and solvers made from the system afterwards share the functions and `user`; those made before
+ * keep what they had. The functions are called by whichever thread evaluates, so by several at the same time if
+ * several use copies. They may call any function on other handles, and of the same system pc_system_..._name and
+ * sizes.
+ *
+ * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
+ * that shares it is freed or given another function.
+ */
+pc_status pc_system_set_force(pc_system *system,
+                              pc_force_function function,
+                              pc_force_jacobian jacobian,
+                              void *user,
+                              pc_destroy destroy,
+                              pc_error **error);
+
+/**
  * Writes the rate f(t, y) of the state to ydot.
  */
 pc_status pc_system_rhs(pc_system *system,
@@ -801,6 +1023,7 @@ pc_status pc_system_project(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
  *
  * In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
+ * Observables with accelerations in them are not finite where external forces cannot be computed.
  */
 pc_status pc_system_observe(pc_system *system,
                             double t,
@@ -811,7 +1034,7 @@ pc_status pc_system_observe(pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the energy y_s η_s − L at (t, y).
+ * Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
  */
 pc_status pc_system_energy(pc_system *system,
                            double t,
@@ -893,6 +1116,25 @@ pc_status pc_system_residual(pc_system *system,
                              pc_error **error);
 
 /**
+ * Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
+ *
+ *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
+ *
+ * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no forces. The functions are
+ * expressions of the model, of coordinates and velocities; the momenta y_s = ∂L/∂η_s are put in. Under
+ * nonholonomic constraints it is the almost-Poisson bracket of the independent momenta. Each call derives, as
+ * pc_system_new does.
+ */
+pc_status pc_system_bracket(pc_system *system,
+                            const char *f,
+                            const char *g,
+                            double t,
+                            const double *y,
+                            size_t y_length,
+                            double *value,
+                            pc_error **error);
+
+/**
  * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
  * pc_system_new does.
  */
@@ -917,8 +1159,10 @@ pc_status pc_system_to_quasi_velocities(pc_system *system,
                                         pc_error **error);
 
 /**
- * Prints the equations, derived anew: kinematics, then M η̇ = r and the energy, or momenta, Hamiltonian and ẏ =
- * …; with multipliers without the reactions. `format` is a pc_format. Free the text with pc_string_free.
+ * Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets, equations, energy
+ * and reactions, or momenta and Hamiltonian, and the operations of one right-hand side. Where multipliers hold
+ * constraints, those of independent velocities are shown. `format` is a pc_format. Parameters have the values
+ * of the model. Free the text with pc_string_free.
  */
 pc_status pc_system_print(const pc_system *system,
                           int format,
@@ -929,7 +1173,8 @@ pc_status pc_system_print(const pc_system *system,
  * Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
  * where NAME is `name`, spelt as an identifier. The source has the right-hand side, its Jacobian, the mass
  * matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
- * system, and says at its head how it is used. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+ * system, and says at its head how it is used. External forces are parameters of it, after the others, called
+ * `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
  * capitals) to a program that integrates from the start of the model to that time. Free both texts with
  * pc_string_free.
  */

@@ -44,7 +44,7 @@ pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut
 ///
 /// # Safety
 /// `model` is null or a live handle, `error` null or a place for a pointer.
-unsafe fn draft(
+pub(crate) unsafe fn draft(
     model: *mut pc_model,
     error: *mut *mut pc_error,
     what: &'static str,
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        draft.add(Section::Parameters, name, number(finite(value, "value")?));
+        draft.add(Section::Parameters, &[name], number(finite(value, "value")?));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -87,7 +87,7 @@ pub unsafe extern "C" fn pc_model_add_definition(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
-        draft.add(Section::Definitions, name, quoted(expression));
+        draft.add(Section::Definitions, &[name], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn pc_model_add_coordinate(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        draft.add(Section::Coordinates, name, number(finite(start, "start")?));
+        draft.add(Section::Coordinates, &[name], number(finite(start, "start")?));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -128,14 +128,14 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
         let start = number(finite(start, "start")?);
-        let value = if definition.is_null() {
-            start
+        if definition.is_null() {
+            draft.add(Section::QuasiVelocities, &[name], start);
         } else {
             // SAFETY: text, as above.
             let definition = unsafe { text(definition, "definition") }?;
-            format!("{{ is = {}, start = {start} }}", quoted(definition))
-        };
-        draft.add(Section::QuasiVelocities, name, value);
+            draft.add(Section::QuasiVelocities, &[name, "is"], quoted(definition));
+            draft.add(Section::QuasiVelocities, &[name, "start"], start);
+        }
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn pc_model_set_kinematics(
         // SAFETY: null or text, as the preamble demands.
         let (coordinate, velocity) =
             unsafe { (text(coordinate, "coordinate")?, text(velocity, "velocity")?) };
-        draft.put(Section::Kinematics, coordinate, quoted(velocity));
+        draft.put(Section::Kinematics, &[coordinate], quoted(velocity));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn pc_model_set_algebra(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        draft.put(Section::Algebra, "name", quoted(name));
+        draft.put(Section::Algebra, &["name"], quoted(name));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -194,14 +194,15 @@ pub unsafe extern "C" fn pc_model_set_bracket(
         // SAFETY: null or text, as the preamble demands.
         let (left, right, value) =
             unsafe { (text(left, "left")?, text(right, "right")?, text(value, "value")?) };
-        draft.put(Section::Brackets, &format!("{left},{right}"), quoted(value));
+        draft.put(Section::Brackets, &[&format!("{left},{right}")], quoted(value));
         Ok(())
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint: the expression, of coordinates or of velocities, vanishes.
+/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not affine in the
+/// velocities is said to be so by pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,
@@ -212,7 +213,7 @@ pub unsafe extern "C" fn pc_model_add_constraint(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
-        draft.add(Section::Constraints, name, quoted(expression));
+        draft.add(Section::Constraints, &[name, "expr"], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -229,7 +230,7 @@ pub unsafe extern "C" fn pc_model_set_lagrangian(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let expression = unsafe { text(expression, "expression") }?;
-        draft.put(Section::Lagrangian, "lagrangian", quoted(expression));
+        draft.put(Section::Lagrangian, &["lagrangian"], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -246,7 +247,7 @@ pub unsafe extern "C" fn pc_model_set_kinetic(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let expression = unsafe { text(expression, "expression") }?;
-        draft.put(Section::Lagrangian, "kinetic", quoted(expression));
+        draft.put(Section::Lagrangian, &["kinetic"], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -263,7 +264,7 @@ pub unsafe extern "C" fn pc_model_set_potential(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let expression = unsafe { text(expression, "expression") }?;
-        draft.put(Section::Lagrangian, "potential", quoted(expression));
+        draft.put(Section::Lagrangian, &["potential"], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -280,7 +281,7 @@ pub unsafe extern "C" fn pc_model_set_dissipation(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let expression = unsafe { text(expression, "expression") }?;
-        draft.put(Section::Lagrangian, "dissipation", quoted(expression));
+        draft.put(Section::Lagrangian, &["dissipation"], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -298,7 +299,7 @@ pub unsafe extern "C" fn pc_model_add_force(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (on, expression) = unsafe { (text(on, "on")?, text(expression, "expression")?) };
-        draft.add(Section::Forces, on, quoted(expression));
+        draft.add(Section::Forces, &[on], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -316,7 +317,7 @@ pub unsafe extern "C" fn pc_model_add_integral(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
-        draft.add(Section::Integrals, name, quoted(expression));
+        draft.add(Section::Integrals, &[name], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -334,7 +335,7 @@ pub unsafe extern "C" fn pc_model_add_output(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
-        draft.add(Section::Outputs, name, quoted(expression));
+        draft.add(Section::Outputs, &[name], quoted(expression));
         Ok(())
     };
     // SAFETY: as the preamble demands.

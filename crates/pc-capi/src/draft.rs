@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ::pc_model::{Document, ModelError, Source, UnknownParameter};
+use ::pc_model::{Document, ModelError, Source, UnknownParameter, UnknownStart};
 
 /// Entries in the order in which they came, each in a section of the text.
 #[derive(Clone, Debug)]
@@ -14,7 +14,8 @@ pub(crate) struct Draft {
 #[derive(Clone, Debug)]
 struct Entry {
     section: Section,
-    key: String,
+    /// The key, and those of the tables in it.
+    keys: Vec<String>,
     /// As written in the text.
     value: String,
 }
@@ -22,6 +23,7 @@ struct Entry {
 /// A section of the text, in the order of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Section {
+    Heading,
     Parameters,
     Definitions,
     Coordinates,
@@ -31,12 +33,16 @@ pub(crate) enum Section {
     Brackets,
     Constraints,
     Lagrangian,
+    Bodies,
     Forces,
     Integrals,
     Outputs,
+    Events,
+    Simulation,
 }
 
-const SECTIONS: [(Section, &str); 12] = [
+const SECTIONS: [(Section, &str); 16] = [
+    (Section::Heading, "model"),
     (Section::Parameters, "parameters"),
     (Section::Definitions, "definitions"),
     (Section::Coordinates, "coordinates"),
@@ -46,54 +52,98 @@ const SECTIONS: [(Section, &str); 12] = [
     (Section::Brackets, "algebra.brackets"),
     (Section::Constraints, "constraints"),
     (Section::Lagrangian, "lagrangian"),
+    (Section::Bodies, "bodies"),
     (Section::Forces, "forces"),
     (Section::Integrals, "integrals"),
     (Section::Outputs, "outputs"),
+    (Section::Events, "events"),
+    (Section::Simulation, "simulation"),
 ];
 
 impl Draft {
     pub(crate) fn new(name: &str) -> Draft {
-        Draft { name: name.to_owned(), entries: Vec::new() }
+        let mut draft = Draft { name: name.to_owned(), entries: Vec::new() };
+        draft.add(Section::Heading, &["name"], quoted(name));
+        draft
     }
 
     /// Adds an entry; that a name comes twice is found where the text is read.
-    pub(crate) fn add(&mut self, section: Section, key: &str, value: String) {
-        self.entries.push(Entry { section, key: key.to_owned(), value });
+    pub(crate) fn add(&mut self, section: Section, keys: &[&str], value: String) {
+        let keys = keys.iter().map(|&key| key.to_owned()).collect();
+        self.entries.push(Entry { section, keys, value });
     }
 
     /// Adds an entry, or gives the one there is a new value.
-    pub(crate) fn put(&mut self, section: Section, key: &str, value: String) {
-        match self.find(section, key) {
+    pub(crate) fn put(&mut self, section: Section, keys: &[&str], value: String) {
+        match self.find(section, keys) {
             Some(entry) => entry.value = value,
-            None => self.add(section, key, value),
+            None => self.add(section, keys, value),
         }
     }
 
     /// Gives a parameter that has been added a new value.
     pub(crate) fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
-        if let Some(entry) = self.find(Section::Parameters, name) {
+        if let Some(entry) = self.find(Section::Parameters, &[name]) {
             entry.value = number(value);
             return Ok(());
         }
-        let parameters = self.entries.iter().filter(|entry| entry.section == Section::Parameters);
-        let known = parameters.map(|entry| entry.key.clone()).collect();
+        let known = self.names(Section::Parameters);
         Err(UnknownParameter { name: name.to_owned(), known })
     }
 
-    fn find(&mut self, section: Section, key: &str) -> Option<&mut Entry> {
-        self.entries.iter_mut().find(|entry| entry.section == section && entry.key == key)
+    /// Gives a coordinate or quasi-velocity that has been added another start value; velocities `x'` are added.
+    pub(crate) fn set_start(&mut self, name: &str, value: String) -> Result<(), UnknownStart> {
+        let places: [(Section, &[&str]); 3] = [
+            (Section::Coordinates, &[name]),
+            (Section::QuasiVelocities, &[name, "start"]),
+            (Section::QuasiVelocities, &[name]),
+        ];
+        for (section, keys) in places {
+            if let Some(entry) = self.find(section, keys) {
+                entry.value = value;
+                return Ok(());
+            }
+        }
+        if self.find(Section::QuasiVelocities, &[name, "is"]).is_some() {
+            self.add(Section::QuasiVelocities, &[name, "start"], value);
+            return Ok(());
+        }
+        let mut known = self.names(Section::Coordinates);
+        if name.strip_suffix('\'').is_some_and(|coordinate| known.iter().any(|known| known == coordinate)) {
+            self.add(Section::QuasiVelocities, &[name], value);
+            return Ok(());
+        }
+        known.extend(self.names(Section::QuasiVelocities));
+        Err(UnknownStart { name: name.to_owned(), known })
+    }
+
+    fn find(&mut self, section: Section, keys: &[&str]) -> Option<&mut Entry> {
+        self.entries.iter_mut().find(|entry| entry.section == section && entry.keys == keys)
+    }
+
+    /// The first keys of a section, each once.
+    fn names(&self, section: Section) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for name in self.entries.iter().filter(|entry| entry.section == section).map(|entry| &entry.keys[0]) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
     }
 
     /// The text model.
     pub(crate) fn text(&self) -> String {
-        let mut text = format!("[model]\nname = {}\n", quoted(&self.name));
+        let mut text = String::new();
         for (section, header) in SECTIONS {
             let mut entries = self.entries.iter().filter(|entry| entry.section == section).peekable();
             if entries.peek().is_some() {
-                let _ = writeln!(text, "\n[{header}]"); // writing to a string cannot fail
+                let line = if text.is_empty() { "" } else { "\n" };
+                let _ = writeln!(text, "{line}[{header}]"); // writing to a string cannot fail
             }
-            for Entry { key, value, .. } in entries {
-                let _ = writeln!(text, "{} = {value}", quoted(key));
+            for Entry { keys, value, .. } in entries {
+                let keys: Vec<String> = keys.iter().map(|key| quoted(key)).collect();
+                let _ = writeln!(text, "{} = {value}", keys.join("."));
             }
         }
         text
@@ -119,6 +169,12 @@ pub(crate) fn quoted(text: &str) -> String {
     }
     quoted.push('"');
     quoted
+}
+
+/// A list of strings of TOML.
+pub(crate) fn list(texts: &[&str]) -> String {
+    let texts: Vec<String> = texts.iter().map(|text| quoted(text)).collect();
+    format!("[{}]", texts.join(", "))
 }
 
 /// A finite number of TOML that reads back as the same.

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::ffi::{CString, c_char, c_int};
 
-use ::pc_model::{Category, ModelError, UnknownIntegral, UnknownParameter};
+use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_expr::Failure;
 use pc_mech::MechError;
 use pc_solve::SolveError;
@@ -70,6 +70,10 @@ pub(crate) enum Fault {
     UnknownParameter(#[from] UnknownParameter),
     #[error(transparent)]
     UnknownIntegral(#[from] UnknownIntegral),
+    #[error(transparent)]
+    UnknownStart(#[from] UnknownStart),
+    #[error(transparent)]
+    NotForced(#[from] NotForced),
     #[error("{0}")]
     Evaluation(#[from] Failure),
     #[error(transparent)]
@@ -97,9 +101,11 @@ impl Fault {
                 Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
             },
             Fault::Unsupported { .. } => pc_status::PC_UNSUPPORTED,
-            Fault::NoSuchModel { .. } | Fault::UnknownParameter(_) | Fault::UnknownIntegral(_) => {
-                pc_status::PC_NOT_FOUND
-            }
+            Fault::NoSuchModel { .. }
+            | Fault::UnknownParameter(_)
+            | Fault::UnknownIntegral(_)
+            | Fault::UnknownStart(_)
+            | Fault::NotForced(_) => pc_status::PC_NOT_FOUND,
             Fault::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
                 pc_status::PC_NOT_FOUND
             }

@@ -1,4 +1,175 @@
 //! What is integrated.
 
-/// The vector field of the equations of motion.
-pub(crate) type Field = pc_mech::Motion;
+use pc_mech::{Failure, ForcedMotion, MechError, Motion, VectorField};
+
+use crate::force::Controller;
+
+/// The vector field of the equations of motion, with or without forces that a function of the program computes.
+#[derive(Clone)]
+pub(crate) enum Field {
+    Free(Box<Motion>),
+    Forced(Box<ForcedMotion<Controller>>),
+}
+
+impl Field {
+    /// The motion under external forces on these quasi-velocities, whose function is still to be set.
+    pub(crate) fn new(motion: Motion, forces: Vec<String>) -> Result<Field, MechError> {
+        match forces.as_slice() {
+            [] => Ok(Field::Free(Box::new(motion))),
+            _ => Ok(Field::Forced(Box::new(motion.forced(forces, Controller::default())?))),
+        }
+    }
+
+    /// Sets the function of the forces. The one before is returned, or the new one where there are no forces.
+    pub(crate) fn set_force(&mut self, controller: Controller) -> Result<Controller, Controller> {
+        match self {
+            Field::Free(_) => Err(controller),
+            Field::Forced(forced) => Ok(std::mem::replace(forced.force_mut(), controller)),
+        }
+    }
+
+    fn motion(&self) -> &Motion {
+        match self {
+            Field::Free(motion) => motion,
+            Field::Forced(forced) => forced.motion(),
+        }
+    }
+
+    /// Number of coordinates.
+    pub(crate) fn coordinates(&self) -> usize {
+        self.motion().coordinates()
+    }
+
+    /// Names of the constraints that are kept by projection.
+    pub(crate) fn constraint_names(&self) -> &[String] {
+        self.motion().constraint_names()
+    }
+
+    /// What should be zero of each of them.
+    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        match self {
+            Field::Free(motion) => motion.constraint_residuals(t, y),
+            Field::Forced(forced) => forced.constraint_residuals(t, y),
+        }
+    }
+
+    /// The parameters, without forces.
+    pub(crate) fn parameters(&self) -> &[f64] {
+        match self {
+            Field::Free(motion) => motion.parameters(),
+            Field::Forced(forced) => forced.parameters(),
+        }
+    }
+
+    /// The parameters, to be changed.
+    pub(crate) fn parameters_mut(&mut self) -> &mut [f64] {
+        match self {
+            Field::Free(motion) => motion.parameters_mut(),
+            Field::Forced(forced) => forced.parameters_mut(),
+        }
+    }
+
+    /// The parameters, then the forces at (t, y).
+    pub(crate) fn inputs(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Failure> {
+        match self {
+            Field::Free(motion) => Ok(motion.parameters()),
+            Field::Forced(forced) => forced.inputs(t, y),
+        }
+    }
+
+    /// The observables; those that contain a force that cannot be computed are not finite.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        match self {
+            Field::Free(motion) => motion.observe(t, y),
+            Field::Forced(forced) => forced.observe(t, y),
+        }
+    }
+
+    /// The observables without a call of the function of the forces; those that contain a force are not finite.
+    pub(crate) fn observe_unforced(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        match self {
+            Field::Free(motion) => motion.observe(t, y),
+            Field::Forced(forced) => {
+                let controller = std::mem::take(forced.force_mut());
+                let values = forced.observe(t, y);
+                *forced.force_mut() = controller;
+                values
+            }
+        }
+    }
+}
+
+macro_rules! delegate {
+    ($self:expr, $field:pat => $call:expr) => {
+        match $self {
+            Field::Free($field) => $call,
+            Field::Forced($field) => $call,
+        }
+    };
+}
+
+impl VectorField for Field {
+    fn dim(&self) -> usize {
+        delegate!(self, field => field.dim())
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        delegate!(self, field => field.rhs(t, y, ydot))
+    }
+
+    fn has_jacobian(&self) -> bool {
+        delegate!(self, field => field.has_jacobian())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        delegate!(self, field => field.jacobian(t, y, jacobian))
+    }
+
+    fn sparsity(&self) -> Option<&pc_expr::Pattern> {
+        delegate!(self, field => field.sparsity())
+    }
+
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        match self {
+            Field::Free(motion) => motion.sparse_jacobian(t, y, values),
+            // The pattern is full: the same numbers in the same order.
+            Field::Forced(forced) => forced.jacobian(t, y, values),
+        }
+    }
+
+    fn has_jvp(&self) -> bool {
+        delegate!(self, field => field.has_jvp())
+    }
+
+    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        delegate!(self, field => field.jvp(t, y, v, product))
+    }
+
+    fn parameters_len(&self) -> usize {
+        delegate!(self, field => field.parameters_len())
+    }
+
+    fn has_parameter_jacobian(&self) -> bool {
+        delegate!(self, field => field.has_parameter_jacobian())
+    }
+
+    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        delegate!(self, field => field.parameter_jacobian(t, y, jacobian))
+    }
+
+    fn has_projection(&self) -> bool {
+        delegate!(self, field => field.has_projection())
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        delegate!(self, field => field.project(t, y))
+    }
+
+    fn restart(&mut self, t: f64, y: &[f64]) {
+        delegate!(self, field => field.restart(t, y));
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        delegate!(self, field => field.component_name(i))
+    }
+}

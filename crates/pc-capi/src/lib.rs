@@ -12,11 +12,14 @@
 #![expect(non_camel_case_types, reason = "the names are those of C")]
 #![expect(clippy::missing_safety_doc, reason = "one rule holds for all pointers: the preamble of the header")]
 
+mod bodies;
+mod bracket;
 mod builder;
 mod draft;
 mod entry;
 mod error;
 mod field;
+mod force;
 mod kernel;
 mod legendre;
 mod mechanics;
@@ -25,6 +28,7 @@ mod observe;
 mod options;
 mod pointer;
 mod rates;
+mod settings;
 mod solver;
 mod source;
 mod statistics;
@@ -33,8 +37,11 @@ mod strings;
 mod system;
 pub mod version;
 
+pub use bodies::*;
+pub use bracket::*;
 pub use builder::*;
 pub use error::*;
+pub use force::*;
 pub use kernel::*;
 pub use legendre::*;
 pub use mechanics::*;
@@ -42,6 +49,7 @@ pub use model::*;
 pub use observe::*;
 pub use options::*;
 pub use rates::*;
+pub use settings::*;
 pub use solver::*;
 pub use source::*;
 pub use statistics::*;

@@ -19,7 +19,7 @@ pub(crate) struct Mechanics {
     /// c_rs^m, the index m fastest, then s, then r.
     structure: Evaluator,
     operators: usize,
-    /// b η + b_0, then r.
+    /// b η + b_0, then r, which the external forces are inputs of too.
     right: Evaluator,
     /// Whether M η̇ = r is all there is: no multipliers, no momenta.
     complete: bool,
@@ -37,30 +37,39 @@ impl Mechanics {
         let coefficients = pairs.flat_map(|(r, s)| (1..=operators).map(move |m| structure.get(r, s, m)));
         let right = [equations.velocities(), equations.right_hand_side()].concat();
         let held = matches!(assembly.bound.form(), ::pc_model::Form::Held(_));
-        let compiled =
-            |values: &[Expr<'_>]| compile(&equations, values).map_err(|error| model.derivation_error(error));
+        let forces: Vec<Expr<'_>> =
+            equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
+        let compiled = |values: &[Expr<'_>], forces: &[Expr<'_>]| {
+            compile(&equations, values, forces).map_err(|error| model.derivation_error(error))
+        };
         Ok(Mechanics {
-            mass: compiled(equations.mass_matrix().entries())?,
-            structure: compiled(&coefficients.collect::<Vec<_>>())?,
+            mass: compiled(equations.mass_matrix().entries(), &[])?,
+            structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,
             operators,
-            right: compiled(&right)?,
+            right: compiled(&right, &forces)?,
             complete: variables == Variables::QuasiVelocities && !held,
         })
     }
 }
 
-fn compile<'g>(equations: &Equations<'g>, values: &[Expr<'g>]) -> Result<Evaluator, MechError> {
+/// `values` as functions of t, (x, η), the parameters and `forces`.
+pub(crate) fn compile<'g>(
+    equations: &Equations<'g>,
+    values: &[Expr<'g>],
+    forces: &[Expr<'g>],
+) -> Result<Evaluator, MechError> {
     let system = equations.system();
+    let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
     let inputs = Inputs {
         time: Some(system.frame().time()),
         state: [system.frame().coordinates(), system.quasi_velocities()].concat(),
-        parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+        parameters: parameters.chain(forces.iter().copied()).collect(),
     };
     Ok(Evaluator::new(Program::new(system.graph(), &inputs, values)?, Backend::Interpreter))
 }
 
 /// The values at (t, state), if all are numbers.
-fn evaluate(
+pub(crate) fn evaluate(
     program: &mut Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
     values: &mut [f64],
@@ -86,7 +95,12 @@ impl Inner {
     }
 
     /// The state (x, η) of a state.
-    fn in_quasi_velocities(&mut self, inventory: &Inventory, t: f64, y: &[f64]) -> Result<Vec<f64>, Fault> {
+    pub(crate) fn in_quasi_velocities(
+        &mut self,
+        inventory: &Inventory,
+        t: f64,
+        y: &[f64],
+    ) -> Result<Vec<f64>, Fault> {
         match inventory.variables {
             Variables::QuasiVelocities => Ok(y.to_vec()),
             Variables::Momenta => Ok(self.legendre(inventory)?.to_quasi_velocities(t, y)?),
@@ -204,7 +218,7 @@ pub unsafe extern "C" fn pc_system_residual(
             }
             residual.fill(0.0);
         } else {
-            evaluate(&mut mechanics.right, (t, y, motion.parameters()), residual)?;
+            evaluate(&mut mechanics.right, (t, y, motion.inputs(t, y)?), residual)?;
         }
         let k = dim - n;
         let mut mass = vec![0.0; k * k];

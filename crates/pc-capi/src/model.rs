@@ -21,6 +21,8 @@ pub struct pc_model {
 pub(crate) struct Contents {
     pub(crate) origin: Origin,
     kept: Vec<String>,
+    /// On what external forces act.
+    pub(crate) external: Vec<String>,
     projects_start: bool,
     pub(crate) observes_reactions: bool,
 }
@@ -41,6 +43,9 @@ impl Contents {
         for name in &self.kept {
             model.keep(name)?;
         }
+        for on in &self.external {
+            model.external_force(on)?;
+        }
         model.project_start(self.projects_start);
         model.observe_reactions(self.observes_reactions);
         Ok(model)
@@ -48,7 +53,13 @@ impl Contents {
 }
 
 pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
-    let contents = Contents { origin, kept: Vec::new(), projects_start: false, observes_reactions: false };
+    let contents = Contents {
+        origin,
+        kept: Vec::new(),
+        external: Vec::new(),
+        projects_start: false,
+        observes_reactions: false,
+    };
     Box::into_raw(Box::new(pc_model { contents: Mutex::new(contents) }))
 }
 

@@ -8,6 +8,7 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
 ///
 /// In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
+/// Observables with accelerations in them are not finite where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *mut pc_system,
@@ -30,7 +31,7 @@ pub unsafe extern "C" fn pc_system_observe(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the energy y_s η_s − L at (t, y).
+/// Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_energy(
     system: *mut pc_system,
@@ -45,7 +46,7 @@ pub unsafe extern "C" fn pc_system_energy(
         // SAFETY: as the preamble demands.
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         // The last of those that should stay constant.
-        energy[0] = inner.field.observe(t, y)[inventory.conserved - 1];
+        energy[0] = inner.field.observe_unforced(t, y)[inventory.conserved - 1];
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -73,6 +74,7 @@ pub unsafe extern "C" fn pc_system_reactions(
         let target = Target { data: values, length, expected: reactions.len(), what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        inner.field.inputs(t, y)?;
         let all = inner.field.observe(t, y);
         for (value, &place) in values.iter_mut().zip(reactions) {
             *value = all[place];

@@ -133,3 +133,24 @@ pub(crate) unsafe fn clear<T>(place: *mut *mut T, what: &'static str) -> Result<
 pub(crate) fn finite(value: f64, what: &'static str) -> Result<f64, Fault> {
     if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { what, value }) }
 }
+
+/// The texts of an array of C strings.
+///
+/// # Safety
+/// Null, or `length` pointers, each null or zero-terminated text that nobody changes during the call.
+pub(crate) unsafe fn texts<'a>(
+    list: *const *const c_char,
+    length: usize,
+    what: &'static str,
+) -> Result<Vec<&'a str>, Fault> {
+    if length == 0 {
+        return Ok(Vec::new());
+    }
+    if list.is_null() {
+        return Err(Fault::Null { what });
+    }
+    // SAFETY: not null, and then as promised.
+    let list = unsafe { slice::from_raw_parts(list, length) };
+    // SAFETY: as promised.
+    list.iter().map(|&entry| unsafe { text(entry, what) }).collect()
+}

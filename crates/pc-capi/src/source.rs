@@ -3,7 +3,8 @@
 use std::ffi::{c_char, c_int};
 
 use ::pc_model::Variables;
-use pc_mech::{EmitOptions, Expr, Graph, Language, Style, System};
+use pc_mech::{EmitOptions, Graph, Language};
+use pc_print::{Form, Page};
 
 use crate::entry::entry;
 use crate::error::{Fault, pc_error};
@@ -19,10 +20,14 @@ pub enum pc_format {
     PC_TEXT = 0,
     /// Displays of LaTeX with amsmath.
     PC_LATEX = 1,
+    /// One JSON object, for programs.
+    PC_JSON = 2,
 }
 
-/// Prints the equations, derived anew: kinematics, then M η̇ = r and the energy, or momenta, Hamiltonian and ẏ =
-/// …; with multipliers without the reactions. `format` is a pc_format. Free the text with pc_string_free.
+/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets, equations, energy
+/// and reactions, or momenta and Hamiltonian, and the operations of one right-hand side. Where multipliers hold
+/// constraints, those of independent velocities are shown. `format` is a pc_format. Parameters have the values
+/// of the model. Free the text with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
     system: *const pc_system,
@@ -33,84 +38,37 @@ pub unsafe extern "C" fn pc_system_print(
     let print = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(text, "text") }?;
-        let style = match format {
-            0 => Style::Book,
-            1 => Style::Latex,
+        let page = match format {
+            0 => Page::Text,
+            1 => Page::Latex,
+            2 => Page::Json,
             value => return Err(Fault::Choice { what: "pc_format", value: value.into() }),
         };
         // SAFETY: as above.
-        let parts = parts(&unsafe { handle(system, "system") }?.inventory, style)?;
-        let page = if style == Style::Latex { displays(&parts) } else { sections(&parts) };
+        let printed = printed(&unsafe { handle(system, "system") }?.inventory, page)?;
         // SAFETY: as above.
-        unsafe { write(text, give(&page), "text") }
+        unsafe { write(text, give(&printed), "text") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, print) }
 }
 
-/// A title, and the sides of equations under it.
-type Part = (&'static str, Vec<(String, String)>);
-
-fn parts(inventory: &Inventory, style: Style) -> Result<Vec<Part>, Fault> {
+fn printed(inventory: &Inventory, page: Page) -> Result<String, Fault> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
-    let pairs = |left: &[Expr<'_>], right: &[Expr<'_>]| -> Vec<(String, String)> {
-        let sides = left.iter().zip(right).map(|(l, r)| (l.display(style), r.display(style)));
-        sides.filter(|(left, right)| left != right).collect()
+    let form = match inventory.variables {
+        Variables::QuasiVelocities => Form::Poincare,
+        Variables::Momenta => Form::Canonical,
     };
-    let rates = |system: &System<'_>| -> Vec<String> {
-        let rate = |x: &Expr<'_>| graph.symbol(&format!("{x}'")).display(style);
-        system.frame().coordinates().iter().map(rate).collect()
-    };
-    let kinematics = |system: &System<'_>, velocities: &[Expr<'_>]| -> Vec<(String, String)> {
-        let sides = rates(system).into_iter().zip(velocities.iter().map(|v| v.display(style)));
-        sides.filter(|(left, right)| left != right).collect()
-    };
-    Ok(match inventory.variables {
-        Variables::QuasiVelocities => {
-            let equations = model.equations_in(&assembly, inventory.variables)?;
-            vec![
-                ("Kinematics", kinematics(equations.system(), equations.velocities())),
-                ("Equations", equations.balance(style)),
-                ("Energy", vec![("E".to_owned(), equations.energy().display(style))]),
-            ]
-        }
-        Variables::Momenta => {
-            let canonical = model.canonical_in(&assembly, inventory.variables)?;
-            vec![
-                ("Kinematics", kinematics(canonical.system(), canonical.velocities())),
-                ("Momenta", pairs(canonical.momenta(), canonical.momenta_of_velocities())),
-                ("Hamiltonian", vec![("H".to_owned(), canonical.hamiltonian().display(style))]),
-                ("Equations", canonical.balance(style)),
-            ]
-        }
-    })
-}
-
-fn sections(parts: &[Part]) -> String {
-    let lines = |lines: &[(String, String)]| -> String {
-        lines.iter().map(|(left, right)| format!("  {left} = {right}\n")).collect()
-    };
-    let section = |(title, pairs): &Part| format!("{title}\n{}", lines(pairs));
-    let written: Vec<String> = parts.iter().filter(|(_, pairs)| !pairs.is_empty()).map(section).collect();
-    written.join("\n")
-}
-
-fn displays(parts: &[Part]) -> String {
-    let lines = |lines: &[(String, String)]| -> String {
-        let lines: Vec<String> = lines.iter().map(|(left, right)| format!("  {left} &= {right}")).collect();
-        lines.join(" \\\\\n")
-    };
-    let display =
-        |(title, pairs): &Part| format!("% {title}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines(pairs));
-    let written: Vec<String> = parts.iter().filter(|(_, pairs)| !pairs.is_empty()).map(display).collect();
-    written.join("\n")
+    let printed = pc_print::page(form, page, model.title(), &assembly);
+    Ok(printed.map_err(|error| model.constraint_error(error))?)
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
 /// where NAME is `name`, spelt as an identifier. The source has the right-hand side, its Jacobian, the mass
 /// matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
-/// system, and says at its head how it is used. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+/// system, and says at its head how it is used. External forces are parameters of it, after the others, called
+/// `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
 /// capitals) to a program that integrates from the start of the model to that time. Free both texts with
 /// pc_string_free.
 #[unsafe(no_mangle)]

@@ -27,7 +27,7 @@ pub enum pc_status {
     PC_INTEGRATION = 8,
     /// The observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,
-    /// The handle is in use: by another thread, or by the call that called the observer.
+    /// The handle is in use: by another thread, or by the call that called the observer or the force function.
     PC_BUSY = 10,
     /// A fault of the library or no memory. The handle can only be freed.
     PC_INTERNAL = 11,

@@ -36,6 +36,8 @@ pub(crate) struct Inventory {
     /// Places of the reactions among the observables, with their names.
     pub(crate) reactions: Vec<usize>,
     pub(crate) pattern: Option<Pattern>,
+    /// The quasi-velocities on which external forces act.
+    pub(crate) forces: Vec<CString>,
     t_start: f64,
     start: Vec<f64>,
 }
@@ -76,6 +78,11 @@ impl pc_system {
         let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
         let places = motion.conserved_len()..observables.len();
         let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
+        let forces = model.external_forces();
+        let pattern = match forces.as_slice() {
+            [] => motion.sparsity().cloned(),
+            _ => Some(Pattern::full(motion.dim(), motion.dim())),
+        };
         let inventory = Inventory {
             variables,
             names: c_strings(motion.names()),
@@ -85,12 +92,14 @@ impl pc_system {
             conserved: motion.conserved_len(),
             constraints: c_strings(motion.constraint_names()),
             reactions: reactions.collect(),
-            pattern: motion.sparsity().cloned(),
+            pattern,
+            forces: c_strings(&forces),
             t_start: assembly.t_start,
             start: flow.start.clone(),
             model,
         };
-        let inner = Inner { field: flow.motion, events: flow.events, mechanics: None, legendre: None };
+        let field = Field::new(flow.motion, forces)?;
+        let inner = Inner { field, events: flow.events, mechanics: None, legendre: None };
         Ok(pc_system { inventory: Arc::new(inventory), inner: Mutex::new(inner) })
     }
 }

@@ -302,7 +302,8 @@ fn equations_are_printed_and_emitted() {
     for (form, format, line) in [
         (pc_form::PC_POINCARE, pc_format::PC_TEXT, "I1 ω1' = "),
         (pc_form::PC_POINCARE, pc_format::PC_LATEX, "\\begin{align*}"),
-        (pc_form::PC_CANONICAL, pc_format::PC_TEXT, "Hamiltonian\n  H = "),
+        (pc_form::PC_POINCARE, pc_format::PC_JSON, "\"mass_matrix\": ["),
+        (pc_form::PC_CANONICAL, pc_format::PC_TEXT, "Hamiltonian\n  p_ω1²/(2 I1)"),
     ] {
         let system = model.system(form).unwrap();
         let mut text = ptr::null_mut();

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use pc_cli::args::RunForm;
-use pc_cli::derive::{balance, brackets, kinematics};
 use pc_cli::output::Destination;
 use pc_cli::plan::Plan;
 use pc_cli::plot::Picture;
@@ -14,6 +13,7 @@ use pc_cli::run::{Run, integrate};
 use pc_cli::{input, text};
 use pc_mech::Graph;
 use pc_model::{Builtin, Model};
+use pc_print::{balance, brackets, columns, kinematics};
 use pc_solve::Method;
 
 const MODEL: &str = "heavy-top-lagrange";
@@ -107,11 +107,11 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
 }
 
 fn title(title: &str) {
-    println!("\n  {title}\n  {}\n", "═".repeat(text::columns(title)));
+    println!("\n  {title}\n  {}\n", "═".repeat(columns(title)));
 }
 
 fn section(title: &str) {
-    println!("\n── {title} {}", "─".repeat(94_usize.saturating_sub(text::columns(title))));
+    println!("\n── {title} {}", "─".repeat(94_usize.saturating_sub(columns(title))));
 }
 
 /// The sections that make the mechanics, without comments.

@@ -198,6 +198,27 @@ pub enum Form {
     Voronets,
 }
 
+impl From<Page> for pc_print::Page {
+    fn from(page: Page) -> Self {
+        match page {
+            Page::Text => pc_print::Page::Text,
+            Page::Latex => pc_print::Page::Latex,
+            Page::Json => pc_print::Page::Json,
+        }
+    }
+}
+
+impl From<Form> for pc_print::Form {
+    fn from(form: Form) -> Self {
+        match form {
+            Form::Poincare => pc_print::Form::Poincare,
+            Form::Canonical => pc_print::Form::Canonical,
+            Form::Lagrange => pc_print::Form::Lagrange,
+            Form::Voronets => pc_print::Form::Voronets,
+        }
+    }
+}
+
 /// More columns of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Outputs {

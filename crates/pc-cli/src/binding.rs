@@ -1,43 +1,9 @@
 //! What is said of constraints beside the equations.
 
-use pc_mech::{Constraint, Expr, Style, System};
+use pc_mech::{Constraint, Expr, System};
 use pc_model::{Assembly, Form};
-use pc_nonholo::Kind;
-use serde_json::{Value, json};
 
-use crate::derive::Derived;
 use crate::text::{say, short, wrapped};
-
-/// What vanishes, a line a constraint.
-pub fn constraints(derived: &Derived<'_>) -> Vec<String> {
-    let lines = derived.constraints.iter().map(|(constraint, kind)| {
-        let (left, kind) = (derived.vanishing(constraint).display(Style::Book), kind_in_words(*kind));
-        format!("{}: {left} = 0   ({kind})", constraint.name())
-    });
-    lines.collect()
-}
-
-/// What a constraint does.
-pub fn kind_in_words(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Position => "holonomic",
-        Kind::Integrable => "holonomic in disguise: integrable",
-        Kind::Nonholonomic { .. } => "nonholonomic",
-        Kind::Nonlinear => "nonholonomic, not affine in the velocities",
-    }
-}
-
-/// The constraints for programs.
-pub fn constraint_objects(derived: &Derived<'_>) -> Value {
-    let object = |(constraint, kind): &(Constraint<'_>, Kind)| {
-        json!({
-            "name": constraint.name(),
-            "expression": derived.vanishing(constraint).to_string(),
-            "kind": kind_in_words(*kind),
-        })
-    };
-    derived.constraints.iter().map(object).collect()
-}
 
 /// The constraints that were dropped, each with the reason.
 pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
@@ -87,17 +53,6 @@ pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
 pub fn say_choice(choice: &str) {
     say(format_args!("note: {}\n", choice.replace('\n', "\n      ")));
 }
-
-/// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
-pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
-    let Form::Held(held) = assembly.bound.form() else { return None };
-    let mut constraints = held.multipliers.constraints().iter();
-    let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
-    (!same).then_some(ENERGY_REMARK)
-}
-
-const ENERGY_REMARK: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral). \
-                             The energy of a run is that of all velocities.";
 
 /// Says where the start was moved, on standard error.
 pub fn say_moved(assembly: &Assembly<'_>) {

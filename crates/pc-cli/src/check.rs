@@ -7,17 +7,17 @@ mod steady;
 use pc_mech::{Equations, Expr, Graph, MechError, Motion, Neighbourhood, VectorField};
 use pc_model::{Assembly, Form, Model, Verdict};
 use pc_nonholo::{Kind, Redundant};
+use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
 use serde_json::{Value, json};
 
 use self::frame::FrameFacts;
 use self::integrals::Integral;
 use self::steady::Search;
 use crate::args::{CheckArguments, Format};
-use crate::binding::{NEGATIVE_ENERGY, dropped, energy_remark, kind_in_words, say_moved};
-use crate::derive::{Operations, counted};
+use crate::binding::{NEGATIVE_ENERGY, dropped, say_moved};
 use crate::error::CliError;
 use crate::input;
-use crate::text::{assignments, columns, labelled, print, short, small, wrapped};
+use crate::text::{assignments, labelled, print, short, small, wrapped};
 
 /// Prints what can be said of a model before it is run.
 ///
@@ -99,7 +99,7 @@ impl<'g> Report<'g> {
         }
         integrals::say_what_jumps(&mut integrals, assembly);
         Ok(Report {
-            title: input::title(model).to_owned(),
+            title: model.title().to_owned(),
             coordinates: names(frame.coordinates()),
             quasi_velocities: names(system.quasi_velocities()),
             rank: frame.rank(),

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use pc_mech::{EmitOptions, Graph, Language};
+use pc_print::energy_remark;
 
 use crate::args::{EmitArguments, Lang};
-use crate::binding::{choice, energy_remark, say_choice, say_dropped, say_moved};
+use crate::binding::{choice, say_choice, say_dropped, say_moved};
 use crate::error::CliError;
 use crate::input;
 use crate::output::atomic;
@@ -28,7 +29,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
         Lang::Rust => Language::Rust,
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
-    options = options.title(input::title(&model));
+    options = options.title(model.title());
     say_dropped(&assembly);
     say_moved(&assembly);
     let mut remarks = Vec::new();

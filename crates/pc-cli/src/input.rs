@@ -71,9 +71,3 @@ pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equa
     let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;
     Ok((assembly, equations))
 }
-
-/// What the model calls itself, else the name of its file.
-pub fn title(model: &Model) -> &str {
-    let document = model.document();
-    document.model.name.as_ref().map_or_else(|| document.source.name(), |name| name.value.as_str())
-}

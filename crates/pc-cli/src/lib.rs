@@ -14,7 +14,6 @@
 
 pub mod args;
 pub mod binding;
-pub mod canonical;
 pub mod check;
 pub mod derive;
 pub mod emit;
@@ -23,7 +22,6 @@ mod follow;
 mod identity;
 pub mod input;
 mod interrupt;
-pub mod latex;
 pub mod models;
 pub mod output;
 pub mod plan;

@@ -4,10 +4,11 @@ use std::io::{self, Write};
 
 use pc_algebra::{CATALOGUE, LieAlgebra};
 use pc_model::{BUILTIN, Builtin};
+use pc_print::{columns, combination};
 
 use crate::args::ModelsArguments;
 use crate::error::CliError;
-use crate::text::{columns, print};
+use crate::text::print;
 
 /// Prints the built-in models, or the algebras that have a name.
 ///
@@ -51,7 +52,7 @@ fn brackets(algebra: &LieAlgebra) -> Vec<String> {
     let mut brackets = Vec::new();
     for (r, s) in (0..k).flat_map(|r| (r + 1..k).map(move |s| (r, s))) {
         let terms = (0..k).map(|m| (algebra.constant(r, s, m).to_string(), format!("X{}", m + 1)));
-        let sum = crate::text::combination(terms);
+        let sum = combination(terms);
         if sum != "0" {
             brackets.push(format!("[X{},X{}] = {sum}", r + 1, s + 1));
         }

@@ -166,7 +166,7 @@ pub fn integrate_saved(
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
     Ok(Run {
-        title: input::title(model).to_owned(),
+        title: model.title().to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
         table: Table::new(&mut flow, &trajectory),

@@ -1,9 +1,10 @@
 //! What is said about a run, and what a file keeps of it.
 
+use pc_print::columns;
 use serde_json::{Map, Value, json};
 
 use crate::run::{Ending, Run};
-use crate::text::{assignments, columns, labelled, short, small};
+use crate::text::{assignments, labelled, short, small};
 
 const LABEL: usize = 9;
 const WIDTH: usize = 86;

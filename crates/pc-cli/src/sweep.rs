@@ -63,7 +63,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let motion = Sheet::motion(&model, !all_rows);
     let columns = Sheet::motion(&model, false).len();
     let sheet = Sheet::new(&design, &motion);
-    let title = input::title(&model).to_owned();
+    let title = model.title().to_owned();
     let header = header(&model, arguments, &plan, form);
     let mut journal = Journal::open(destination.path(), &header)?;
     let (members, before) = (design.members(), journal.tally().done);

@@ -237,7 +237,24 @@ pub enum MechError {
     ExternalForceNotFinite {
         /// The quasi-velocity it acts on.
         quasi_velocity: String,
-        /// The force, or its derivative.
+        /// The force.
+        value: f64,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// A derivative of an external force that is not a number.
+    #[error(
+        "the derivative by `{by}` of the external force on `{quasi_velocity}` is {value} at t = {t}{}",
+        listed(state)
+    )]
+    ExternalSlopeNotFinite {
+        /// The quasi-velocity it acts on.
+        quasi_velocity: String,
+        /// The component of the state.
+        by: String,
+        /// The derivative.
         value: f64,
         /// Time.
         t: f64,

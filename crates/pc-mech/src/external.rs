@@ -173,21 +173,40 @@ fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
 
-impl<F: ExternalForce> ForcedMotion<F> {
-    fn new(motion: Motion, external: &[(String, Expr<'_>)], force: F) -> Result<ForcedMotion<F>, MechError> {
-        if external.is_empty() {
+impl Motion {
+    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which external forces were
+    /// [declared](crate::SystemBuilder::external_force), in that order. What it [keeps](Motion::keep) it keeps. It has a
+    /// Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
+    ///
+    /// # Errors
+    /// [`MechError::NoExternalForce`] without names; [`MechError::Shape`] for more names than the motion has inputs.
+    pub fn forced<F: ExternalForce>(
+        self,
+        names: Vec<String>,
+        force: F,
+    ) -> Result<ForcedMotion<F>, MechError> {
+        if names.is_empty() {
             return Err(MechError::NoExternalForce);
         }
-        let (dim, inputs, forces) = (motion.dim(), motion.parameters_len(), external.len());
+        let (dim, inputs, forces) = (self.dim(), self.parameters_len(), names.len());
+        let what = "the list of external forces";
+        let parameters = inputs.checked_sub(forces);
+        let parameters = parameters.ok_or(MechError::Shape { what, found: forces, expected: inputs })?;
         Ok(ForcedMotion {
             force,
-            names: external.iter().map(|(name, _)| name.clone()).collect(),
-            parameters: inputs - forces,
+            names,
+            parameters,
             values: vec![0.0; forces],
             slopes: vec![0.0; forces * dim],
             columns: vec![0.0; inputs * dim],
-            motion,
+            motion: self,
         })
+    }
+}
+
+impl<F: ExternalForce> ForcedMotion<F> {
+    fn new(motion: Motion, external: &[(String, Expr<'_>)], force: F) -> Result<ForcedMotion<F>, MechError> {
+        motion.forced(external.iter().map(|(name, _)| name.clone()).collect(), force)
     }
 
     /// The motion as a function of the forces, which follow its parameters.
@@ -215,6 +234,23 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &mut self.motion.parameters_mut()[..self.parameters]
     }
 
+    /// The parameters, then the forces at (t, y): the run-time inputs of all that is compiled of the system.
+    ///
+    /// # Errors
+    /// [`MechError::ExternalForceFailed`] and [`MechError::ExternalForceNotFinite`].
+    pub fn inputs(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Failure> {
+        self.apply(t, y)?;
+        Ok(self.motion.parameters())
+    }
+
+    /// What should be zero of each constraint at (t, y), as [`Motion::constraint_residuals`] gives it.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state.
+    pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.motion.constraint_residuals(t, y)
+    }
+
     /// The observables at (t, y), as [`Motion::observe`] gives them; those that contain a force that cannot be
     /// computed are not finite.
     ///
@@ -232,7 +268,14 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.values.fill(f64::NAN);
         let outcome = self.force.force(t, y, &mut self.values);
         outcome.map_err(|failure| self.failed(&failure, t))?;
-        self.check_finite(&self.values, t, y)?;
+        if let Some(i) = self.values.iter().position(|value| !value.is_finite()) {
+            return Err(Failure::recoverable(MechError::ExternalForceNotFinite {
+                quasi_velocity: self.names[i].clone(),
+                value: self.values[i],
+                t,
+                state: self.state(y),
+            }));
+        }
         self.motion.parameters_mut()[self.parameters..].copy_from_slice(&self.values);
         Ok(())
     }
@@ -242,7 +285,16 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.slopes.fill(f64::NAN);
         let outcome = self.force.jacobian(t, y, &mut self.slopes);
         outcome.map_err(|failure| self.failed(&failure, t))?;
-        self.check_finite(&self.slopes, t, y)?;
+        if let Some(i) = self.slopes.iter().position(|value| !value.is_finite()) {
+            let (quasi_velocity, by) = (i % self.names.len(), i / self.names.len());
+            return Err(Failure::recoverable(MechError::ExternalSlopeNotFinite {
+                quasi_velocity: self.names[quasi_velocity].clone(),
+                by: self.motion.component_name(by),
+                value: self.slopes[i],
+                t,
+                state: self.state(y),
+            }));
+        }
         self.motion.parameter_jacobian(t, y, &mut self.columns)
     }
 
@@ -251,15 +303,9 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.columns.chunks_exact(self.motion.dim()).skip(self.parameters)
     }
 
-    /// `values` are forces, or derivatives of all of them in turn.
-    fn check_finite(&self, values: &[f64], t: f64, y: &[f64]) -> Result<(), Failure> {
-        let Some(i) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
-        Err(Failure::recoverable(MechError::ExternalForceNotFinite {
-            quasi_velocity: self.names[i % self.names.len()].clone(),
-            value: values[i],
-            t,
-            state: self.motion.names().iter().cloned().zip(y.iter().copied()).collect(),
-        }))
+    /// The state with its names.
+    fn state(&self, y: &[f64]) -> Vec<(String, f64)> {
+        self.motion.names().iter().cloned().zip(y.iter().copied()).collect()
     }
 
     #[cold]
@@ -281,7 +327,7 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
     }
 
     fn has_jacobian(&self) -> bool {
-        self.motion.has_jacobian()
+        self.motion.has_jacobian() && self.motion.has_parameter_jacobian()
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
@@ -298,7 +344,7 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
     }
 
     fn has_jvp(&self) -> bool {
-        self.motion.has_jvp()
+        self.motion.has_jvp() && self.motion.has_parameter_jacobian()
     }
 
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
@@ -334,6 +380,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.motion.project(t, y)
+    }
+
+    fn restart(&mut self, t: f64, y: &[f64]) {
+        self.motion.restart(t, y);
     }
 
     fn component_name(&self, i: usize) -> String {

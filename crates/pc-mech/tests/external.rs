@@ -265,7 +265,9 @@ fn failures_name_the_force() {
     let mut motion = equations.compile_forced(root).unwrap();
     motion.rhs(T, &Y, &mut rate).unwrap();
     let failure = motion.jacobian(T, &Y, &mut [0.0; 36]).unwrap_err();
-    assert!(failure.to_string().starts_with("the external force on `ω3` is NaN"), "{failure}");
+    let said = "the derivative by `γ1` of the external force on `ω3` is NaN at t = 0.7";
+    assert!(failure.to_string().starts_with(said), "{failure}");
+    assert!(matches!(MechError::from(failure), MechError::ExternalSlopeNotFinite { .. }));
 }
 
 #[test]

@@ -110,6 +110,7 @@ impl<'g> Assembler<'g, '_> {
         if let Some(structure) = self.structure(&eta)? {
             builder = builder.structure(structure);
         }
+        builder = builder.external_force(self.model.external_forces());
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;

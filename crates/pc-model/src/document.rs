@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use pc_expr::Direction;
-use pc_expr::parse::{Ast, Span, nearest};
+use pc_expr::parse::{Ast, Span, nearest, parse};
 
 use crate::error::{ErrorKind, ModelError, SECTIONS};
 use crate::source::{Place, Source};
@@ -56,6 +56,19 @@ pub struct Expression {
 }
 
 impl Expression {
+    /// The expression that is the whole of a text.
+    ///
+    /// # Errors
+    /// [`ModelError`] if it is none.
+    pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
+        let text = source.text();
+        let ast = parse(text).map_err(|error| {
+            let span = error.span.start..error.span.end;
+            source.error(&Place { entry: String::new(), span }, error)
+        })?;
+        Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
+    }
+
     /// Bytes of the file at which a part of the expression stands.
     pub fn locate(&self, span: Span) -> Range<usize> {
         self.map.locate(span.start..span.end)

@@ -26,6 +26,8 @@ pub struct Model {
     observes_reactions: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
+    /// The quasi-velocities, or coordinates, on which external forces act.
+    pub(crate) external: Vec<String>,
 }
 
 /// The system of a model, with the state its motion starts from.
@@ -135,12 +137,19 @@ impl Model {
             projects_start: false,
             observes_reactions: false,
             kept,
+            external: Vec::new(),
         }
     }
 
     /// The document it was made from.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// What the model calls itself, else the name of its file.
+    pub fn title(&self) -> &str {
+        let name = self.document.model.name.as_ref();
+        name.map_or_else(|| self.document.source.name(), |name| name.value.as_str())
     }
 
     /// Sets a parameter to another value than that of the file.
@@ -180,14 +189,15 @@ impl Model {
         let refused = |error| self.constraint_error(error);
         match assembly.bound.form() {
             Form::Held(held) => {
-                let (compiled, start) = (held.multipliers.compile(), assembly.start.clone());
+                let (compiled, start) =
+                    (held.multipliers.compile_for(self.options()), assembly.start.clone());
                 self.started(compiled, || held.multipliers.kept(&self.kept), assembly.t_start, start)
             }
             Form::Free | Form::Vanishing(_) => {
                 let equations = assembly.equations().map_err(refused)?;
                 let system = equations.system();
                 let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
-                let (compiled, start) = (equations.compile(), assembly.start_of(&state));
+                let (compiled, start) = (equations.compile_for(self.options()), assembly.start_of(&state));
                 self.started(compiled, || equations.kept(&self.kept), assembly.t_start, start)
             }
         }
@@ -203,12 +213,18 @@ impl Model {
         t_start: f64,
         start: &[f64],
     ) -> Result<Motion, ModelError> {
-        let compiled = equations.compile_for(CompileOptions::default());
+        let compiled = equations.compile_for(self.options());
         let (motion, _) = self.started(compiled, || equations.kept(&self.kept), t_start, start.to_vec())?;
         Ok(motion)
     }
 
-    /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept.
+    /// The derivative by external forces is part of the Jacobian under them.
+    fn options(&self) -> CompileOptions {
+        CompileOptions::default().parameter_jacobian(!self.external.is_empty())
+    }
+
+    /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept. These are to be
+    /// integrals whatever the external forces.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,
@@ -225,7 +241,12 @@ impl Model {
         })?;
         if !self.kept.is_empty() {
             let kept = kept().map_err(|error| self.derivation_error(error))?;
+            let forces = motion.parameters().len() - self.external.len()..;
+            for (i, force) in motion.parameters_mut()[forces.clone()].iter_mut().enumerate() {
+                *force = std::f64::consts::PI / (i + 1) as f64; // in balance with nothing that is written
+            }
             motion = motion.keep(kept, t_start, &start).map_err(|error| self.derivation_error(error))?;
+            motion.parameters_mut()[forces].fill(0.0);
         }
         Ok((motion, start))
     }

@@ -7,7 +7,7 @@ use crate::document::{Body, Document, Expression, NamedExpression};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
 use crate::resultant::{force_names, torque_names};
-use crate::source::Place;
+use crate::source::{Place, Source};
 
 /// What an expression may contain, by the place where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,8 @@ pub(crate) enum Stage {
     Dynamics,
     /// An event: everything but accelerations.
     Event,
+    /// A function that is asked for: everything but accelerations.
+    Function,
     /// Integrals and outputs: everything.
     Observation,
 }
@@ -40,6 +42,7 @@ impl Stage {
             Stage::Constraint => "a constraint",
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Event => "an event",
+            Stage::Function => "a function of the state",
             Stage::Observation => "an integral or output",
         }
     }
@@ -50,7 +53,9 @@ impl Stage {
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position => "parameters, coordinates and t",
-            Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Observation => "declared names",
+            Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
+                "declared names"
+            }
         }
     }
 }
@@ -67,6 +72,8 @@ pub(crate) struct Written<'g> {
 pub(crate) struct Scope<'g, 'd> {
     graph: &'g Graph,
     document: &'d Document,
+    /// Where the expressions stand.
+    source: &'d Source,
     time: Expr<'g>,
     /// Definitions that were used already: each is resolved once for a stage.
     definitions: Vec<(usize, Stage, Expr<'g>)>,
@@ -86,7 +93,20 @@ impl<'g, 'd> Scope<'g, 'd> {
             graph.symbol(name);
         }
         let time = graph.symbol("t");
-        Scope { graph, document, time, definitions: Vec::new(), written: Vec::new(), resultants: Vec::new() }
+        Scope {
+            graph,
+            document,
+            source: &document.source,
+            time,
+            definitions: Vec::new(),
+            written: Vec::new(),
+            resultants: Vec::new(),
+        }
+    }
+
+    /// The same names, for expressions that stand elsewhere.
+    pub(crate) fn elsewhere(self, source: &'d Source) -> Scope<'g, 'd> {
+        Scope { source, ..self }
     }
 
     pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
@@ -123,7 +143,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         fault: impl FnOnce(String) -> Fault,
     ) -> ModelError {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
-        self.document.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
+        self.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
     }
 
     fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
@@ -315,9 +335,12 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
             Stage::Start | Stage::Kinematics | Stage::Position => true,
-            Stage::Definition | Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Observation => {
-                false
-            }
+            Stage::Definition
+            | Stage::Constraint
+            | Stage::Dynamics
+            | Stage::Event
+            | Stage::Function
+            | Stage::Observation => false,
         };
         if refused {
             let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };

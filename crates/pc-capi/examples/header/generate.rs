@@ -38,18 +38,22 @@ pub(crate) fn header() -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 16] = [
+const FILES: [&str; 20] = [
     "version.rs",
     "status.rs",
     "error.rs",
     "strings.rs",
     "model.rs",
     "builder.rs",
+    "bodies.rs",
+    "settings.rs",
     "options.rs",
     "system.rs",
+    "force.rs",
     "rates.rs",
     "observe.rs",
     "mechanics.rs",
+    "bracket.rs",
     "legendre.rs",
     "source.rs",
     "kernel.rs",

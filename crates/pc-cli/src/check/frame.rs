@@ -2,9 +2,9 @@
 
 use pc_algebra::{AlgebraError, Holonomy, Integrability, LieAlgebra};
 use pc_mech::{Neighbourhood, StructureCoefficients, Style, System};
+use pc_print::recognised;
 use serde_json::{Value, json};
 
-use crate::derive::recognised;
 use crate::text::wrapped;
 
 /// Quasi-velocities that are velocities of something, and functions that no motion changes.

@@ -2,9 +2,10 @@
 
 use pc_mech::{Conservation, Equations, Expr, Graph, Neighbourhood, Number, Rates, Style, System};
 use pc_model::{Assembly, Form};
+use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
-use crate::text::{columns, combination, short};
+use crate::text::short;
 
 /// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
 const MOST_FUNCTIONS: usize = 150;

@@ -30,6 +30,12 @@ impl TextMap {
         Self { pieces: vec![whole], end: start + raw.len() }
     }
 
+    /// That of a text that stands as it is.
+    pub(crate) fn verbatim(text: &str) -> Self {
+        let whole = 0..text.len();
+        Self { pieces: vec![Piece { decoded: whole.clone(), file: whole }], end: text.len() }
+    }
+
     /// Place in the file of a place in the value.
     pub fn locate(&self, span: Range<usize>) -> Range<usize> {
         let start = self.place(span.start).map_or(self.end, |(piece, file)| file.unwrap_or(piece.file.start));

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use pc_mech::{Canonical, Expr, Style, System};
 
-use crate::canonical;
-use crate::derive::Derived;
+use crate::derived::Derived;
+use crate::momenta;
 
 /// One display for each part of Poincaré's equations, with a comment above it.
-pub fn page(heading: &str, derived: &Derived<'_>) -> String {
+pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {
     let equations = &derived.equations;
     let set = |list: &[(Expr<'_>, Expr<'_>)]| -> Vec<(String, String)> {
         list.iter().map(|(left, right)| (left.display(Style::Latex), right.display(Style::Latex))).collect()
@@ -32,14 +32,14 @@ fn constraints(derived: &Derived<'_>) -> Vec<(String, String)> {
 }
 
 /// The same of the canonical equations.
-pub fn canonical_page(heading: &str, derived: &Derived<'_>, equations: &Canonical<'_>) -> String {
+pub(crate) fn canonical(heading: &str, derived: &Derived<'_>, equations: &Canonical<'_>) -> String {
     displays(
         heading,
         &[
             ("Constraints", constraints(derived)),
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &[])),
-            ("Momenta", canonical::momenta(equations, Style::Latex)),
+            ("Momenta", momenta(equations, Style::Latex)),
             (
                 &titled("Hamiltonian", derived),
                 vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))],

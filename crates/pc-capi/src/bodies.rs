@@ -1,0 +1,134 @@
+//! Rigid bodies and particles, call by call.
+
+use std::ffi::c_char;
+
+use crate::builder::draft;
+use crate::draft::{Draft, Section, list, quoted};
+use crate::error::{Fault, pc_error};
+use crate::model::pc_model;
+use crate::pointer::{text, texts};
+use crate::status::pc_status;
+
+/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its mass centre or
+/// of a point of it that is at rest, as expressions of coordinates. Energy and forces follow from bodies; no
+/// Lagrangian is needed beside them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_body(
+    model: *mut pc_model,
+    name: *const c_char,
+    mass: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, mass) = unsafe { (text(name, "name")?, text(mass, "mass")?) };
+        // SAFETY: as above.
+        let position = unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] };
+        draft.add(Section::Bodies, &[name, "mass"], quoted(mass));
+        draft.add(Section::Bodies, &[name, "position"], list(&position));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_body", write) }
+}
+
+/// Sets the force on a body, which acts at its position, in axes of space.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_force(
+    model: *mut pc_model,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let what = ("force", "pc_model_set_body_force");
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+}
+
+/// Sets the torque on a rigid body, in the axes of its angular velocity.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_torque(
+    model: *mut pc_model,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let what = ("torque", "pc_model_set_body_torque");
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+}
+
+/// Sets the angular velocity of a rigid body, in axes of the body. Excludes pc_model_set_body_rotation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_angular_velocity(
+    model: *mut pc_model,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let what = ("angular_velocity", "pc_model_set_body_angular_velocity");
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+}
+
+/// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx, Iyy, Izz, or 6,
+/// which go on with Ixy, Iyz, Ixz.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_inertia(
+    model: *mut pc_model,
+    body: *const c_char,
+    entries: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or texts, as the preamble demands.
+    let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
+    let write = |draft: &mut Draft| part(draft, body, "inertia", entries);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_body_inertia", write) }
+}
+
+/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of space, row by
+/// row.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_rotation(
+    model: *mut pc_model,
+    body: *const c_char,
+    entries: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or texts, as the preamble demands.
+    let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
+    let write = |draft: &mut Draft| part(draft, body, "rotation", entries);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_body_rotation", write) }
+}
+
+/// Writes an entry of a body.
+fn part(
+    draft: &mut Draft,
+    body: *const c_char,
+    key: &str,
+    value: impl FnOnce() -> Result<String, Fault>,
+) -> Result<(), Fault> {
+    // SAFETY: null or text, as the preamble demands of the callers.
+    let body = unsafe { text(body, "body") }?;
+    draft.put(Section::Bodies, &[body, key], value()?);
+    Ok(())
+}
+
+/// Three expressions as a list.
+fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, Fault> {
+    // SAFETY: null or text, as the preamble demands of the callers.
+    Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
+}

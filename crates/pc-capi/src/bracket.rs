@@ -1,0 +1,75 @@
+//! The bracket of two functions of the state.
+
+use std::ffi::c_char;
+
+use pc_expr::Evaluator;
+use pc_mech::{Expr, Graph};
+
+use crate::error::{Fault, pc_error};
+use crate::mechanics::{compile, evaluate};
+use crate::pointer::text;
+use crate::rates::{State, Target, slices};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
+///
+///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
+///
+/// so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no forces. The functions are
+/// expressions of the model, of coordinates and velocities; the momenta y_s = ∂L/∂η_s are put in. Under
+/// nonholonomic constraints it is the almost-Poisson bracket of the independent momenta. Each call derives, as
+/// pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_bracket(
+    system: *mut pc_system,
+    f: *const c_char,
+    g: *const c_char,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    value: *mut f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compute = |inventory: &Inventory, inner: &mut Inner| {
+        let target = Target { data: value, length: 1, expected: 1, what: "value" };
+        // SAFETY: as the preamble demands.
+        let (y, value) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        // SAFETY: null or text, as the preamble demands.
+        let (f, g) = unsafe { (text(f, "f")?, text(g, "g")?) };
+        let mut bracket = derived(inventory, f, g)?;
+        let state = inner.in_quasi_velocities(inventory, t, y)?;
+        evaluate(&mut bracket, (t, &state, inner.field.parameters()), value)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
+/// (f, g) as a function of t and (x, η), η those of the state.
+fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, Fault> {
+    let (model, graph) = (&inventory.model, Graph::new());
+    let assembly = model.assemble(&graph)?;
+    if assembly.bound.nonlinear().is_some() {
+        let why = "a constraint is not affine in the velocities";
+        return Err(Fault::Unsupported { what: "a bracket", why });
+    }
+    let refused = |error| model.constraint_error(error);
+    let canonical = model.canonical_in(&assembly, ::pc_model::Variables::Momenta)?;
+    canonical.closed_quasi_velocities().map_err(|error| model.derivation_error(error))?;
+    let bracket = match assembly.bound.constrained(&assembly.at_start()).map_err(refused)? {
+        Some(constrained) => constrained.almost_poisson_bracket().map_err(refused)?,
+        None => canonical.system().bracket(),
+    };
+    let all = assembly.system.quasi_velocities();
+    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities()).map_err(refused)?;
+    let known: Vec<(Expr<'_>, Expr<'_>)> = all.iter().copied().zip(of_free).collect();
+    let in_momenta = |text: &str| -> Result<Expr<'_>, Fault> {
+        let function = model.function(&assembly, text)?;
+        Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
+    };
+    let value = bracket.of(in_momenta(f)?, in_momenta(g)?);
+    let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
+    let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
+    let equations = model.equations_in(&assembly, inventory.variables)?;
+    compile(&equations, &[value], &[]).map_err(|error| model.derivation_error(error).into())
+}

@@ -1,0 +1,205 @@
+//! Forces that a function of the program computes: controllers, contact, measured loads.
+
+use std::ffi::{c_char, c_int, c_void};
+use std::sync::Arc;
+
+use pc_mech::{ExternalForce, Failure};
+
+use crate::error::{Fault, pc_error};
+use crate::model::{Contents, change, pc_model};
+use crate::pointer::text;
+use crate::status::pc_status;
+use crate::strings::nth;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
+/// pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a
+/// positive number where the forces are not defined, so that a smaller step may help; a negative one to give
+/// up. What is left unwritten is not a number, and treated as a positive answer. It must return: no exceptions,
+/// no longjmp.
+pub type pc_force_function = Option<
+    unsafe extern "C" fn(
+        t: f64,
+        y: *const f64,
+        y_length: usize,
+        q: *mut f64,
+        q_length: usize,
+        user: *mut c_void,
+    ) -> c_int,
+>;
+
+/// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to `dq[i + j*e]`
+/// for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
+pub type pc_force_jacobian = Option<
+    unsafe extern "C" fn(
+        t: f64,
+        y: *const f64,
+        y_length: usize,
+        dq: *mut f64,
+        dq_length: usize,
+        user: *mut c_void,
+    ) -> c_int,
+>;
+
+/// Frees what the `user` of a function points to. It must return: no exceptions, no longjmp.
+pub type pc_destroy = Option<unsafe extern "C" fn(user: *mut c_void)>;
+
+type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, usize, *mut c_void) -> c_int;
+
+/// The functions of the forces, if they have been set; copies share them.
+#[derive(Clone, Default)]
+pub(crate) struct Controller(Option<Arc<Callback>>);
+
+struct Callback {
+    function: Function,
+    jacobian: Option<Function>,
+    user: User,
+}
+
+/// What belongs to the functions, freed with the last copy.
+struct User {
+    data: *mut c_void,
+    destroy: pc_destroy,
+}
+
+// SAFETY: pc_system_set_force demands that its functions take `user` on any thread, on several at the same time.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+impl Drop for User {
+    fn drop(&mut self) {
+        if let Some(destroy) = self.destroy {
+            // SAFETY: a function of that type and its argument, as pc_system_set_force demands; called once.
+            unsafe { destroy(self.data) };
+        }
+    }
+}
+
+/// Why there are no forces.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+enum NoForce {
+    #[error("no function was set for it; pc_system_set_force does")]
+    Unset,
+    #[error("its function returned {0}")]
+    Function(c_int),
+    #[error("the function of its derivatives returned {0}")]
+    Jacobian(c_int),
+}
+
+impl NoForce {
+    /// What the answer of a function means.
+    fn read(code: c_int, fault: fn(c_int) -> NoForce) -> Result<(), Failure> {
+        match code {
+            0 => Ok(()),
+            1.. => Err(Failure::recoverable(fault(code))),
+            _ => Err(Failure::fatal(fault(code))),
+        }
+    }
+}
+
+impl Callback {
+    /// The answer of one of its functions, which writes `values`.
+    fn call(&self, function: Function, t: f64, y: &[f64], values: &mut [f64]) -> c_int {
+        // SAFETY: a function of that type, as pc_system_set_force demands; the arrays are as long as said.
+        unsafe { function(t, y.as_ptr(), y.len(), values.as_mut_ptr(), values.len(), self.user.data) }
+    }
+}
+
+impl ExternalForce for Controller {
+    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
+        let callback = self.0.as_ref().ok_or_else(|| Failure::fatal(NoForce::Unset))?;
+        NoForce::read(callback.call(callback.function, t, y, q), NoForce::Function)
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
+        match self.0.as_ref().and_then(|callback| Some((callback, callback.jacobian?))) {
+            Some((callback, jacobian)) => NoForce::read(callback.call(jacobian, t, y, dq), NoForce::Jacobian),
+            None => Quotients(self).jacobian(t, y, dq),
+        }
+    }
+}
+
+/// A force whose derivatives are difference quotients.
+struct Quotients<'a>(&'a mut Controller);
+
+impl ExternalForce for Quotients<'_> {
+    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
+        self.0.force(t, y, q)
+    }
+}
+
+/// Declares that a force which a function of yours computes acts on a quasi-velocity; on a coordinate if the
+/// model declares no quasi-velocities. It adds to what else acts there. The function belongs to the system, not
+/// to the model: pc_system_set_force. An unknown name is found by pc_model_check and pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_external_force(
+    model: *mut pc_model,
+    on: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let declare = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        contents.external.push(unsafe { text(on, "on") }?.to_owned());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, declare) }
+}
+
+/// The number of external forces. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_force_count(system: *const pc_system) -> usize {
+    // SAFETY: null or a live handle, as the preamble demands.
+    unsafe { system.as_ref() }.map_or(0, |system| system.inventory.forces.len())
+}
+
+/// The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: usize) -> *const c_char {
+    // SAFETY: null or a live handle, as the preamble demands.
+    let system = unsafe { system.as_ref() };
+    system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))
+}
+
+/// Sets the function that computes the external forces, all at once: the Q_s of the declared quasi-velocities.
+/// Until then nothing that needs them can be evaluated. `jacobian` may be NULL: the derivatives of the forces,
+/// and only these, are then difference quotients.
+///
+/// Copies, kernels and solvers made from the system afterwards share the functions and `user`; those made before
+/// keep what they had. The functions are called by whichever thread evaluates, so by several at the same time if
+/// several use copies. They may call any function on other handles, and of the same system pc_system_..._name and
+/// sizes.
+///
+/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
+/// that shares it is freed or given another function.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_set_force(
+    system: *mut pc_system,
+    function: pc_force_function,
+    jacobian: pc_force_jacobian,
+    user: *mut c_void,
+    destroy: pc_destroy,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let user = User { data: user, destroy };
+    let mut unused = Controller::default();
+    let set = |_: &Inventory, inner: &mut Inner| {
+        let function = function.ok_or(Fault::Null { what: "function" })?;
+        let controller = Controller(Some(Arc::new(Callback { function, jacobian, user })));
+        let outcome = inner.field.set_force(controller);
+        let fault = outcome.is_err().then_some(NO_FORCES);
+        unused = outcome.unwrap_or_else(|refused| refused);
+        fault.map_or(Ok(()), Err)
+    };
+    // SAFETY: as the preamble demands.
+    let status = unsafe { inside(system, error, set) };
+    // What was there before goes when the system is no longer in use: `destroy` may call functions on it.
+    drop(unused);
+    status
+}
+
+const NO_FORCES: Fault = Fault::Unsupported {
+    what: "an external force",
+    why: "the model declares none; pc_model_add_external_force does",
+};

@@ -1,0 +1,254 @@
+//! What a model says beside its mechanics: title, start, kinds of constraints, events, how it is to be run.
+
+use std::ffi::{c_char, c_int};
+
+use crate::builder::draft;
+use crate::draft::{Draft, Section, number, quoted};
+use crate::error::{Fault, pc_error};
+use crate::model::{Contents, Origin, change, pc_model};
+use crate::pointer::{finite, text};
+use crate::status::pc_status;
+
+/// Says what the model is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_description(
+    model: *mut pc_model,
+    description: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { put(model, error, "pc_model_set_description", (Section::Heading, "description"), description) }
+}
+
+/// Says where the model comes from.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_reference(
+    model: *mut pc_model,
+    reference: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { put(model, error, "pc_model_set_reference", (Section::Heading, "reference"), reference) }
+}
+
+/// Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where there are no
+/// quasi-velocities, to another number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_start(
+    model: *mut pc_model,
+    name: *const c_char,
+    value: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let set = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        let value = finite(value, "value")?;
+        match &mut contents.origin {
+            Origin::Text(model) => model.set_start(name, value)?,
+            Origin::Calls(draft) => draft.set_start(name, number(value))?,
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, set) }
+}
+
+/// Sets the same to an expression of parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_start_expression(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        Ok(draft.set_start(name, quoted(expression))?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_start_expression", write) }
+}
+
+/// Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or "nonlinear" of one that is
+/// not affine in the velocities and obeys Chetaev's condition.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_constraint_kind(
+    model: *mut pc_model,
+    constraint: *const c_char,
+    kind: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (constraint, kind) = unsafe { (text(constraint, "constraint")?, text(kind, "kind")?) };
+        draft.put(Section::Constraints, &[constraint, "kind"], quoted(kind));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_constraint_kind", write) }
+}
+
+/// Adds an event: an expression passes through zero. `direction` is "rising", "falling" or "both"; NULL for both.
+/// If `terminal` is not 0 the motion ends there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_event(
+    model: *mut pc_model,
+    name: *const c_char,
+    when: *const c_char,
+    direction: *const c_char,
+    terminal: c_int,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, when) = unsafe { (text(name, "name")?, text(when, "when")?) };
+        // SAFETY: as above.
+        let direction = if direction.is_null() { "both" } else { unsafe { text(direction, "direction") }? };
+        draft.add(Section::Events, &[name, "when"], quoted(when));
+        draft.add(Section::Events, &[name, "direction"], quoted(direction));
+        draft.add(Section::Events, &[name, "terminal"], (terminal != 0).to_string());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_event", write) }
+}
+
+/// Has an event set a coordinate, quasi-velocity or velocity `x'` to the value of an expression, in which all
+/// names stand for what was before the event.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_reset(
+    model: *mut pc_model,
+    event: *const c_char,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (event, name) = unsafe { (text(event, "event")?, text(name, "name")?) };
+        // SAFETY: as above.
+        let expression = unsafe { text(expression, "expression") }?;
+        draft.add(Section::Events, &[event, "reset", name], quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_reset", write) }
+}
+
+/// Sets the time at the start; 0 unless set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_start_time(
+    model: *mut pc_model,
+    t: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
+}
+
+/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the next four; a
+/// solver is told by its own options.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_end_time(
+    model: *mut pc_model,
+    t: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { set_number(model, error, "pc_model_set_end_time", &[("t_end", t)]) }
+}
+
+/// Sets the number of rows, from 2, that the program `pc` writes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_samples(
+    model: *mut pc_model,
+    samples: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        draft.put(Section::Simulation, &["samples"], samples.to_string());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_samples", write) }
+}
+
+/// Sets the tolerances with which the program `pc` runs the model, both positive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_tolerances(
+    model: *mut pc_model,
+    relative: f64,
+    absolute: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let values = [("rtol", relative), ("atol", absolute)];
+    // SAFETY: as the preamble demands.
+    unsafe { set_number(model, error, "pc_model_set_tolerances", &values) }
+}
+
+/// Sets the method by which the program `pc` runs the model: "adams", "bdf".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_method(
+    model: *mut pc_model,
+    method: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { put(model, error, "pc_model_set_method", (Section::Simulation, "method"), method) }
+}
+
+/// Sets the form of the equations that the program `pc` integrates: "poincare", "canonical".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_form(
+    model: *mut pc_model,
+    form: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { put(model, error, "pc_model_set_form", (Section::Simulation, "form"), form) }
+}
+
+/// Writes an entry that is a text, called by its key.
+///
+/// # Safety
+/// As the preamble demands.
+unsafe fn put(
+    model: *mut pc_model,
+    error: *mut *mut pc_error,
+    what: &'static str,
+    (section, key): (Section, &'static str),
+    value: *const c_char,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as promised.
+        draft.put(section, &[key], quoted(unsafe { text(value, key) }?));
+        Ok(())
+    };
+    // SAFETY: as promised.
+    unsafe { draft(model, error, what, write) }
+}
+
+/// Writes numbers of `[simulation]`.
+///
+/// # Safety
+/// As the preamble demands.
+unsafe fn set_number(
+    model: *mut pc_model,
+    error: *mut *mut pc_error,
+    what: &'static str,
+    values: &[(&'static str, f64)],
+) -> pc_status {
+    let write = |draft: &mut Draft| -> Result<(), Fault> {
+        for &(key, value) in values {
+            finite(value, key)?;
+        }
+        for &(key, value) in values {
+            draft.put(Section::Simulation, &[key], number(value));
+        }
+        Ok(())
+    };
+    // SAFETY: as promised.
+    unsafe { draft(model, error, what, write) }
+}

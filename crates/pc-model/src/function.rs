@@ -1,0 +1,38 @@
+//! Functions of the state that are asked for beside those of the text.
+
+use pc_mech::Expr;
+
+use crate::document::Expression;
+use crate::error::ModelError;
+use crate::model::{Assembly, Model};
+use crate::scope::{Scope, Stage};
+use crate::source::Source;
+
+impl Model {
+    /// The function of (t, x, η) that a text says in the names of the model, where x' is the velocity of a coordinate x.
+    ///
+    /// ```
+    /// use pc_mech::Graph;
+    /// use pc_model::{Document, Model, Source};
+    ///
+    /// let text = "coordinates.r = 1.0\nquasi_velocities.p.is = \"r^2*r'\"\nlagrangian.kinetic = \"p^2\"";
+    /// let model = Model::new(Document::parse(Source::new("point.toml", text))?);
+    /// let graph = Graph::new();
+    /// let assembly = model.assemble(&graph)?;
+    /// assert_eq!(model.function(&assembly, "2*r*r'")?.to_string(), "2*p/r");
+    /// assert!(model.function(&assembly, "2*s").is_err());
+    /// # Ok::<(), pc_model::ModelError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError`] at the place in `text` that is to blame.
+    pub fn function<'g>(&self, assembly: &Assembly<'g>, text: &str) -> Result<Expr<'g>, ModelError> {
+        let (system, source) = (&assembly.system, Source::new("expression", text));
+        let expression = Expression::of(&source)?;
+        let mut scope = Scope::new(system.graph(), self.document()).elsewhere(&source);
+        let value = scope.resolve(&expression, Stage::Function)?;
+        let velocities = system.frame().velocities(system.quasi_velocities());
+        let velocities: Vec<_> = scope.velocities().into_iter().zip(velocities).collect();
+        Ok(system.graph().substitute(&[value], &velocities)[0])
+    }
+}

@@ -1,0 +1,122 @@
+//! Equations of motion in one of their forms, with what belongs to them.
+
+use pc_mech::{Constraint, Equations, Expr, Multipliers};
+use pc_model::{Assembly, Form as Kept};
+use pc_nonholo::{Kind, NonholoError, Voronets};
+
+use crate::Form;
+
+/// Equations of motion with what belongs to them.
+#[derive(Clone, Debug)]
+pub struct Derived<'g> {
+    /// M η̇ = r of the independent quasi-velocities.
+    pub equations: Equations<'g>,
+    /// The quasi-velocities that constraints keep at zero, over which brackets are summed too.
+    pub vanishing: Vec<Expr<'g>>,
+    /// The constraints with what they do.
+    pub constraints: Vec<(Constraint<'g>, Kind)>,
+    /// What the quasi-velocities that vanish are in velocities, where that is known.
+    pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The reactions with what they are equal to.
+    pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
+    /// What is to be known of the energy.
+    pub energy_remark: Option<&'static str>,
+}
+
+impl<'g> Derived<'g> {
+    /// The equations in a form, with its name.
+    ///
+    /// # Errors
+    /// [`NonholoError`] if there are none.
+    pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
+        let (bound, system) = (&assembly.bound, &assembly.system);
+        let multipliers = bound.multipliers();
+        let kinds = bound.verdicts().iter().map(|verdict| verdict.kind);
+        let constraints = multipliers.map(Multipliers::constraints).unwrap_or_default();
+        let plain = Derived {
+            equations: assembly.equations()?,
+            vanishing: Vec::new(),
+            constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
+            definitions: Vec::new(),
+            reactions: Vec::new(),
+            energy_remark: energy_remark(assembly),
+        };
+        let with = |equations: Equations<'g>, multipliers: &Multipliers<'g>| Derived {
+            equations,
+            constraints: multipliers.constraints().iter().cloned().zip(kinds.clone()).collect(),
+            ..plain.clone()
+        };
+        Ok(match (form, multipliers) {
+            (Form::Lagrange | Form::Voronets, None) => {
+                ("Lagrange's equations", Derived { equations: system.in_velocities()?.poincare()?, ..plain })
+            }
+            (Form::Lagrange, Some(multipliers)) => {
+                let held = multipliers.in_velocities()?;
+                let system = held.equations().system().with_added_forces(&held.reaction_forces())?;
+                let derived = with(system.poincare()?, &held);
+                ("Lagrange's equations with multipliers", Derived { energy_remark: None, ..derived })
+            }
+            (Form::Voronets, Some(multipliers)) => {
+                let held = multipliers.in_velocities()?;
+                let mut transform = system.velocity_transform()?;
+                let start = transform.to_velocities(assembly.t_start, &assembly.start);
+                let lagrange = held.equations().system();
+                let state = lagrange.frame().coordinates().iter().chain(lagrange.quasi_velocities()).copied();
+                let mut at: Vec<(Expr<'g>, f64)> = state.zip(start).collect();
+                at.push((lagrange.frame().time(), assembly.t_start));
+                let voronets = Voronets::new(&held, &at)?;
+                let name =
+                    if voronets.is_chaplygin() { "Chaplygin's equations" } else { "Voronets' equations" };
+                (name, with(voronets.system()?.poincare()?, &held))
+            }
+            (Form::Poincare, Some(held)) if held.is_nonlinear() => {
+                let system = held.equations().system().with_added_forces(&held.reaction_forces())?;
+                let reactions = bound.reactions(&assembly.at_start())?;
+                let name = "Poincaré's equations with multipliers";
+                (name, Derived { reactions, ..with(system.poincare()?, held) })
+            }
+            (Form::Poincare | Form::Canonical, _) => {
+                let reduced = bound.constrained(&assembly.at_start())?;
+                let name = "Poincaré's equations";
+                match (reduced, multipliers) {
+                    (Some(constrained), Some(multipliers)) => {
+                        let reactions = bound.reactions(&assembly.at_start())?;
+                        let vanishing = constrained.vanishing().to_vec();
+                        let in_velocities = multipliers.in_velocities().ok();
+                        let velocities = in_velocities.iter().flat_map(|held| held.velocities().to_vec());
+                        let definitions = multipliers.constraints().iter().map(Constraint::expression);
+                        let definitions = definitions.zip(velocities).collect();
+                        (name, Derived { vanishing, definitions, reactions, ..plain })
+                    }
+                    _ => (name, plain),
+                }
+            }
+        })
+    }
+}
+
+impl<'g> Derived<'g> {
+    /// The energy, and a line with what is to be known of it.
+    pub fn with_remark(&self, energy: String) -> Vec<String> {
+        [energy].into_iter().chain(self.energy_remark.map(|remark| format!("({remark})"))).collect()
+    }
+
+    /// The left-hand side of a constraint, written out if it is a quasi-velocity.
+    pub fn vanishing(&self, constraint: &Constraint<'g>) -> Expr<'g> {
+        let expression = constraint.expression();
+        let known =
+            self.definitions.iter().find(|(eta, _)| *eta == expression && self.vanishing.contains(eta));
+        known.map_or(expression, |&(_, definition)| definition)
+    }
+}
+
+/// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
+pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
+    let Kept::Held(held) = assembly.bound.form() else { return None };
+    let mut constraints = held.multipliers.constraints().iter();
+    let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
+    (!same).then_some(ENERGY_REMARK)
+}
+
+const ENERGY_REMARK: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral). \
+                             The energy of a run is that of all velocities.";

@@ -1,0 +1,55 @@
+//! Linear combinations and columns of text.
+
+/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` where all coefficients are.
+pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
+    let mut sum = String::new();
+    for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
+        let (sign, size) = match coefficient.strip_prefix('-') {
+            Some(rest) if !is_sum(rest) => ("-", rest),
+            _ => ("+", coefficient.as_str()),
+        };
+        sum += match (sum.is_empty(), sign) {
+            (true, "-") => "-",
+            (true, _) => "",
+            (false, "-") => " - ",
+            (false, _) => " + ",
+        };
+        sum += &match size {
+            "1" => element,
+            // What follows a quotient would be read into its divisor.
+            _ if is_sum(size) || is_quotient(size) => format!("({size}) {element}"),
+            _ => format!("{size} {element}"),
+        };
+    }
+    if sum.is_empty() { "0".to_owned() } else { sum }
+}
+
+fn is_sum(text: &str) -> bool {
+    text.contains(" + ") || text.contains(" - ")
+}
+
+/// Whether it is a quotient of more than numbers.
+fn is_quotient(text: &str) -> bool {
+    text.contains('/') && text.chars().any(char::is_alphabetic)
+}
+
+/// Number of characters, each one column wide.
+pub fn columns(text: &str) -> usize {
+    text.chars().count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn combinations_read_as_written_by_hand() {
+        let sum =
+            |terms: &[(&str, &str)]| combination(terms.iter().map(|&(c, x)| (c.to_owned(), x.to_owned())));
+        assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
+        assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
+        assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
+        let quotient = [("-cos(θ)/sin(θ)", "X1"), ("a/b", "X2")].map(|(c, x)| (c.to_owned(), x.to_owned()));
+        assert_eq!(combination(quotient), "-(cos(θ)/sin(θ)) X1 + (a/b) X2");
+    }
+}

@@ -1,0 +1,86 @@
+//! What one evaluation of a right-hand side costs.
+
+use pc_expr::{Cost, ExprError, Inputs, Program};
+use pc_mech::{Canonical, Equations, Expr, System};
+use serde_json::{Value, json};
+
+/// The operations of one evaluation of the right-hand side ẋ, η̇.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Operations {
+    /// With parameters as run-time inputs.
+    pub free: Cost,
+    /// With parameters bound to their numbers.
+    pub bound: Cost,
+}
+
+impl Operations {
+    /// Those of Poincaré's equations.
+    ///
+    /// # Errors
+    /// [`ExprError`] if the right-hand side cannot be compiled.
+    pub fn of(equations: &Equations<'_>) -> Result<Operations, ExprError> {
+        let system = equations.system();
+        let rates = [equations.velocities(), &equations.accelerations()].concat();
+        Operations::counted(system, system.quasi_velocities(), &rates)
+    }
+
+    /// Those of the canonical equations; where they are not closed, the quasi-velocities being known.
+    ///
+    /// # Errors
+    /// As [`of`](Operations::of).
+    pub fn of_canonical(equations: &Canonical<'_>) -> Result<Operations, ExprError> {
+        let rates = [equations.velocities(), equations.right_hand_side()].concat();
+        let system = equations.system();
+        let implicit = if equations.is_closed() { &[] } else { system.quasi_velocities() };
+        Operations::counted(system, &[equations.momenta(), implicit].concat(), &rates)
+    }
+
+    /// Those of `rates`, functions of time, coordinates, `moving` and parameters.
+    fn counted<'g>(
+        system: &System<'g>,
+        moving: &[Expr<'g>],
+        rates: &[Expr<'g>],
+    ) -> Result<Operations, ExprError> {
+        let graph = system.graph();
+        let time = system.frame().time();
+        let state: Vec<Expr<'g>> = system.frame().coordinates().iter().chain(moving).copied().collect();
+        // Parameters, and what else stands in the equations: external forces, reactions.
+        let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
+        let inputs = Inputs { time: Some(time), parameters: others.collect(), state };
+        let numbers: Vec<_> =
+            system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let bound = graph.substitute(rates, &numbers);
+        Ok(Operations {
+            free: Program::new(graph, &inputs, rates)?.cost(),
+            bound: Program::new(graph, &inputs, &bound)?.cost(),
+        })
+    }
+}
+
+impl Operations {
+    /// A line each for parameters free and bound.
+    pub fn lines(&self) -> Vec<String> {
+        vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
+    }
+}
+
+/// `what: total (kind count, …)`.
+pub fn counted(what: &str, cost: &Cost) -> String {
+    let kinds: Vec<String> = cost.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    match kinds.as_slice() {
+        [] => format!("{what}  0"),
+        kinds => format!("{what}  {} = {}", cost.total(), kinds.join(" + ")),
+    }
+}
+
+impl Operations {
+    /// For programs.
+    pub fn object(&self) -> Value {
+        json!({ "free": counts(&self.free), "bound": counts(&self.bound) })
+    }
+}
+
+fn counts(cost: &Cost) -> Value {
+    let kinds = cost.iter().map(|(kind, count)| (kind.to_owned(), json!(count)));
+    Value::Object(std::iter::once(("total".to_owned(), json!(cost.total()))).chain(kinds).collect())
+}
