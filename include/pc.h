@@ -14,13 +14,13 @@
  * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
- * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. Results are
- * written only if the status is PC_OK, except that a new handle or text is NULL after a failure, and that arrays for results may
- * hold anything then.
+ * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. PC_STOPPED
+ * and PC_EVENT are no failures: an observer, or a terminal event, has ended an integration. Results are written unless the call
+ * fails, except that a new handle or text is NULL after a failure, and that arrays for results may hold anything then.
  *
- * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file or pc_model_builtin gives, you
- * free with the ..._free of its type; `char *` you free with pc_string_free; `const char *` belongs to the handle it came from
- * and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
+ * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file, pc_model_builtin,
+ * pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of its type; `char *` you free with pc_string_free,
+ * bytes with pc_bytes_free; `const char *` belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
  * lives, and a system while its solvers and kernels do.
  *
  * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
@@ -103,7 +103,7 @@ typedef enum {
    */
   PC_INTEGRATION = 8,
   /**
-   * The observer stopped the integration. This is no failure, and there is no pc_error.
+   * An observer stopped the integration. This is no failure, and there is no pc_error.
    */
   PC_STOPPED = 9,
   /**
@@ -114,6 +114,14 @@ typedef enum {
    * A fault of the library or no memory. The handle can only be freed.
    */
   PC_INTERNAL = 11,
+  /**
+   * A terminal event ended the integration. This is no failure, and there is no pc_error.
+   */
+  PC_EVENT = 12,
+  /**
+   * The bytes are no checkpoint, or one of which a part is missing or changed.
+   */
+  PC_INVALID_CHECKPOINT = 13,
 } pc_status;
 
 /**
@@ -202,6 +210,30 @@ typedef enum {
    */
   PC_JSON = 2,
 } pc_format;
+
+/**
+ * In which direction the function of an event passes through zero, as the integration goes.
+ */
+typedef enum {
+  /**
+   * From above.
+   */
+  PC_FALLING = -1,
+  /**
+   * Either way.
+   */
+  PC_BOTH = 0,
+  /**
+   * From below.
+   */
+  PC_RISING = 1,
+} pc_direction;
+
+/**
+ * A motion as a function of time. It never changes, so that any number of threads may use it. Free it with
+ * pc_dense_free.
+ */
+typedef struct pc_dense pc_dense;
 
 /**
  * Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
@@ -346,6 +378,30 @@ typedef void (*pc_destroy)(void *user);
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
+ * Is given each event where it occurs, by its number among the events of the solver, with the states before and
+ * after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
+ * that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED. Otherwise as pc_observer.
+ */
+typedef int (*pc_event_observer)(size_t event,
+                                 double t,
+                                 const double *before,
+                                 const double *after,
+                                 size_t y_length,
+                                 void *user);
+
+/**
+ * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends the
+ * integration with PC_INTEGRATION, as a value does that is not finite or not written. It should depend on
+ * nothing but its arguments and be smooth. It must return: no exceptions, no longjmp.
+ */
+typedef int (*pc_event_function)(double t, const double *y, size_t y_length, double *value, void *user);
+
+/**
+ * Turns the state y before the event into the state after it. Otherwise as pc_event_function.
+ */
+typedef int (*pc_event_reset)(double t, double *y, size_t y_length, void *user);
+
+/**
  * Counts since the start of an integration, and its last internal step. It may grow at the end.
  */
 typedef struct {
@@ -398,6 +454,46 @@ typedef struct {
    */
   double step_time;
 } pc_statistics;
+
+/**
+ * What has come of a member of an ensemble. It may grow at the end.
+ */
+typedef struct {
+  /**
+   * Its number, from 0.
+   */
+  size_t number;
+  /**
+   * PC_OK; PC_EVENT if a terminal event ended it; else why it failed.
+   */
+  pc_status status;
+  /**
+   * Why it failed, else NULL.
+   */
+  const char *message;
+  /**
+   * The output times that it reached, as many as `rows`; the time of a terminal event is the last one.
+   */
+  const double *times;
+  /**
+   * The states at these, one after the other, each of `dim` numbers.
+   */
+  const double *states;
+  /**
+   * How many these are, also if it failed.
+   */
+  size_t rows;
+  /**
+   * The length of a state.
+   */
+  size_t dim;
+} pc_member;
+
+/**
+ * Is given each member in order, on the thread of the call; what it points to is valid during the call. Returns 0
+ * to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as pc_observer.
+ */
+typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
 #ifdef __cplusplus
 extern "C" {
@@ -747,27 +843,6 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
                                        pc_error **error);
 
 /**
- * Adds an event: an expression passes through zero. `direction` is "rising", "falling" or "both"; NULL for both.
- * If `terminal` is not 0 the motion ends there.
- */
-pc_status pc_model_add_event(pc_model *model,
-                             const char *name,
-                             const char *when,
-                             const char *direction,
-                             int terminal,
-                             pc_error **error);
-
-/**
- * Has an event set a coordinate, quasi-velocity or velocity `x'` to the value of an expression, in which all
- * names stand for what was before the event.
- */
-pc_status pc_model_add_reset(pc_model *model,
-                             const char *event,
-                             const char *name,
-                             const char *expression,
-                             pc_error **error);
-
-/**
  * Sets the time at the start; 0 unless set.
  */
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
@@ -1067,6 +1142,76 @@ pc_status pc_system_constraint_residuals(pc_system *system,
                                          pc_error **error);
 
 /**
+ * Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A `terminal` one, not
+ * 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in the order in which they were added.
+ */
+pc_status pc_model_add_event(pc_model *model,
+                             const char *name,
+                             const char *when,
+                             int direction,
+                             int terminal,
+                             pc_error **error);
+
+/**
+ * Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or velocity `x'` that
+ * is called `variable` takes the value of the expression. All resets of an event take effect together, from the state before it.
+ */
+pc_status pc_model_add_event_reset(pc_model *model,
+                                   const char *event,
+                                   const char *variable,
+                                   const char *expression,
+                                   pc_error **error);
+
+/**
+ * The number of events of the model. 0 of NULL.
+ */
+size_t pc_system_event_count(const pc_system *system);
+
+/**
+ * The name of an event, from 0; NULL beyond the last.
+ */
+const char *pc_system_event_name(const pc_system *system, size_t index);
+
+/**
+ * The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that CVODE's
+ * CVodeSetRootDirection takes.
+ */
+int pc_system_event_direction(const pc_system *system, size_t index);
+
+/**
+ * 1 if an event ends the integration, else 0.
+ */
+int pc_system_event_is_terminal(const pc_system *system, size_t index);
+
+/**
+ * 1 if an event resets the state, else 0.
+ */
+int pc_system_event_resets(const pc_system *system, size_t index);
+
+/**
+ * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs where its own
+ * passes through zero. They are not finite where the model has no value for them.
+ */
+pc_status pc_system_events(pc_system *system,
+                           double t,
+                           const double *y,
+                           size_t y_length,
+                           double *values,
+                           size_t length,
+                           pc_error **error);
+
+/**
+ * Turns the state y before an event, number `event` from 0, into the state after it. One that resets nothing
+ * leaves it as it is.
+ */
+pc_status pc_system_event_reset(pc_system *system,
+                                size_t event,
+                                double t,
+                                double *y,
+                                size_t y_length,
+                                pc_error **error);
+
+/**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so `length` is
  * k*k; k is pc_system_dim less pc_system_coordinate_count. With multipliers their rows are not among it. The
  * first call derives, as pc_system_new does.
@@ -1227,7 +1372,8 @@ size_t pc_kernel_dim(const pc_kernel *kernel);
  * An integration of the system from the state y at the time t, with the parameters as they are now; from the
  * start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
  * constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
- * values at this start. A model with events is refused with PC_UNSUPPORTED.
+ * values at this start. The events of the model are followed: where one occurs, the state is reset as the model
+ * says, and a terminal one ends the call with PC_EVENT.
  */
 pc_status pc_solver_new(const pc_system *system,
                         const pc_solver_options *options,
@@ -1238,19 +1384,24 @@ pc_status pc_solver_new(const pc_system *system,
                         pc_error **error);
 
 /**
- * Frees a solver. Null is allowed. In its own observer it does nothing.
+ * Frees a solver. Null is allowed. In its own observers and functions it does nothing.
  */
 void pc_solver_free(pc_solver *solver);
 
 /**
- * Integrates to the time t, in the direction of the first step, and writes the state there. After a failure
- * pc_solver_time and pc_solver_state tell what was reached.
+ * Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
+ * PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
+ * After a failure pc_solver_time and pc_solver_state tell what was reached.
  */
-pc_status pc_solver_advance(pc_solver *solver, double t, double *y, size_t y_length, pc_error **error);
+pc_status pc_solver_advance(pc_solver *solver,
+                            double t,
+                            double *y,
+                            size_t y_length,
+                            pc_error **error);
 
 /**
- * Takes one internal step in the direction of `towards`, and writes its end, which may lie beyond, and the
- * state there.
+ * Takes one internal step in the direction of `towards`, or the part of it before an event, and writes its end,
+ * which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -1261,7 +1412,8 @@ pc_status pc_solver_step(pc_solver *solver,
 
 /**
  * Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
- * during the call, and with `user`. PC_STOPPED if the observer stops it.
+ * during the call, and with `user`. PC_STOPPED if the observer stops it. At the time of an event it is given the
+ * state after it; a terminal event is the last thing it is given, at the time of that, and PC_EVENT is returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -1281,12 +1433,193 @@ pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
 
 /**
+ * Has an observer told of each event from now on, instead of the one before; of none if it is NULL. It is called
+ * within the calls that integrate, on their thread.
+ */
+pc_status pc_solver_observe_events(pc_solver *solver,
+                                   pc_event_observer observer,
+                                   void *user,
+                                   pc_error **error);
+
+/**
+ * Follows an event of the program's own, after those of the model and those added before: `function` passes
+ * through zero in a direction, a pc_direction. There `reset`, unless NULL, changes the state, which is then
+ * projected to the constraints; a `terminal` event, not 0, ends the call with PC_EVENT. Comes before the first
+ * step. `name` is for messages.
+ *
+ * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
+ * pc_solver_free. It must not use the solver.
+ */
+pc_status pc_solver_add_event(pc_solver *solver,
+                              const char *name,
+                              int direction,
+                              int terminal,
+                              pc_event_function function,
+                              pc_event_reset reset,
+                              void *user,
+                              pc_destroy destroy,
+                              pc_error **error);
+
+/**
+ * The number of events that a solver follows: those of the model, then those added. 0 of NULL.
+ */
+size_t pc_solver_event_count(const pc_solver *solver);
+
+/**
+ * The name of an event, from 0; NULL beyond the last.
+ */
+const char *pc_solver_event_name(const pc_solver *solver, size_t index);
+
+/**
+ * Writes how often an event has occurred.
+ */
+pc_status pc_solver_event_occurrences(const pc_solver *solver,
+                                      size_t event,
+                                      uint64_t *occurrences,
+                                      pc_error **error);
+
+/**
+ * Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not occurred. Only
+ * the last occurrence is kept; an observer sees all. `before` and `after` may be NULL, of length 0.
+ */
+pc_status pc_solver_last_occurrence(const pc_solver *solver,
+                                    size_t event,
+                                    double *t,
+                                    double *before,
+                                    size_t before_length,
+                                    double *after,
+                                    size_t after_length,
+                                    pc_error **error);
+
+/**
+ * Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND if none did.
+ */
+pc_status pc_solver_terminal_event(const pc_solver *solver,
+                                   size_t *event,
+                                   pc_error **error);
+
+/**
+ * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal step, from the
+ * polynomial of the method, whose degree is the order of that step. The step reaches from
+ * step_time − last_step to step_time of pc_statistics, but not beyond an event; there is none before the first, nor after
+ * a reset. y is on the constraints, its derivatives are those of the polynomial.
+ */
+pc_status pc_solver_interpolate(pc_solver *solver,
+                                double t,
+                                unsigned int derivative,
+                                double *y,
+                                size_t y_length,
+                                pc_error **error);
+
+/**
+ * Integrates to the time t as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
+ * numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+ */
+pc_status pc_solver_run_dense(pc_solver *solver,
+                              double t,
+                              pc_dense **dense,
+                              pc_error **error);
+
+/**
+ * Writes y(t). At an event that is the state after it, but at the very end the limit from before.
+ */
+pc_status pc_dense_eval(const pc_dense *dense, double t, double *y, size_t y_length, pc_error **error);
+
+/**
+ * Writes the rate of y at t, which may jump by the error of a step from one step to the next.
+ */
+pc_status pc_dense_rate(const pc_dense *dense, double t, double *ydot, size_t ydot_length, pc_error **error);
+
+/**
+ * The length of the state. 0 of NULL.
+ */
+size_t pc_dense_dim(const pc_dense *dense);
+
+/**
+ * Where the motion begins; NaN of NULL.
+ */
+double pc_dense_t_begin(const pc_dense *dense);
+
+/**
+ * Where the motion ends, before its beginning if it goes back in time; NaN of NULL.
+ */
+double pc_dense_t_end(const pc_dense *dense);
+
+/**
+ * Frees a motion. Null is allowed.
+ */
+void pc_dense_free(pc_dense *dense);
+
+/**
+ * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
+ * in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
+ *
+ * A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
+ * it and those restored go through the same numbers to the last bit. PC_UNSUPPORTED with events.
+ */
+pc_status pc_solver_checkpoint(pc_solver *solver,
+                               const char *label,
+                               void **data,
+                               size_t *length,
+                               pc_error **error);
+
+/**
+ * An integration from a checkpoint, with the parameters of the system as they are now. It goes on as the one did that
+ * was written if system, parameters and options are the same. `options` may be NULL. PC_INVALID_CHECKPOINT unless
+ * the bytes are all that pc_solver_checkpoint wrote, unchanged. The work of the solver is counted from there.
+ */
+pc_status pc_solver_restore(const pc_system *system,
+                            const pc_solver_options *options,
+                            const void *data,
+                            size_t length,
+                            pc_solver **solver,
+                            pc_error **error);
+
+/**
+ * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as pc_solver_restore.
+ */
+pc_status pc_checkpoint_label(const void *data,
+                              size_t length,
+                              char **label,
+                              pc_error **error);
+
+/**
+ * Frees bytes that a function of this library has written to be freed. Null is allowed.
+ */
+void pc_bytes_free(void *data);
+
+/**
  * Writes the work so far. `size` is sizeof(pc_statistics).
  */
 pc_status pc_solver_statistics(const pc_solver *solver,
                                pc_statistics *statistics,
                                size_t size,
                                pc_error **error);
+
+/**
+ * Integrates many members through the times, each from its own state, with its own parameters, as a solver of its
+ * own would: the numbers are the same for any number of threads. The events of the model are followed.
+ *
+ * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
+ * not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
+ * are now. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
+ * told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
+ * found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
+ */
+pc_status pc_ensemble_run(const pc_system *system,
+                          const pc_solver_options *options,
+                          size_t members,
+                          double t,
+                          const double *states,
+                          size_t states_length,
+                          const double *parameters,
+                          size_t parameters_length,
+                          const double *times,
+                          size_t times_length,
+                          size_t threads,
+                          pc_member_observer observer,
+                          void *user,
+                          pc_error **error);
 
 #ifdef __cplusplus
 }  // extern "C"

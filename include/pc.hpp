@@ -7,9 +7,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -55,7 +57,7 @@ template <class Handle, void (*Free)(Handle *)> using owned = std::unique_ptr<Ha
 inline void check(pc_status status, pc_error *raw)
 {
     const owned<pc_error, pc_error_free> from(raw);
-    if (status != PC_OK && status != PC_STOPPED) {
+    if (status != PC_OK && status != PC_STOPPED && status != PC_EVENT) {
         throw error(status, raw);
     }
 }
@@ -144,6 +146,16 @@ public:
     model &output(const std::string &name, const std::string &expression)
     {
         return say(pc_model_add_output, name.c_str(), expression.c_str());
+    }
+
+    model &event(const std::string &name, const std::string &when, pc_direction direction = PC_BOTH,
+                 bool terminal = false)
+    {
+        return say(pc_model_add_event, name.c_str(), when.c_str(), static_cast<int>(direction), terminal ? 1 : 0);
+    }
+    model &event_reset(const std::string &event, const std::string &variable, const std::string &expression)
+    {
+        return say(pc_model_add_event_reset, event.c_str(), variable.c_str(), expression.c_str());
     }
 
     model &set(const std::string &parameter, double value)
@@ -247,6 +259,18 @@ public:
     {
         return at(pc_system_reactions, t, y, pc_system_reaction_count(get()));
     }
+    std::vector<std::string> event_names() const
+    {
+        return list(pc_system_event_name, pc_system_event_count(get()));
+    }
+    /// The functions of the events, which pass through zero where these occur.
+    vector events(double t, const vector &y) { return at(pc_system_events, t, y, pc_system_event_count(get())); }
+    /// The state after an event.
+    vector reset(std::size_t event, double t, vector y)
+    {
+        detail::call(pc_system_event_reset, get(), event, t, y.data(), y.size());
+        return y;
+    }
     double energy(double t, const vector &y)
     {
         double energy = 0.0;
@@ -290,10 +314,48 @@ private:
     detail::owned<pc_system, pc_system_free> handle_;
 };
 
-/// An integration, which stands at a time with a state.
+/// A motion as a function of time.
+class dense {
+public:
+    vector operator()(double t) const { return at(pc_dense_eval, t); }
+    vector rate(double t) const { return at(pc_dense_rate, t); }
+    double t_begin() const noexcept { return pc_dense_t_begin(handle_.get()); }
+    double t_end() const noexcept { return pc_dense_t_end(handle_.get()); }
+
+private:
+    friend class solver;
+    explicit dense(pc_dense *raw) : handle_(raw) {}
+    template <class Function> vector at(Function function, double t) const
+    {
+        vector y(pc_dense_dim(handle_.get()));
+        detail::call(function, static_cast<const pc_dense *>(handle_.get()), t, y.data(), y.size());
+        return y;
+    }
+
+    detail::owned<pc_dense, pc_dense_free> handle_;
+};
+
+/// An event that occurred, by its number, with the states before and after it.
+struct occurrence {
+    std::size_t event;
+    double t;
+    vector before, after;
+};
+
+/// The label of a checkpoint.
+inline std::string checkpoint_label(const std::vector<unsigned char> &bytes)
+{
+    return detail::text(pc_checkpoint_label, static_cast<const void *>(bytes.data()), bytes.size());
+}
+
+/// An integration, which stands at a time with a state. What a function or observer throws comes out of the call that
+/// called it.
 class solver {
 public:
     using observer = std::function<bool(double t, const vector &y)>;
+    using event_observer = std::function<bool(const occurrence &event)>;
+    using event_function = std::function<double(double t, const vector &y)>;
+    using event_reset = std::function<void(double t, vector &y)>;
 
     static pc_solver_options default_options()
     {
@@ -311,23 +373,56 @@ public:
         : solver(of, t, y.data(), y.size(), options)
     {
     }
+    /// From a checkpoint.
+    static solver restore(const system &of, const std::vector<unsigned char> &bytes,
+                          const pc_solver_options &options = default_options())
+    {
+        pc_solver *raw = nullptr;
+        detail::call(pc_solver_restore, static_cast<const pc_system *>(of.get()), &options,
+                     static_cast<const void *>(bytes.data()), bytes.size(), &raw);
+        return solver(raw, of.dim());
+    }
 
+    /// Follows an event of one's own; before the first step.
+    void add_event(const std::string &name, pc_direction direction, bool terminal, event_function function,
+                   event_reset reset = nullptr)
+    {
+        auto event = std::make_unique<own_event>(own_event{std::move(function), std::move(reset), thrown_.get()});
+        const pc_event_reset forward = event->reset ? &forward_reset : nullptr;
+        invoke(pc_solver_add_event, get(), name.c_str(), static_cast<int>(direction), terminal ? 1 : 0,
+               &forward_function, forward, static_cast<void *>(event.release()), &destroy_event);
+    }
+    /// Has `observe` called at each event, until it answers false, which stops the call.
+    void observe_events(event_observer observe)
+    {
+        auto watching = std::make_unique<event_watch>(event_watch{std::move(observe), thrown_.get()});
+        invoke(pc_solver_observe_events, get(), &forward_event, static_cast<void *>(watching.get()));
+        event_watch_ = std::move(watching);
+    }
+
+    /// The state at t, or where an event or its observer ended the call: ended_by() and time() tell.
     vector advance(double t)
     {
         vector y(dim_);
-        detail::call(pc_solver_advance, get(), t, y.data(), dim_);
+        invoke(pc_solver_advance, get(), t, y.data(), dim_);
         return y;
     }
-    /// Calls `observe` at each time until it answers false; whether it never did. What it throws comes out here.
+    /// The motion up to t, or to where an event or its observer ended it.
+    dense run_dense(double t)
+    {
+        pc_dense *raw = nullptr;
+        pc_error *from = nullptr;
+        const pc_status status = pc_solver_run_dense(get(), t, &raw, &from);
+        dense made(raw);
+        settle(status, from);
+        return made;
+    }
+    /// Calls `observe` at each time until it answers false; whether all times were reached.
     bool run(const vector &times, const observer &observe)
     {
-        watch watching{observe, {}, nullptr};
-        const pc_status status =
-            detail::call(pc_solver_run, get(), times.data(), times.size(), &forward, static_cast<void *>(&watching));
-        if (watching.thrown) {
-            std::rethrow_exception(watching.thrown);
-        }
-        return status == PC_OK;
+        watch watching{observe, {}, thrown_.get()};
+        return invoke(pc_solver_run, get(), times.data(), times.size(), &forward, static_cast<void *>(&watching)) ==
+               PC_OK;
     }
     double time() const
     {
@@ -341,11 +436,62 @@ public:
         detail::call(pc_solver_state, static_cast<const pc_solver *>(get()), y.data(), dim_);
         return y;
     }
+    /// A derivative of y, or y itself, inside the last step.
+    vector interpolate(double t, unsigned derivative = 0)
+    {
+        vector y(dim_);
+        detail::call(pc_solver_interpolate, get(), t, derivative, y.data(), dim_);
+        return y;
+    }
     pc_statistics statistics() const
     {
         pc_statistics work{};
         detail::call(pc_solver_statistics, static_cast<const pc_solver *>(get()), &work, sizeof work);
         return work;
+    }
+    /// Time and state as bytes, for restore().
+    std::vector<unsigned char> checkpoint(const std::string &label = "")
+    {
+        void *raw = nullptr;
+        std::size_t length = 0;
+        detail::call(pc_solver_checkpoint, get(), label.c_str(), &raw, &length);
+        const detail::owned<void, pc_bytes_free> given(raw);
+        const auto *bytes = static_cast<const unsigned char *>(raw);
+        return std::vector<unsigned char>(bytes, bytes + length);
+    }
+
+    std::vector<std::string> event_names() const
+    {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < pc_solver_event_count(get()); i++) {
+            names.emplace_back(pc_solver_event_name(get(), i));
+        }
+        return names;
+    }
+    /// How often an event has occurred.
+    std::uint64_t occurrences(std::size_t event) const
+    {
+        std::uint64_t count = 0;
+        detail::call(pc_solver_event_occurrences, static_cast<const pc_solver *>(get()), event, &count);
+        return count;
+    }
+    /// Its last occurrence, if there was one.
+    std::optional<occurrence> last_occurrence(std::size_t event) const
+    {
+        if (occurrences(event) == 0) {
+            return std::nullopt;
+        }
+        occurrence last{event, 0.0, vector(dim_), vector(dim_)};
+        detail::call(pc_solver_last_occurrence, static_cast<const pc_solver *>(get()), event, &last.t,
+                     last.before.data(), dim_, last.after.data(), dim_);
+        return last;
+    }
+    /// The terminal event that ended the last call, if one did.
+    std::optional<std::size_t> ended_by() const
+    {
+        std::size_t event = 0;
+        const pc_status status = pc_solver_terminal_event(get(), &event, nullptr);
+        return status == PC_OK ? std::optional<std::size_t>(event) : std::nullopt;
     }
     pc_solver *get() const noexcept { return handle_.get(); }
 
@@ -353,19 +499,85 @@ private:
     struct watch {
         const observer &observe;
         vector y;
-        std::exception_ptr thrown;
+        std::exception_ptr *thrown;
     };
-    static int forward(double t, const double *y, std::size_t length, void *user) noexcept
+    struct event_watch {
+        event_observer observe;
+        std::exception_ptr *thrown;
+    };
+    struct own_event {
+        event_function function;
+        event_reset reset;
+        std::exception_ptr *thrown;
+    };
+
+    /// What `body` answers; 1 if it throws, which is kept.
+    template <class Body> static int caught(std::exception_ptr *thrown, Body body) noexcept
     {
-        auto &watching = *static_cast<watch *>(user);
         try {
-            watching.y.assign(y, y + length);
-            return watching.observe(t, watching.y) ? 0 : 1;
+            return body();
         } catch (...) {
-            watching.thrown = std::current_exception();
+            *thrown = std::current_exception();
             return 1;
         }
     }
+    static int forward(double t, const double *y, std::size_t length, void *user) noexcept
+    {
+        auto &watching = *static_cast<watch *>(user);
+        return caught(watching.thrown, [&] {
+            watching.y.assign(y, y + length);
+            return watching.observe(t, watching.y) ? 0 : 1;
+        });
+    }
+    static int forward_event(std::size_t event, double t, const double *before, const double *after,
+                             std::size_t length, void *user) noexcept
+    {
+        auto &watching = *static_cast<event_watch *>(user);
+        return caught(watching.thrown, [&] {
+            const occurrence now{event, t, vector(before, before + length), vector(after, after + length)};
+            return watching.observe(now) ? 0 : 1;
+        });
+    }
+    static int forward_function(double t, const double *y, std::size_t length, double *value, void *user) noexcept
+    {
+        auto &event = *static_cast<own_event *>(user);
+        return caught(event.thrown, [&] {
+            *value = event.function(t, vector(y, y + length));
+            return 0;
+        });
+    }
+    static int forward_reset(double t, double *y, std::size_t length, void *user) noexcept
+    {
+        auto &event = *static_cast<own_event *>(user);
+        return caught(event.thrown, [&] {
+            vector state(y, y + length);
+            event.reset(t, state);
+            for (std::size_t i = 0; i < length; i++) {
+                y[i] = state.at(i);
+            }
+            return 0;
+        });
+    }
+    static void destroy_event(void *user) noexcept { delete static_cast<own_event *>(user); }
+
+    /// Throws what a function or observer has thrown, or the error of the call.
+    void settle(pc_status status, pc_error *raw)
+    {
+        detail::owned<pc_error, pc_error_free> from(raw);
+        if (*thrown_) {
+            std::rethrow_exception(std::exchange(*thrown_, nullptr));
+        }
+        detail::check(status, from.release());
+    }
+    /// Calls a function that may call back.
+    template <class Function, class... Arguments> pc_status invoke(Function function, Arguments... arguments)
+    {
+        pc_error *from = nullptr;
+        const pc_status status = function(arguments..., &from);
+        settle(status, from);
+        return status;
+    }
+
     solver(const system &of, double t, const double *y, std::size_t length, const pc_solver_options &options)
         : dim_(of.dim())
     {
@@ -373,10 +585,75 @@ private:
         detail::call(pc_solver_new, static_cast<const pc_system *>(of.get()), &options, t, y, length, &raw);
         handle_.reset(raw);
     }
+    solver(pc_solver *raw, std::size_t dim) : handle_(raw), dim_(dim) {}
 
+    // Where functions put what they throw: it stays in its place when the solver moves, and outlives the handle.
+    std::unique_ptr<std::exception_ptr> thrown_ = std::make_unique<std::exception_ptr>();
+    std::unique_ptr<event_watch> event_watch_;
     detail::owned<pc_solver, pc_solver_free> handle_;
     std::size_t dim_;
 };
+
+/// What has come of a member of an ensemble.
+struct member {
+    std::size_t number;
+    /// PC_OK, PC_EVENT, or why it failed, of which the message tells.
+    pc_status status;
+    std::string message;
+    /// The output times that it reached, and the state at each.
+    vector times;
+    std::vector<vector> states;
+};
+
+/// Integrates many members through the times: from `states` at t, or from the start of the model if there are none, and
+/// with `parameters`, or those of the system if there are none. Calls `observe` for each in order until it answers
+/// false; whether it never did. What it throws comes out here. `threads` is 0 for one on each core.
+inline bool run_ensemble(const system &of, double t, const std::vector<vector> &states,
+                         const std::vector<vector> &parameters, const vector &times,
+                         const std::function<bool(const member &)> &observe, std::size_t threads = 0,
+                         const pc_solver_options &options = solver::default_options())
+{
+    struct watch {
+        const std::function<bool(const member &)> &observe;
+        std::exception_ptr thrown;
+    };
+    struct local {
+        static int forward(const pc_member *of, void *user) noexcept
+        {
+            auto &watching = *static_cast<watch *>(user);
+            try {
+                member told{of->number, of->status, of->message ? of->message : "", {}, {}};
+                told.times.assign(of->times, of->times + of->rows);
+                for (std::size_t i = 0; i < of->rows; i++) {
+                    told.states.emplace_back(of->states + i * of->dim, of->states + (i + 1) * of->dim);
+                }
+                return watching.observe(told) ? 0 : 1;
+            } catch (...) {
+                watching.thrown = std::current_exception();
+                return 1;
+            }
+        }
+        static vector flat(const std::vector<vector> &rows)
+        {
+            vector all;
+            for (const vector &row : rows) {
+                all.insert(all.end(), row.begin(), row.end());
+            }
+            return all;
+        }
+    };
+    const vector starts = local::flat(states), values = local::flat(parameters);
+    watch watching{observe, nullptr};
+    const pc_status status = detail::call(
+        pc_ensemble_run, static_cast<const pc_system *>(of.get()), &options,
+        states.empty() ? parameters.size() : states.size(), t, states.empty() ? nullptr : starts.data(),
+        starts.size(), parameters.empty() ? nullptr : values.data(), values.size(), times.data(), times.size(),
+        threads, &local::forward, static_cast<void *>(&watching));
+    if (watching.thrown) {
+        std::rethrow_exception(watching.thrown);
+    }
+    return status == PC_OK;
+}
 
 /// The right-hand side for one thread, for an integrator of one's own.
 class kernel {

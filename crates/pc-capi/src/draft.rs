@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use ::pc_model::{Document, ModelError, Source, UnknownParameter, UnknownStart};
 
+use crate::error::Fault;
+
 /// Entries in the order in which they came, each in a section of the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Draft {
@@ -115,6 +117,15 @@ impl Draft {
         }
         known.extend(self.names(Section::QuasiVelocities));
         Err(UnknownStart { name: name.to_owned(), known })
+    }
+
+    /// Adds a reset to an event that has been added.
+    pub(crate) fn add_reset(&mut self, event: &str, variable: &str, value: String) -> Result<(), Fault> {
+        if !self.names(Section::Events).iter().any(|known| known == event) {
+            return Err(Fault::NoSuchEvent { name: event.to_owned() });
+        }
+        self.add(Section::Events, &[event, "reset", variable], value);
+        Ok(())
     }
 
     fn find(&mut self, section: Section, keys: &[&str]) -> Option<&mut Entry> {

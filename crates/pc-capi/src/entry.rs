@@ -3,7 +3,6 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
-use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use crate::error::{Fault, pc_error};
 use crate::status::pc_status;
@@ -13,10 +12,10 @@ use crate::status::pc_status;
 /// # Safety
 /// `error` is null or a place for a pointer.
 pub(crate) unsafe fn entry(error: *mut *mut pc_error, body: impl FnOnce() -> Result<(), Fault>) -> pc_status {
-    // Unwind safe: what the body may have left half done stands behind a mutex, which is poisoned then.
+    // Unwind safe: what the body may have left half done is held, and not used again after a panic.
     let outcome = catch_unwind(AssertUnwindSafe(|| match body() {
         Ok(()) => (pc_status::PC_OK, ptr::null_mut()),
-        Err(Fault::Stopped) => (pc_status::PC_STOPPED, ptr::null_mut()),
+        Err(fault @ (Fault::Stopped | Fault::Terminal)) => (fault.status(), ptr::null_mut()),
         Err(fault) if error.is_null() => (fault.status(), ptr::null_mut()),
         Err(fault) => (fault.status(), Box::into_raw(Box::new(fault.into_error()))),
     }));
@@ -46,19 +45,6 @@ fn message_of(panic: Box<dyn Any + Send>) -> String {
     message
 }
 
-/// What the mutex holds, if nobody else uses it.
-pub(crate) fn locked<T>(mutex: &Mutex<T>) -> Result<MutexGuard<'_, T>, Fault> {
-    mutex.try_lock().map_err(|error| match error {
-        TryLockError::WouldBlock => Fault::Busy,
-        TryLockError::Poisoned(_) => Fault::Broken,
-    })
-}
-
-/// Whether a call holds the mutex.
-pub(crate) fn is_held<T>(mutex: &Mutex<T>) -> bool {
-    matches!(mutex.try_lock(), Err(TryLockError::WouldBlock))
-}
-
 /// Frees a box that was given to C.
 ///
 /// # Safety
@@ -79,6 +65,7 @@ mod tests {
 
     use super::*;
     use crate::error::{pc_error_free, pc_error_message};
+    use crate::held::Held;
 
     /// Status and message of a call of `body`.
     fn called(body: impl FnOnce() -> Result<(), Fault>) -> (pc_status, String) {
@@ -104,16 +91,16 @@ mod tests {
 
     #[test]
     fn what_a_panic_left_half_done_is_not_used_again() {
-        let mutex = Mutex::new(1);
+        let value = Held::new(1);
         let half_done = called(|| {
-            let _held = locked(&mutex)?;
+            let _held = value.take()?;
             panic!("half done")
         });
         assert_eq!(half_done.0, pc_status::PC_INTERNAL);
-        let (status, message) = called(|| locked(&mutex).map(|_| ()));
+        let (status, message) = called(|| value.take().map(|_| ()));
         assert_eq!(status, pc_status::PC_INTERNAL);
         assert!(message.ends_with("this handle can only be freed"), "{message}");
-        assert!(!is_held(&mutex)); // so that it is freed
+        assert!(!value.is_in_use()); // so that it is freed
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::ffi::{CString, c_char, c_int};
 use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_expr::Failure;
 use pc_mech::MechError;
-use pc_solve::SolveError;
+use pc_solve::{CheckpointError, Code, EnsembleError, SolveError};
 
 use crate::status::pc_status;
 use crate::strings::c_string;
@@ -64,6 +64,20 @@ pub(crate) enum Fault {
     Panic { message: String },
     #[error("the observer stopped the integration")]
     Stopped,
+    #[error("a terminal event ended the integration")]
+    Terminal,
+    #[error("{what} comes before the first step, and there has been one")]
+    Begun { what: &'static str },
+    #[error("there is no event called `{name}`; pc_model_add_event adds one")]
+    NoSuchEvent { name: String },
+    #[error("the event {name} has not occurred")]
+    NotOccurred { name: String },
+    #[error("no terminal event ended the last call")]
+    NotEnded,
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("{0}")]
+    Ensemble(#[from] EnsembleError),
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
@@ -94,7 +108,11 @@ impl Fault {
             | Fault::StructSize { .. }
             | Fault::Index { .. }
             | Fault::NotADraft { .. }
+            | Fault::Begun { .. }
             | Fault::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
+            Fault::Solve(error) if matches!(error.code(), Some(Code::BadTime | Code::BadOrder)) => {
+                pc_status::PC_INVALID_ARGUMENT
+            }
             Fault::Model(error) => match error.category() {
                 Category::Text => pc_status::PC_INVALID_MODEL,
                 Category::Unsupported => pc_status::PC_UNSUPPORTED,
@@ -105,7 +123,10 @@ impl Fault {
             | Fault::UnknownParameter(_)
             | Fault::UnknownIntegral(_)
             | Fault::UnknownStart(_)
-            | Fault::NotForced(_) => pc_status::PC_NOT_FOUND,
+            | Fault::NotForced(_)
+            | Fault::NoSuchEvent { .. }
+            | Fault::NotOccurred { .. }
+            | Fault::NotEnded => pc_status::PC_NOT_FOUND,
             Fault::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
                 pc_status::PC_NOT_FOUND
             }
@@ -113,9 +134,13 @@ impl Fault {
             Fault::Evaluation(_) | Fault::Mechanics(_) => pc_status::PC_EVALUATION,
             Fault::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
             Fault::Stopped => pc_status::PC_STOPPED,
+            Fault::Terminal => pc_status::PC_EVENT,
+            Fault::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
             Fault::Busy => pc_status::PC_BUSY,
-            // Of the solver: its set-up, which fails for want of memory.
-            Fault::Broken | Fault::Panic { .. } | Fault::Solve(_) => pc_status::PC_INTERNAL,
+            // Of the solver: its set-up, which fails for want of memory, as threads do.
+            Fault::Broken | Fault::Panic { .. } | Fault::Ensemble(_) | Fault::Solve(_) => {
+                pc_status::PC_INTERNAL
+            }
         }
     }
 
@@ -124,6 +149,7 @@ impl Fault {
         let mut message = self.to_string();
         let mut cause = match self {
             Fault::Solve(error) => error.source(),
+            Fault::Ensemble(error) => error.source(),
             _ => None,
         };
         while let Some(error) = cause {
@@ -131,6 +157,11 @@ impl Fault {
             cause = error.source();
         }
         message
+    }
+
+    /// Status and message.
+    pub(crate) fn told(&self) -> (pc_status, CString) {
+        (self.status(), c_string(&self.message()))
     }
 
     pub(crate) fn into_error(self) -> pc_error {
@@ -143,7 +174,7 @@ impl Fault {
             _ => Place::default(),
         };
         let code = match &self {
-            Fault::Solve(error) => error.code().map_or(0, pc_solve::Code::number),
+            Fault::Solve(error) => error.code().map_or(0, Code::number),
             _ => 0,
         };
         pc_error { status: self.status(), message: c_string(&self.message()), place, integrator_code: code }

@@ -117,6 +117,10 @@ impl VectorField for Field {
         delegate!(self, field => field.rhs(t, y, ydot))
     }
 
+    fn checks_rates(&self) -> bool {
+        delegate!(self, field => field.checks_rates())
+    }
+
     fn has_jacobian(&self) -> bool {
         delegate!(self, field => field.has_jacobian())
     }

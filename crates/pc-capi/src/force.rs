@@ -11,6 +11,7 @@ use crate::pointer::text;
 use crate::status::pc_status;
 use crate::strings::nth;
 use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::user::{User, pc_destroy};
 
 /// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
 /// pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a
@@ -41,9 +42,6 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-/// Frees what the `user` of a function points to. It must return: no exceptions, no longjmp.
-pub type pc_destroy = Option<unsafe extern "C" fn(user: *mut c_void)>;
-
 type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, usize, *mut c_void) -> c_int;
 
 /// The functions of the forces, if they have been set; copies share them.
@@ -53,28 +51,16 @@ pub(crate) struct Controller(Option<Arc<Callback>>);
 struct Callback {
     function: Function,
     jacobian: Option<Function>,
-    user: User,
+    user: Shared,
 }
 
-/// What belongs to the functions, freed with the last copy.
-struct User {
-    data: *mut c_void,
-    destroy: pc_destroy,
-}
+/// Their argument, freed with the last copy.
+struct Shared(User);
 
 // SAFETY: pc_system_set_force demands that its functions take `user` on any thread, on several at the same time.
-unsafe impl Send for User {}
+unsafe impl Send for Shared {}
 // SAFETY: as above.
-unsafe impl Sync for User {}
-
-impl Drop for User {
-    fn drop(&mut self) {
-        if let Some(destroy) = self.destroy {
-            // SAFETY: a function of that type and its argument, as pc_system_set_force demands; called once.
-            unsafe { destroy(self.data) };
-        }
-    }
-}
+unsafe impl Sync for Shared {}
 
 /// Why there are no forces.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
@@ -102,7 +88,7 @@ impl Callback {
     /// The answer of one of its functions, which writes `values`.
     fn call(&self, function: Function, t: f64, y: &[f64], values: &mut [f64]) -> c_int {
         // SAFETY: a function of that type, as pc_system_set_force demands; the arrays are as long as said.
-        unsafe { function(t, y.as_ptr(), y.len(), values.as_mut_ptr(), values.len(), self.user.data) }
+        unsafe { function(t, y.as_ptr(), y.len(), values.as_mut_ptr(), values.len(), self.user.0.data) }
     }
 }
 
@@ -186,7 +172,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     let mut unused = Controller::default();
     let set = |_: &Inventory, inner: &mut Inner| {
         let function = function.ok_or(Fault::Null { what: "function" })?;
-        let controller = Controller(Some(Arc::new(Callback { function, jacobian, user })));
+        let controller = Controller(Some(Arc::new(Callback { function, jacobian, user: Shared(user) })));
         let outcome = inner.field.set_force(controller);
         let fault = outcome.is_err().then_some(NO_FORCES);
         unused = outcome.unwrap_or_else(|refused| refused);

@@ -1,20 +1,20 @@
 //! Models: a text, or what has been said call by call.
 
 use std::ffi::{c_char, c_int};
-use std::sync::Mutex;
 
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
 use crate::draft::Draft;
-use crate::entry::{entry, free, is_held, locked};
+use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
+use crate::held::Held;
 use crate::pointer::{bytes, clear, finite, handle, text, write};
 use crate::status::pc_status;
 use crate::strings::give;
 
 /// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
 pub struct pc_model {
-    pub(crate) contents: Mutex<Contents>,
+    pub(crate) contents: Held<Contents>,
 }
 
 #[derive(Clone)]
@@ -60,7 +60,7 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         projects_start: false,
         observes_reactions: false,
     };
-    Box::into_raw(Box::new(pc_model { contents: Mutex::new(contents) }))
+    Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }))
 }
 
 fn of_document(document: Document) -> *mut pc_model {
@@ -157,8 +157,8 @@ pub unsafe extern "C" fn pc_model_clone(
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(copy, "copy") }?;
         // SAFETY: as above.
-        let contents = locked(&unsafe { handle(model, "model") }?.contents)?.clone();
-        let cloned = Box::into_raw(Box::new(pc_model { contents: Mutex::new(contents) }));
+        let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
+        let cloned = Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }));
         // SAFETY: as above.
         unsafe { write(copy, cloned, "copy") }
     };
@@ -170,7 +170,7 @@ pub unsafe extern "C" fn pc_model_clone(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { model.as_ref() }.is_some_and(|model| is_held(&model.contents)) {
+    if !unsafe { model.as_ref() }.is_some_and(|model| model.contents.is_in_use()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(model) };
     }
@@ -186,7 +186,7 @@ pub(crate) unsafe fn change(
     change: impl FnOnce(&mut Contents) -> Result<(), Fault>,
 ) -> pc_status {
     // SAFETY: as promised.
-    unsafe { entry(error, || change(&mut *locked(&handle(model, "model")?.contents)?)) }
+    unsafe { entry(error, || change(&mut *handle(model, "model")?.contents.take()?)) }
 }
 
 /// Sets a parameter of the model to another value.
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn pc_model_text(
         unsafe { clear(text, "text") }?;
         // SAFETY: as above.
         let model = unsafe { handle(model, "model") }?;
-        let written = match &locked(&model.contents)?.origin {
+        let written = match &model.contents.take()?.origin {
             Origin::Text(model) => model.document().source.text().to_owned(),
             Origin::Calls(draft) => draft.text(),
         };

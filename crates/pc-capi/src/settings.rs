@@ -1,6 +1,6 @@
 //! What a model says beside its mechanics: title, start, kinds of constraints, events, how it is to be run.
 
-use std::ffi::{c_char, c_int};
+use std::ffi::c_char;
 
 use crate::builder::draft;
 use crate::draft::{Draft, Section, number, quoted};
@@ -88,53 +88,6 @@ pub unsafe extern "C" fn pc_model_set_constraint_kind(
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_constraint_kind", write) }
-}
-
-/// Adds an event: an expression passes through zero. `direction` is "rising", "falling" or "both"; NULL for both.
-/// If `terminal` is not 0 the motion ends there.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_model_add_event(
-    model: *mut pc_model,
-    name: *const c_char,
-    when: *const c_char,
-    direction: *const c_char,
-    terminal: c_int,
-    error: *mut *mut pc_error,
-) -> pc_status {
-    let write = |draft: &mut Draft| {
-        // SAFETY: null or text, as the preamble demands.
-        let (name, when) = unsafe { (text(name, "name")?, text(when, "when")?) };
-        // SAFETY: as above.
-        let direction = if direction.is_null() { "both" } else { unsafe { text(direction, "direction") }? };
-        draft.add(Section::Events, &[name, "when"], quoted(when));
-        draft.add(Section::Events, &[name, "direction"], quoted(direction));
-        draft.add(Section::Events, &[name, "terminal"], (terminal != 0).to_string());
-        Ok(())
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, "pc_model_add_event", write) }
-}
-
-/// Has an event set a coordinate, quasi-velocity or velocity `x'` to the value of an expression, in which all
-/// names stand for what was before the event.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_model_add_reset(
-    model: *mut pc_model,
-    event: *const c_char,
-    name: *const c_char,
-    expression: *const c_char,
-    error: *mut *mut pc_error,
-) -> pc_status {
-    let write = |draft: &mut Draft| {
-        // SAFETY: null or text, as the preamble demands.
-        let (event, name) = unsafe { (text(event, "event")?, text(name, "name")?) };
-        // SAFETY: as above.
-        let expression = unsafe { text(expression, "expression") }?;
-        draft.add(Section::Events, &[event, "reset", name], quoted(expression));
-        Ok(())
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, "pc_model_add_reset", write) }
 }
 
 /// Sets the time at the start; 0 unless set.

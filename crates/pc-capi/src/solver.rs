@@ -1,24 +1,36 @@
 //! Integration by CVODE.
 
-use std::ffi::{c_int, c_void};
+use std::ffi::{CString, c_int, c_void};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use pc_mech::VectorField;
-use pc_solve::{Cvode, Ending};
+use pc_expr::Events;
 
-use crate::entry::{entry, free, is_held, locked};
+use crate::engine::Integration;
+use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
-use crate::field::Field;
+use crate::followed::Followed;
+use crate::held::Held;
 use crate::options::{pc_solver_options, take};
 use crate::pointer::{clear, handle, numbers, room, write};
 use crate::status::pc_status;
+use crate::strings::c_string;
 use crate::system::{Inner, Inventory, inside, pc_system};
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {
-    pub(crate) inner: Mutex<Cvode<Field>>,
-    dim: usize,
+    pub(crate) inner: Held<Integration>,
+    pub(crate) dim: usize,
+    /// Of the events, which may be read while an observer runs.
+    pub(crate) event_names: Mutex<Vec<CString>>,
+}
+
+impl pc_solver {
+    pub(crate) fn boxed(integration: Integration, events: &Followed, dim: usize) -> *mut pc_solver {
+        let names = events.events().iter().map(|event| c_string(event.name())).collect();
+        let inner = Held::new(integration);
+        Box::into_raw(Box::new(pc_solver { inner, dim, event_names: Mutex::new(names) }))
+    }
 }
 
 /// Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
@@ -29,7 +41,8 @@ pub type pc_observer =
 /// An integration of the system from the state y at the time t, with the parameters as they are now; from the
 /// start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
 /// constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
-/// values at this start. A model with events is refused with PC_UNSUPPORTED.
+/// values at this start. The events of the model are followed: where one occurs, the state is reset as the model
+/// says, and a terminal one ends the call with PC_EVENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_new(
     system: *const pc_system,
@@ -42,10 +55,6 @@ pub unsafe extern "C" fn pc_solver_new(
 ) -> pc_status {
     let new = |inventory: &Inventory, inner: &mut Inner| {
         let dim = inventory.dim();
-        if !inner.events.is_empty() {
-            let why = "the model has events, which this library does not follow";
-            return Err(Fault::Unsupported { what: "an integration", why });
-        }
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(dim) }?;
         let (t, y) = if y.is_null() {
@@ -54,12 +63,11 @@ pub unsafe extern "C" fn pc_solver_new(
             // SAFETY: `y_length` numbers, as the preamble demands.
             (t, unsafe { numbers(y, y_length, dim, "y") }?)
         };
-        let mut motion = inner.field.clone();
-        motion.restart(t, y);
-        let integration = Cvode::new(motion, t, y, &options)?;
-        let made = Box::new(pc_solver { inner: Mutex::new(integration), dim });
+        let events = Followed::new(inner.events.clone());
+        let integration = Integration::new(inner.field.clone(), (t, y), options, events.clone())?;
+        let made = pc_solver::boxed(integration, &events, dim);
         // SAFETY: null or a place for a handle, as the preamble demands.
-        unsafe { write(solver, Box::into_raw(made), "solver") }
+        unsafe { write(solver, made, "solver") }
     };
     let checked = || {
         // SAFETY: as above.
@@ -73,11 +81,11 @@ pub unsafe extern "C" fn pc_solver_new(
     }
 }
 
-/// Frees a solver. Null is allowed. In its own observer it does nothing.
+/// Frees a solver. Null is allowed. In its own observers and functions it does nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { solver.as_ref() }.is_some_and(|solver| is_held(&solver.inner)) {
+    if !unsafe { solver.as_ref() }.is_some_and(|solver| solver.inner.is_in_use()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(solver) };
     }
@@ -87,22 +95,23 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 ///
 /// # Safety
 /// `solver` is null or a live handle, `error` null or a place for a pointer.
-unsafe fn integrate(
+pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&mut Cvode<Field>, usize) -> Result<(), Fault>,
+    body: impl FnOnce(&mut Integration, usize) -> Result<(), Fault>,
 ) -> pc_status {
     let body = || {
         // SAFETY: as promised.
         let solver = unsafe { handle(solver, "solver") }?;
-        body(&mut *locked(&solver.inner)?, solver.dim)
+        body(&mut *solver.inner.take()?, solver.dim)
     };
     // SAFETY: as promised.
     unsafe { entry(error, body) }
 }
 
-/// Integrates to the time t, in the direction of the first step, and writes the state there. After a failure
-/// pc_solver_time and pc_solver_state tell what was reached.
+/// Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
+/// PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
+/// After a failure pc_solver_time and pc_solver_state tell what was reached.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -111,18 +120,19 @@ pub unsafe extern "C" fn pc_solver_advance(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let advance = |integration: &mut Cvode<Field>, dim: usize| {
+    let advance = |integration: &mut Integration, dim: usize| {
         // SAFETY: null or room for `y_length` numbers, as the preamble demands.
         let y = unsafe { room(y, y_length, dim, "y") }?;
-        y.copy_from_slice(integration.advance_to(t)?);
-        Ok(())
+        let ending = integration.advance(t)?;
+        y.copy_from_slice(integration.state());
+        integration.ended(ending)
     };
     // SAFETY: as the preamble demands.
     unsafe { integrate(solver, error, advance) }
 }
 
-/// Takes one internal step in the direction of `towards`, and writes its end, which may lie beyond, and the
-/// state there.
+/// Takes one internal step in the direction of `towards`, or the part of it before an event, and writes its end,
+/// which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -132,22 +142,24 @@ pub unsafe extern "C" fn pc_solver_step(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let step = |integration: &mut Cvode<Field>, dim: usize| {
+    let step = |integration: &mut Integration, dim: usize| {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { write(t, f64::NAN, "t") }?;
         // SAFETY: as above.
         let y = unsafe { room(y, y_length, dim, "y") }?;
-        let reached = integration.step(towards)?;
+        let ending = integration.step(towards)?;
         y.copy_from_slice(integration.state());
         // SAFETY: as above.
-        unsafe { write(t, reached, "t") }
+        unsafe { write(t, integration.time(), "t") }?;
+        integration.ended(ending)
     };
     // SAFETY: as the preamble demands.
     unsafe { integrate(solver, error, step) }
 }
 
 /// Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
-/// during the call, and with `user`. PC_STOPPED if the observer stops it.
+/// during the call, and with `user`. PC_STOPPED if the observer stops it. At the time of an event it is given the
+/// state after it; a terminal event is the last thing it is given, at the time of that, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,
@@ -157,7 +169,7 @@ pub unsafe extern "C" fn pc_solver_run(
     user: *mut c_void,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let run = |integration: &mut Cvode<Field>, _: usize| {
+    let run = |integration: &mut Integration, _: usize| {
         // SAFETY: null or `times_length` numbers, as the preamble demands.
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
         let observer = observer.ok_or(Fault::Null { what: "observer" })?;
@@ -168,10 +180,8 @@ pub unsafe extern "C" fn pc_solver_run(
                 _ => ControlFlow::Break(()),
             }
         };
-        match integration.run(times, output)? {
-            Ending::Completed | Ending::Event { .. } => Ok(()),
-            Ending::Stopped => Err(Fault::Stopped),
-        }
+        let ending = integration.run(times, output)?;
+        integration.ended(ending)
     };
     // SAFETY: as the preamble demands.
     unsafe { integrate(solver, error, run) }
@@ -196,7 +206,7 @@ pub unsafe extern "C" fn pc_solver_state(
     y_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let state = |integration: &mut Cvode<Field>, dim: usize| {
+    let state = |integration: &mut Integration, dim: usize| {
         // SAFETY: null or room for `y_length` numbers, as the preamble demands.
         unsafe { room(y, y_length, dim, "y") }?.copy_from_slice(integration.state());
         Ok(())

@@ -2,7 +2,7 @@
 
 use pc_solve::Statistics;
 
-use crate::entry::{entry, locked};
+use crate::entry::entry;
 use crate::error::{Fault, pc_error};
 use crate::options::give;
 use crate::pointer::handle;
@@ -68,7 +68,7 @@ pub unsafe extern "C" fn pc_solver_statistics(
 ) -> pc_status {
     let read = || {
         // SAFETY: null or a live handle, as the preamble demands.
-        let counts = locked(&unsafe { handle(solver, "solver") }?.inner)?.statistics();
+        let counts = unsafe { handle(solver, "solver") }?.inner.take()?.statistics();
         if statistics.is_null() {
             return Err(Fault::Null { what: "statistics" });
         }

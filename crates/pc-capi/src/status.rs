@@ -25,12 +25,16 @@ pub enum pc_status {
     PC_EVALUATION = 7,
     /// The integration began and could not go on.
     PC_INTEGRATION = 8,
-    /// The observer stopped the integration. This is no failure, and there is no pc_error.
+    /// An observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,
     /// The handle is in use: by another thread, or by the call that called the observer or the force function.
     PC_BUSY = 10,
     /// A fault of the library or no memory. The handle can only be freed.
     PC_INTERNAL = 11,
+    /// A terminal event ended the integration. This is no failure, and there is no pc_error.
+    PC_EVENT = 12,
+    /// The bytes are no checkpoint, or one of which a part is missing or changed.
+    PC_INVALID_CHECKPOINT = 13,
 }
 
 /// The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
@@ -49,6 +53,8 @@ pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
         9 => c"PC_STOPPED",
         10 => c"PC_BUSY",
         11 => c"PC_INTERNAL",
+        12 => c"PC_EVENT",
+        13 => c"PC_INVALID_CHECKPOINT",
         _ => c"unknown status",
     };
     name.as_ptr()

@@ -1,26 +1,27 @@
 //! Equations of motion: what they are of, and their parameters.
 
 use std::ffi::{CString, c_char};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use ::pc_model::{Flow, FlowEvents, Model, Variables};
-use pc_expr::Pattern;
+use pc_expr::{Event, Events, Pattern};
 use pc_mech::{Graph, LegendreTransform, VectorField};
 
-use crate::entry::{entry, free, is_held, locked};
+use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
 use crate::field::Field;
+use crate::held::Held;
 use crate::mechanics::Mechanics;
 use crate::model::pc_model;
 use crate::options::{pc_system_options, take};
 use crate::pointer::{clear, finite, handle, numbers, room, write};
 use crate::status::pc_status;
-use crate::strings::{c_strings, nth};
+use crate::strings::{c_string, c_strings, nth};
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {
     pub(crate) inventory: Arc<Inventory>,
-    pub(crate) inner: Mutex<Inner>,
+    pub(crate) inner: Held<Inner>,
 }
 
 /// What never changes.
@@ -40,6 +41,8 @@ pub(crate) struct Inventory {
     pub(crate) forces: Vec<CString>,
     t_start: f64,
     start: Vec<f64>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) event_names: Vec<CString>,
 }
 
 impl Inventory {
@@ -96,11 +99,13 @@ impl pc_system {
             forces: c_strings(&forces),
             t_start: assembly.t_start,
             start: flow.start.clone(),
+            events: flow.events.events().to_vec(),
+            event_names: flow.events.events().iter().map(|event| c_string(event.name())).collect(),
             model,
         };
         let field = Field::new(flow.motion, forces)?;
         let inner = Inner { field, events: flow.events, mechanics: None, legendre: None };
-        Ok(pc_system { inventory: Arc::new(inventory), inner: Mutex::new(inner) })
+        Ok(pc_system { inventory: Arc::new(inventory), inner: Held::new(inner) })
     }
 }
 
@@ -120,7 +125,7 @@ pub unsafe extern "C" fn pc_system_new(
         let options = unsafe { take(options, "options") }?;
         let variables = options.variables()?;
         // SAFETY: as above.
-        let contents = locked(&unsafe { handle(model, "model") }?.contents)?.clone();
+        let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
         let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
         // SAFETY: as above.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
@@ -143,7 +148,7 @@ pub unsafe extern "C" fn pc_system_clone(
         unsafe { clear(copy, "copy") }?;
         // SAFETY: as above.
         let system = unsafe { handle(system, "system") }?;
-        let inner = Mutex::new(locked(&system.inner)?.clone());
+        let inner = Held::new(system.inner.take()?.clone());
         let cloned = pc_system { inventory: Arc::clone(&system.inventory), inner };
         // SAFETY: as above.
         unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
@@ -156,20 +161,20 @@ pub unsafe extern "C" fn pc_system_clone(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { system.as_ref() }.is_some_and(|system| is_held(&system.inner)) {
+    if !unsafe { system.as_ref() }.is_some_and(|system| system.inner.is_in_use()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(system) };
     }
 }
 
 /// A number of the inventory; 0 of null.
-fn count(system: *const pc_system, number: impl FnOnce(&Inventory) -> usize) -> usize {
+pub(crate) fn count(system: *const pc_system, number: impl FnOnce(&Inventory) -> usize) -> usize {
     // SAFETY: null or a live handle, as the preamble demands of the callers.
     unsafe { system.as_ref() }.map_or(0, |system| number(&system.inventory))
 }
 
 /// A name of the inventory; null of null, and beyond the last.
-fn name(
+pub(crate) fn name(
     system: *const pc_system,
     index: usize,
     list: impl FnOnce(&Inventory) -> &[CString],
@@ -338,6 +343,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
 impl Inner {
     fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
         set(self.field.parameters_mut());
+        self.events.set_parameters(self.field.parameters());
         if let Some(legendre) = &mut self.legendre {
             set(legendre.parameters_mut());
         }
@@ -356,7 +362,7 @@ pub(crate) unsafe fn inside(
     let body = || {
         // SAFETY: as promised.
         let system = unsafe { handle(system, "system") }?;
-        body(&system.inventory, &mut *locked(&system.inner)?)
+        body(&system.inventory, &mut *system.inner.take()?)
     };
     // SAFETY: as promised.
     unsafe { entry(error, body) }

@@ -36,13 +36,13 @@ pub const PREAMBLE: &str = "\
  * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
- * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. Results are
- * written only if the status is PC_OK, except that a new handle or text is NULL after a failure, and that arrays for results may
- * hold anything then.
+ * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. PC_STOPPED
+ * and PC_EVENT are no failures: an observer, or a terminal event, has ended an integration. Results are written unless the call
+ * fails, except that a new handle or text is NULL after a failure, and that arrays for results may hold anything then.
  *
- * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file or pc_model_builtin gives, you
- * free with the ..._free of its type; `char *` you free with pc_string_free; `const char *` belongs to the handle it came from
- * and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
+ * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file, pc_model_builtin,
+ * pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of its type; `char *` you free with pc_string_free,
+ * bytes with pc_bytes_free; `const char *` belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
  * lives, and a system while its solvers and kernels do.
  *
  * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,

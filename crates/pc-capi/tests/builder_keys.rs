@@ -90,13 +90,13 @@ fn everything() -> Model {
     say!(model, pc_model_add_force, "v", "1").unwrap();
     say!(model, pc_model_add_integral, "half", "v/2").unwrap();
     say!(model, pc_model_add_output, "place", "x").unwrap();
-    let (name, when, falling) = (c("hit"), c("x"), c("falling"));
+    let (name, when) = (c("hit"), c("x"));
     call(|error| unsafe {
         // SAFETY: a live model and texts.
-        pc_model_add_event(model.0, name.as_ptr(), when.as_ptr(), falling.as_ptr(), 1, error)
+        pc_model_add_event(model.0, name.as_ptr(), when.as_ptr(), -1, 1, error)
     })
     .unwrap();
-    say!(model, pc_model_add_reset, "hit", "v", "-v").unwrap();
+    say!(model, pc_model_add_event_reset, "hit", "v", "-v").unwrap();
     say!(model, pc_model_set_start_time; 1.0).unwrap();
     say!(model, pc_model_set_end_time; 2.0).unwrap();
     say!(model, pc_model_set_samples; 11).unwrap();
@@ -270,15 +270,14 @@ fn events_arrive_as_text() {
     say!(ball, pc_model_set_lagrangian, "y'^2/2 - 9.81*y").unwrap();
     let (name, when) = (c("bounce"), c("y"));
     // SAFETY: a live model and texts.
-    call(|error| unsafe { pc_model_add_event(ball.0, name.as_ptr(), when.as_ptr(), ptr::null(), 0, error) })
-        .unwrap();
-    say!(ball, pc_model_add_reset, "bounce", "y'", "-0.8*y'").unwrap();
+    call(|error| unsafe { pc_model_add_event(ball.0, name.as_ptr(), when.as_ptr(), 0, 0, error) }).unwrap();
+    say!(ball, pc_model_add_event_reset, "bounce", "y'", "-0.8*y'").unwrap();
     say!(ball, pc_model_check).unwrap();
     let expected = "[events]\n\"bounce\".\"when\" = \"y\"\n\"bounce\".\"direction\" = \"both\"\n\
                     \"bounce\".\"terminal\" = false\n\"bounce\".\"reset\".\"y'\" = \"-0.8*y'\"\n";
     assert!(text(&ball).ends_with(expected), "{}", text(&ball));
     ball.system(PC_POINCARE).unwrap();
-    say!(ball, pc_model_add_reset, "bounce", "y''", "0").unwrap();
+    say!(ball, pc_model_add_event_reset, "bounce", "y''", "0").unwrap();
     assert_eq!(say!(ball, pc_model_check).unwrap_err().status, PC_INVALID_MODEL);
 }
 
@@ -309,8 +308,8 @@ fn nulls_and_models_of_texts_are_refused() {
         pc_model_set_start(draft, null, 1.0) with "name is a null pointer";
         pc_model_set_start_expression(draft, x, null) with "expression is a null pointer";
         pc_model_set_constraint_kind(draft, x, null) with "kind is a null pointer";
-        pc_model_add_event(draft, x, null, null, 0) with "when is a null pointer";
-        pc_model_add_reset(draft, x, x, null) with "expression is a null pointer";
+        pc_model_add_event(draft, x, null, 0, 0) with "when is a null pointer";
+        pc_model_add_event_reset(draft, x, x, null) with "expression is a null pointer";
         pc_model_set_method(draft, null) with "method is a null pointer";
         pc_model_set_form(draft, null) with "form is a null pointer";
         pc_model_set_start_time(draft, f64::NAN) with "t_start is NaN, but must be finite";

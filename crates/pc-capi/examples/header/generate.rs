@@ -24,7 +24,9 @@ pub(crate) fn header() -> String {
     config.export.exclude = vec!["PREAMBLE".to_owned()];
     // The enumerations of options are only named in the documentation of their fields.
     config.export.include =
-        ["pc_form", "pc_method", "pc_iteration", "pc_linear_solver", "pc_format"].map(str::to_owned).to_vec();
+        ["pc_form", "pc_method", "pc_iteration", "pc_linear_solver", "pc_format", "pc_direction"]
+            .map(str::to_owned)
+            .to_vec();
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut builder = Builder::new().with_config(config);
     for file in FILES {
@@ -38,10 +40,11 @@ pub(crate) fn header() -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 20] = [
+const FILES: [&str; 26] = [
     "version.rs",
     "status.rs",
     "error.rs",
+    "user.rs",
     "strings.rs",
     "model.rs",
     "builder.rs",
@@ -52,11 +55,16 @@ const FILES: [&str; 20] = [
     "force.rs",
     "rates.rs",
     "observe.rs",
+    "events.rs",
     "mechanics.rs",
     "bracket.rs",
     "legendre.rs",
     "source.rs",
     "kernel.rs",
     "solver.rs",
+    "occurrences.rs",
+    "dense.rs",
+    "checkpoint.rs",
     "statistics.rs",
+    "ensemble.rs",
 ];

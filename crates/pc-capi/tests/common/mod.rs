@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub(crate) mod ball;
+
 use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 
@@ -37,9 +39,13 @@ pub(crate) fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Re
     // SAFETY: null or an error, which is ours and is freed once.
     unsafe {
         assert_eq!(pc_error_status(error) == pc_status::PC_OK, error.is_null());
-        if status == pc_status::PC_OK || status == pc_status::PC_STOPPED {
+        if status == pc_status::PC_OK {
             assert!(error.is_null());
-            return if status == pc_status::PC_OK { Ok(()) } else { Err(stopped()) };
+            return Ok(());
+        }
+        if status == pc_status::PC_STOPPED || status == pc_status::PC_EVENT {
+            assert!(error.is_null());
+            return Err(Refusal { status, ..stopped() });
         }
         assert_eq!(pc_error_status(error), status);
         let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap().to_owned();
@@ -52,6 +58,11 @@ pub(crate) fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Re
 
 pub(crate) fn stopped() -> Refusal {
     Refusal { status: pc_status::PC_STOPPED, message: String::new(), line: 0 }
+}
+
+/// The end of a call by a terminal event.
+pub(crate) fn by_event() -> Refusal {
+    Refusal { status: pc_status::PC_EVENT, ..stopped() }
 }
 
 pub(crate) fn c(text: &str) -> CString {
@@ -152,6 +163,161 @@ impl Drop for System {
         // SAFETY: ours, freed once.
         unsafe { pc_system_free(self.0) };
     }
+}
+
+/// A solver, freed in the end.
+pub(crate) struct Solver(pub(crate) *mut pc_solver, usize);
+
+/// Options whose error over a few seconds is well below 1e-10.
+pub(crate) fn sharp() -> pc_solver_options {
+    pc_solver_options { relative_tolerance: 1e-13, absolute_tolerance: 1e-15, ..Default::default() }
+}
+
+impl Solver {
+    /// From the start of the model.
+    pub(crate) fn of(system: &System, options: &pc_solver_options) -> Solver {
+        let mut solver = ptr::null_mut();
+        // SAFETY: live objects and a place for the handle.
+        let new =
+            |error| unsafe { pc_solver_new(system.0, options, 0.0, ptr::null(), 0, &raw mut solver, error) };
+        call(new).unwrap();
+        Solver(solver, system.dim())
+    }
+
+    /// Of a checkpoint.
+    pub(crate) fn restored(
+        system: &System,
+        options: &pc_solver_options,
+        bytes: &[u8],
+    ) -> Result<Solver, Refusal> {
+        let (mut solver, data) = (ptr::null_mut(), bytes.as_ptr().cast());
+        // SAFETY: live objects, as many bytes as said, and a place for the handle.
+        let restore = |error| unsafe {
+            pc_solver_restore(system.0, options, data, bytes.len(), &raw mut solver, error)
+        };
+        match call(restore) {
+            Ok(()) => Ok(Solver(solver, system.dim())),
+            Err(refusal) => {
+                assert!(solver.is_null());
+                Err(refusal)
+            }
+        }
+    }
+
+    /// How it ends, and the state there.
+    pub(crate) fn advance(&self, t: f64) -> (Result<(), Refusal>, Vec<f64>) {
+        let mut y = vec![0.0; self.1];
+        // SAFETY: a live solver and room as said.
+        (call(|error| unsafe { pc_solver_advance(self.0, t, y.as_mut_ptr(), y.len(), error) }), y)
+    }
+
+    /// How a step ends, when, and the state there.
+    pub(crate) fn step(&self, towards: f64) -> (Result<(), Refusal>, f64, Vec<f64>) {
+        let (mut t, mut y) = (0.0, vec![0.0; self.1]);
+        // SAFETY: a live solver and room as said.
+        let step =
+            |error| unsafe { pc_solver_step(self.0, towards, &raw mut t, y.as_mut_ptr(), y.len(), error) };
+        (call(step), t, y)
+    }
+
+    pub(crate) fn time(&self) -> f64 {
+        let mut t = 0.0;
+        // SAFETY: a live solver and a place for a number.
+        call(|error| unsafe { pc_solver_time(self.0, &raw mut t, error) }).unwrap();
+        t
+    }
+
+    pub(crate) fn state(&self) -> Vec<f64> {
+        let mut y = vec![f64::NAN; self.1];
+        // SAFETY: a live solver and room as said.
+        call(|error| unsafe { pc_solver_state(self.0, y.as_mut_ptr(), y.len(), error) }).unwrap();
+        y
+    }
+
+    pub(crate) fn interpolate(&self, t: f64, derivative: u32) -> Result<Vec<f64>, Refusal> {
+        let mut y = vec![0.0; self.1];
+        // SAFETY: a live solver and room as said.
+        let interpolate =
+            |error| unsafe { pc_solver_interpolate(self.0, t, derivative, y.as_mut_ptr(), y.len(), error) };
+        call(interpolate).map(|()| y)
+    }
+
+    /// The motion up to `t`, and how that ends.
+    pub(crate) fn run_dense(&self, t: f64) -> (Result<(), Refusal>, Dense) {
+        let mut dense = ptr::null_mut();
+        // SAFETY: a live solver and a place for the handle.
+        let outcome = call(|error| unsafe { pc_solver_run_dense(self.0, t, &raw mut dense, error) });
+        (outcome, Dense(dense))
+    }
+
+    /// How often an event has occurred.
+    pub(crate) fn occurrences(&self, event: usize) -> u64 {
+        let mut count = 0;
+        // SAFETY: a live solver and a place for a number.
+        call(|error| unsafe { pc_solver_event_occurrences(self.0, event, &raw mut count, error) }).unwrap();
+        count
+    }
+
+    /// The last time, with the states before and after.
+    pub(crate) fn last(&self, event: usize) -> Result<(f64, Vec<f64>, Vec<f64>), Refusal> {
+        let (mut t, mut before, mut after) = (0.0, vec![0.0; self.1], vec![0.0; self.1]);
+        let (y, z, dim) = (before.as_mut_ptr(), after.as_mut_ptr(), self.1);
+        // SAFETY: a live solver and room as said.
+        let last =
+            |error| unsafe { pc_solver_last_occurrence(self.0, event, &raw mut t, y, dim, z, dim, error) };
+        call(last).map(|()| (t, before, after))
+    }
+}
+
+impl Drop for Solver {
+    fn drop(&mut self) {
+        // SAFETY: ours, freed once.
+        unsafe { pc_solver_free(self.0) };
+    }
+}
+
+/// A motion, freed in the end.
+pub(crate) struct Dense(pub(crate) *mut pc_dense);
+
+impl Dense {
+    pub(crate) fn at(&self, t: f64) -> Result<Vec<f64>, Refusal> {
+        // SAFETY: a live motion and room as said.
+        unsafe {
+            let mut y = vec![0.0; pc_dense_dim(self.0)];
+            call(|error| pc_dense_eval(self.0, t, y.as_mut_ptr(), y.len(), error)).map(|()| y)
+        }
+    }
+
+    pub(crate) fn rate(&self, t: f64) -> Result<Vec<f64>, Refusal> {
+        // SAFETY: a live motion and room as said.
+        unsafe {
+            let mut y = vec![0.0; pc_dense_dim(self.0)];
+            call(|error| pc_dense_rate(self.0, t, y.as_mut_ptr(), y.len(), error)).map(|()| y)
+        }
+    }
+
+    pub(crate) fn span(&self) -> (f64, f64) {
+        // SAFETY: a live motion, or null.
+        unsafe { (pc_dense_t_begin(self.0), pc_dense_t_end(self.0)) }
+    }
+}
+
+impl Drop for Dense {
+    fn drop(&mut self) {
+        // SAFETY: ours, freed once.
+        unsafe { pc_dense_free(self.0) };
+    }
+}
+
+/// Refused, each with a status and a message that ends so; the arguments are written as for C, without the last.
+#[allow(unused_macros, reason = "as above")]
+macro_rules! refused {
+    ($status:expr, $end:expr; $($function:ident($($argument:expr),* $(,)?);)*) => {$(
+        // SAFETY: null, live objects, or places as said; that what is wrong does no harm is what is tested.
+        let refusal = common::call(|error| unsafe { $function($($argument,)* error) }).unwrap_err();
+        assert_eq!(refusal.status, $status, "{}: {}", stringify!($function), refusal.message);
+        assert!(refusal.message.ends_with($end), "{}: {}", stringify!($function), refusal.message);
+    )*};
 }
 
 pub(crate) type At = unsafe extern "C" fn(

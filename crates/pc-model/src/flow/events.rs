@@ -76,13 +76,15 @@ impl FlowEvents {
         })
     }
 
-    /// The same with other values of the parameters.
-    pub(super) fn with_parameters(&self, parameters: &[f64]) -> FlowEvents {
-        let mut events = FlowEvents { reading: self.reading.with_parameters(parameters), ..self.clone() };
-        if let Some(motion) = &mut events.constraints {
+    /// Gives all parameters other values, in the order of declaration.
+    ///
+    /// # Panics
+    /// Unless there are as many values as parameters.
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        self.reading.set_parameters(parameters);
+        if let Some(motion) = &mut self.constraints {
             motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
         }
-        events
     }
 
     /// Whether there are none.

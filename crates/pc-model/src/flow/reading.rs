@@ -56,9 +56,12 @@ impl Reading {
         }
     }
 
-    /// The same with other values of the parameters.
-    pub(super) fn with_parameters(&self, parameters: &[f64]) -> Reading {
-        Reading { parameters: parameters.to_vec(), ..self.clone() }
+    /// Gives the parameters other values.
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.parameters.copy_from_slice(parameters);
+        if let Some(transform) = &mut self.transform {
+            transform.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
+        }
     }
 
     /// Values of the parameters.

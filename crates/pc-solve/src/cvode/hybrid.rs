@@ -3,6 +3,7 @@
 mod checkpoint;
 mod occur;
 mod run;
+mod step;
 
 use std::fmt;
 
@@ -210,7 +211,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             .map_err(|failure| self.event_error(blamed, t, failure))
     }
 
-    /// The error of a function, of the first event if the failure does not say of which.
+    /// The error of the function of an event.
     fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
         let reason = Reason::Event { event: self.name(event), t };
         self.failed(reason, Some(failure))
@@ -241,7 +242,7 @@ enum Fault {
     Event(f64, Failure),
 }
 
-/// The functions at a state; `blamed` is the first that is not finite.
+/// The functions at a state; `blamed` is the first that is not finite, or was not written before the failure.
 fn values_at(
     events: &mut impl Events,
     t: f64,
@@ -249,7 +250,10 @@ fn values_at(
     blamed: &mut usize,
 ) -> Result<Vec<f64>, Failure> {
     let mut values = vec![f64::NAN; events.events().len()];
-    events.evaluate(t, state, &mut values)?;
+    if let Err(failure) = events.evaluate(t, state, &mut values) {
+        *blamed = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+        return Err(failure);
+    }
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(values),
         Some(i) => {

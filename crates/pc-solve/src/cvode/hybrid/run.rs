@@ -95,7 +95,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
                 if segment(piece).is_break() {
                     return Ok(Ending::Stopped);
                 }
-            } else if !self.due.is_empty() {
+            } else if !self.due.is_empty() && from == self.front.t {
                 if let Some(ending) = self.occur(&mut occurred)? {
                     return Ok(ending);
                 }

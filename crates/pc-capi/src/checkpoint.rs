@@ -1,0 +1,140 @@
+//! Integrations that are taken up again.
+
+use std::ffi::{c_char, c_void};
+
+use pc_solve::Checkpoint;
+
+use crate::engine::Integration;
+use crate::entry::entry;
+use crate::error::{Fault, pc_error};
+use crate::followed::Followed;
+use crate::options::{pc_solver_options, take};
+use crate::pointer::{bytes, clear, text, write};
+use crate::solver::{integrate, pc_solver};
+use crate::status::pc_status;
+use crate::strings::give;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
+/// in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
+///
+/// A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
+/// it and those restored go through the same numbers to the last bit. PC_UNSUPPORTED with events.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_checkpoint(
+    solver: *mut pc_solver,
+    label: *const c_char,
+    data: *mut *mut c_void,
+    length: *mut usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write_bytes = |integration: &mut Integration, _: usize| {
+        let label = if label.is_null() { c"".as_ptr() } else { label };
+        // SAFETY: text, as the preamble demands.
+        let label = unsafe { text(label, "label") }?;
+        let Some(smooth) = integration.smooth() else { return Err(no_events()) };
+        let written = smooth.checkpoint().to_bytes(label);
+        integration.begin_anew()?;
+        // SAFETY: places for results, neither of which is null.
+        unsafe {
+            write(length, written.len(), "length")?;
+            write(data, handed_out(&written), "data")
+        }
+    };
+    let checked = || {
+        // SAFETY: null or a place for a pointer, or for a number, as the preamble demands.
+        unsafe { clear(data, "data").and(write(length, 0, "length")) }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    match unsafe { entry(error, checked) } {
+        // SAFETY: as the preamble demands.
+        pc_status::PC_OK => unsafe { integrate(solver, error, write_bytes) },
+        refused => refused,
+    }
+}
+
+fn no_events() -> Fault {
+    Fault::Unsupported { what: "a checkpoint", why: "there are events" }
+}
+
+/// An integration from a checkpoint, with the parameters of the system as they are now. It goes on as the one did that
+/// was written if system, parameters and options are the same. `options` may be NULL. PC_INVALID_CHECKPOINT unless
+/// the bytes are all that pc_solver_checkpoint wrote, unchanged. The work of the solver is counted from there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_restore(
+    system: *const pc_system,
+    options: *const pc_solver_options,
+    data: *const c_void,
+    length: usize,
+    solver: *mut *mut pc_solver,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let restore = |inventory: &Inventory, inner: &mut Inner| {
+        // SAFETY: null or `length` bytes, as the preamble demands.
+        let (checkpoint, _) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
+        if !inner.events.is_empty() {
+            return Err(no_events());
+        }
+        // SAFETY: null or options, as the preamble demands.
+        let options = unsafe { take(options, "options")?.options(inventory.dim()) }?;
+        let (start, events) = ((checkpoint.time(), checkpoint.state()), Followed::new(inner.events.clone()));
+        let integration = Integration::new(inner.field.clone(), start, options, events.clone())?;
+        let made = pc_solver::boxed(integration, &events, inventory.dim());
+        // SAFETY: null or a place for a handle, as the preamble demands.
+        unsafe { write(solver, made, "solver") }
+    };
+    let checked = || {
+        // SAFETY: as above.
+        unsafe { clear(solver, "solver") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    match unsafe { entry(error, checked) } {
+        // SAFETY: as the preamble demands.
+        pc_status::PC_OK => unsafe { inside(system, error, restore) },
+        refused => refused,
+    }
+}
+
+/// Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as pc_solver_restore.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_checkpoint_label(
+    data: *const c_void,
+    length: usize,
+    label: *mut *mut c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: null or a place for a pointer, as the preamble demands.
+        unsafe { clear(label, "label") }?;
+        // SAFETY: null or `length` bytes, as the preamble demands.
+        let (_, found) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
+        // SAFETY: as above.
+        unsafe { write(label, give(&found), "label") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, read) }
+}
+
+/// Bytes before those handed out, in which their number stands.
+const HEAD: usize = size_of::<usize>();
+
+/// A copy for C.
+fn handed_out(content: &[u8]) -> *mut c_void {
+    let whole: Box<[u8]> = [&content.len().to_ne_bytes(), content].concat().into();
+    // SAFETY: within the box, or just behind it.
+    unsafe { Box::into_raw(whole).cast::<u8>().add(HEAD).cast() }
+}
+
+/// Frees bytes that a function of this library has written to be freed. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_bytes_free(data: *mut c_void) {
+    if data.is_null() {
+        return;
+    }
+    // SAFETY: made by `handed_out`, and nobody uses them any more: so the head and as many bytes as it says.
+    drop(unsafe {
+        let whole = data.cast::<u8>().sub(HEAD);
+        let length = usize::from_ne_bytes(whole.cast::<[u8; HEAD]>().read());
+        Box::from_raw(std::ptr::slice_from_raw_parts_mut(whole, HEAD + length))
+    });
+}

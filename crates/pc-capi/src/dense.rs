@@ -1,0 +1,155 @@
+//! Motions as functions of time.
+
+use std::ffi::c_uint;
+
+use pc_solve::{DenseOutput, InputError, SolveError};
+
+use crate::engine::Integration;
+use crate::entry::{entry, free};
+use crate::error::{Fault, pc_error};
+use crate::pointer::{clear, handle, room, write};
+use crate::solver::{integrate, pc_solver};
+use crate::status::pc_status;
+
+/// A motion as a function of time. It never changes, so that any number of threads may use it. Free it with
+/// pc_dense_free.
+pub struct pc_dense {
+    motion: DenseOutput,
+    dim: usize,
+}
+
+/// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal step, from the
+/// polynomial of the method, whose degree is the order of that step. The step reaches from
+/// step_time − last_step to step_time of pc_statistics, but not beyond an event; there is none before the first, nor after
+/// a reset. y is on the constraints, its derivatives are those of the polynomial.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_interpolate(
+    solver: *mut pc_solver,
+    t: f64,
+    derivative: c_uint,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let interpolate = |integration: &mut Integration, dim: usize| {
+        // SAFETY: null or room for `y_length` numbers, as the preamble demands.
+        let y = unsafe { room(y, y_length, dim, "y") }?;
+        y.copy_from_slice(integration.interpolate(t, derivative)?);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, interpolate) }
+}
+
+/// Integrates to the time t as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
+/// numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_run_dense(
+    solver: *mut pc_solver,
+    t: f64,
+    dense: *mut *mut pc_dense,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let run = |integration: &mut Integration, dim: usize| {
+        let (motion, ending) = integration.run_dense(t)?;
+        let made = Box::new(pc_dense { motion, dim });
+        // SAFETY: null or a place for a handle, as the preamble demands.
+        unsafe { write(dense, Box::into_raw(made), "dense") }?;
+        integration.ended(ending)
+    };
+    let checked = || {
+        // SAFETY: as above.
+        unsafe { clear(dense, "dense") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    match unsafe { entry(error, checked) } {
+        // SAFETY: as the preamble demands.
+        pc_status::PC_OK => unsafe { integrate(solver, error, run) },
+        refused => refused,
+    }
+}
+
+/// What a function of time gives.
+type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
+
+/// Writes what `value` gives at t.
+///
+/// # Safety
+/// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a place for a pointer.
+unsafe fn at(
+    dense: *const pc_dense,
+    value: Value,
+    t: f64,
+    (y, y_length): (*mut f64, usize),
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = || {
+        // SAFETY: as promised.
+        let dense = unsafe { handle(dense, "dense") }?;
+        // SAFETY: as promised.
+        let y = unsafe { room(y, y_length, dense.dim, "y") }?;
+        let value = value(&dense.motion, t).map_err(SolveError::from)?;
+        y.copy_from_slice(&value);
+        Ok::<(), Fault>(())
+    };
+    // SAFETY: as promised.
+    unsafe { entry(error, evaluate) }
+}
+
+/// Writes y(t). At an event that is the state after it, but at the very end the limit from before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_eval(
+    dense: *const pc_dense,
+    t: f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { at(dense, DenseOutput::evaluate, t, (y, y_length), error) }
+}
+
+/// Writes the rate of y at t, which may jump by the error of a step from one step to the next.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_rate(
+    dense: *const pc_dense,
+    t: f64,
+    ydot: *mut f64,
+    ydot_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { at(dense, DenseOutput::derivative, t, (ydot, ydot_length), error) }
+}
+
+/// The length of the state. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_dim(dense: *const pc_dense) -> usize {
+    // SAFETY: null or a live handle, as the preamble demands.
+    unsafe { dense.as_ref() }.map_or(0, |dense| dense.dim)
+}
+
+/// Where the motion begins; NaN of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_t_begin(dense: *const pc_dense) -> f64 {
+    span(dense).0
+}
+
+/// Where the motion ends, before its beginning if it goes back in time; NaN of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_t_end(dense: *const pc_dense) -> f64 {
+    span(dense).1
+}
+
+fn span(dense: *const pc_dense) -> (f64, f64) {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    let dense = unsafe { dense.as_ref() };
+    dense.and_then(|dense| dense.motion.span()).unwrap_or((f64::NAN, f64::NAN))
+}
+
+/// Frees a motion. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_dense_free(dense: *mut pc_dense) {
+    // SAFETY: null or a handle of ours that nobody uses any more.
+    unsafe { free(dense) };
+}

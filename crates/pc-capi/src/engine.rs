@@ -1,0 +1,245 @@
+//! An integration by CVODE, with events or without, and what is remembered of them.
+
+use std::ffi::c_void;
+use std::ops::ControlFlow;
+
+use pc_expr::{Event, Events};
+use pc_solve::{Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
+
+use crate::error::Fault;
+use crate::field::Field;
+use crate::followed::{Followed, Own};
+
+/// The integration.
+pub(crate) enum Engine {
+    Smooth(Box<Cvode<Field>>),
+    Hybrid(Box<Hybrid<Field, Followed>>),
+}
+
+impl Engine {
+    /// From the state y at the time t. What `field` keeps by projection are its values there.
+    pub(crate) fn new(
+        mut field: Field,
+        (t, y): (f64, &[f64]),
+        options: &Options,
+        events: Followed,
+    ) -> Result<Engine, SolveError> {
+        use pc_expr::VectorField;
+        field.restart(t, y);
+        let smooth = Cvode::new(field, t, y, options)?;
+        Ok(if events.is_empty() {
+            Engine::Smooth(Box::new(smooth))
+        } else {
+            Engine::Hybrid(Box::new(smooth.with_events(events)?))
+        })
+    }
+
+    pub(crate) fn run(
+        &mut self,
+        times: &[f64],
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        match self {
+            Engine::Smooth(cvode) => cvode.run_observed(times, output, step),
+            Engine::Hybrid(hybrid) => hybrid.run_observed(times, output, occurred, step),
+        }
+    }
+
+    fn field(&self) -> &Field {
+        match self {
+            Engine::Smooth(cvode) => cvode.field(),
+            Engine::Hybrid(hybrid) => hybrid.field(),
+        }
+    }
+
+    fn time(&self) -> f64 {
+        match self {
+            Engine::Smooth(cvode) => cvode.time(),
+            Engine::Hybrid(hybrid) => hybrid.time(),
+        }
+    }
+
+    fn state(&self) -> &[f64] {
+        match self {
+            Engine::Smooth(cvode) => cvode.state(),
+            Engine::Hybrid(hybrid) => hybrid.state(),
+        }
+    }
+
+    fn statistics(&self) -> Statistics {
+        match self {
+            Engine::Smooth(cvode) => cvode.statistics(),
+            Engine::Hybrid(hybrid) => hybrid.statistics(),
+        }
+    }
+}
+
+/// What a solver remembers of its events: little, however often they occur.
+#[derive(Default)]
+pub(crate) struct Record {
+    /// How often each has occurred.
+    pub(crate) counts: Vec<u64>,
+    /// The last time of each.
+    pub(crate) last: Vec<Option<Occurrence>>,
+    /// The terminal event that ended the last call.
+    pub(crate) terminal: Option<usize>,
+    pub(crate) observer: Option<Observer>,
+}
+
+/// What is told of each occurrence.
+pub(crate) struct Observer {
+    pub(crate) function:
+        unsafe extern "C" fn(usize, f64, *const f64, *const f64, usize, *mut c_void) -> std::ffi::c_int,
+    pub(crate) user: *mut c_void,
+}
+
+impl Record {
+    fn of(events: usize) -> Record {
+        Record { counts: vec![0; events], last: vec![None; events], ..Record::default() }
+    }
+
+    fn note(&mut self, occurrence: &Occurrence) -> ControlFlow<()> {
+        self.counts[occurrence.event] += 1;
+        self.last[occurrence.event] = Some(occurrence.clone());
+        let Some(Observer { function, user }) = &self.observer else { return ControlFlow::Continue(()) };
+        let Occurrence { event, time, state_before, state_after } = occurrence;
+        let (before, after) = (state_before.as_ptr(), state_after.as_ptr());
+        // SAFETY: a function of that type, as pc_solver_observe_events demands; both states are as long as said.
+        match unsafe { function(*event, *time, before, after, state_after.len(), *user) } {
+            0 => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+}
+
+/// What a solver is.
+pub(crate) struct Integration {
+    engine: Engine,
+    events: Followed,
+    options: Options,
+    /// The work before it began anew at a checkpoint.
+    earlier: Statistics,
+    pub(crate) record: Record,
+}
+
+impl Integration {
+    pub(crate) fn new(
+        field: Field,
+        start: (f64, &[f64]),
+        options: Options,
+        events: Followed,
+    ) -> Result<Integration, SolveError> {
+        let engine = Engine::new(field, start, &options, events.clone())?;
+        let record = Record::of(events.events().len());
+        Ok(Integration { engine, events, options, earlier: Statistics::default(), record })
+    }
+
+    /// Follows one more event. Where that is refused, nothing has changed.
+    pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), Fault> {
+        if self.engine.statistics().steps > 0 {
+            return Err(Fault::Begun { what: "an event" });
+        }
+        let events = self.events.with(event, own);
+        self.begin(events)?;
+        self.record.counts.push(0);
+        self.record.last.push(None);
+        Ok(())
+    }
+
+    /// Begins anew where it stands, with these events.
+    fn begin(&mut self, events: Followed) -> Result<(), SolveError> {
+        let (field, start) = (self.engine.field().clone(), (self.time(), self.state()));
+        let engine = Engine::new(field, start, &self.options, events.clone())?;
+        self.earlier = self.statistics();
+        (self.engine, self.events) = (engine, events);
+        Ok(())
+    }
+
+    /// The integration without events, if there are none.
+    pub(crate) fn smooth(&self) -> Option<&Cvode<Field>> {
+        match &self.engine {
+            Engine::Smooth(cvode) => Some(cvode),
+            Engine::Hybrid(_) => None,
+        }
+    }
+
+    /// Begins anew where it stands.
+    pub(crate) fn begin_anew(&mut self) -> Result<(), SolveError> {
+        self.begin(self.events.clone())
+    }
+
+    pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {
+        self.record.terminal = None;
+        match &mut self.engine {
+            Engine::Smooth(cvode) => cvode.advance_to(t).map(|_| Ending::Completed),
+            Engine::Hybrid(hybrid) => hybrid.advance_to(t, |occurrence| self.record.note(occurrence)),
+        }
+    }
+
+    pub(crate) fn step(&mut self, towards: f64) -> Result<Ending, SolveError> {
+        self.record.terminal = None;
+        match &mut self.engine {
+            Engine::Smooth(cvode) => cvode.step(towards).map(|_| Ending::Completed),
+            Engine::Hybrid(hybrid) => hybrid.step(towards, |occurrence| self.record.note(occurrence)),
+        }
+    }
+
+    pub(crate) fn run(
+        &mut self,
+        times: &[f64],
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.record.terminal = None;
+        let occurred = |occurrence: &Occurrence| self.record.note(occurrence);
+        self.engine.run(times, output, occurred, |_, _| ControlFlow::Continue(()))
+    }
+
+    pub(crate) fn run_dense(&mut self, end: f64) -> Result<(DenseOutput, Ending), SolveError> {
+        self.record.terminal = None;
+        let mut motion = DenseOutput::default();
+        let keep = |segment| {
+            motion.extend([segment]);
+            ControlFlow::Continue(())
+        };
+        let ending = match &mut self.engine {
+            Engine::Smooth(cvode) => cvode.run_dense(end, keep)?,
+            Engine::Hybrid(hybrid) => {
+                hybrid.run_dense(end, keep, |occurrence| self.record.note(occurrence))?
+            }
+        };
+        Ok((motion, ending))
+    }
+
+    pub(crate) fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        match &mut self.engine {
+            Engine::Smooth(cvode) => cvode.interpolate(t, order),
+            Engine::Hybrid(hybrid) => hybrid.interpolate(t, order),
+        }
+    }
+
+    /// What the end of a call means to its caller.
+    pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), Fault> {
+        match ending {
+            Ending::Completed => Ok(()),
+            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Event { event } => {
+                self.record.terminal = Some(event);
+                Err(Fault::Terminal)
+            }
+        }
+    }
+
+    pub(crate) fn time(&self) -> f64 {
+        self.engine.time()
+    }
+
+    pub(crate) fn state(&self) -> &[f64] {
+        self.engine.state()
+    }
+
+    pub(crate) fn statistics(&self) -> Statistics {
+        self.earlier.followed_by(&self.engine.statistics())
+    }
+}

@@ -1,0 +1,228 @@
+//! Many motions at once, over all cores.
+
+use std::ffi::{CString, c_char, c_int, c_void};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::pc_model::FlowEvents;
+use pc_solve::{Cvode, Ending, Ensemble, Options, Panicked, Stop};
+
+use crate::engine::Engine;
+use crate::entry::entry;
+use crate::error::{Fault, pc_error};
+use crate::field::Field;
+use crate::followed::Followed;
+use crate::options::{pc_solver_options, take};
+use crate::pointer::{finite, handle, numbers};
+use crate::status::pc_status;
+use crate::system::pc_system;
+
+/// What has come of a member of an ensemble. It may grow at the end.
+#[repr(C)]
+pub struct pc_member {
+    /// Its number, from 0.
+    pub number: usize,
+    /// PC_OK; PC_EVENT if a terminal event ended it; else why it failed.
+    pub status: pc_status,
+    /// Why it failed, else NULL.
+    pub message: *const c_char,
+    /// The output times that it reached, as many as `rows`; the time of a terminal event is the last one.
+    pub times: *const f64,
+    /// The states at these, one after the other, each of `dim` numbers.
+    pub states: *const f64,
+    /// How many these are, also if it failed.
+    pub rows: usize,
+    /// The length of a state.
+    pub dim: usize,
+}
+
+/// Is given each member in order, on the thread of the call; what it points to is valid during the call. Returns 0
+/// to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as pc_observer.
+pub type pc_member_observer =
+    Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
+
+/// What all members have in common, and where each has its own.
+struct Plan<'a> {
+    prototype: Mutex<(Field, FlowEvents)>,
+    t: f64,
+    /// Of the model.
+    start: &'a [f64],
+    /// One state after the other, or none.
+    states: Option<&'a [f64]>,
+    parameters: Option<&'a [f64]>,
+    times: &'a [f64],
+    options: Options,
+}
+
+/// What comes of a member.
+struct Outcome {
+    status: pc_status,
+    message: Option<CString>,
+    times: Vec<f64>,
+    states: Vec<f64>,
+}
+
+impl Outcome {
+    fn new() -> Outcome {
+        Outcome { status: pc_status::PC_OK, message: None, times: Vec::new(), states: Vec::new() }
+    }
+
+    fn of(fault: &Fault) -> Outcome {
+        let mut outcome = Outcome::new();
+        outcome.fail(fault);
+        outcome
+    }
+
+    fn fail(&mut self, fault: &Fault) {
+        let (status, message) = fault.told();
+        (self.status, self.message) = (status, Some(message));
+    }
+
+    /// Tells the observer, and what that says.
+    ///
+    /// # Safety
+    /// It is a function of that type.
+    unsafe fn tell(
+        &self,
+        number: usize,
+        dim: usize,
+        observer: unsafe extern "C" fn(*const pc_member, *mut c_void) -> c_int,
+        user: *mut c_void,
+    ) -> ControlFlow<()> {
+        let member = pc_member {
+            number,
+            status: self.status,
+            message: self.message.as_ref().map_or(std::ptr::null(), |message| message.as_ptr()),
+            times: self.times.as_ptr(),
+            states: self.states.as_ptr(),
+            rows: self.times.len(),
+            dim,
+        };
+        // SAFETY: as promised; what the member points to lives.
+        match unsafe { observer(&raw const member, user) } {
+            0 => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+}
+
+impl Plan<'_> {
+    /// The motion of a member, as a solver of its own would give it.
+    fn follow(&self, member: usize, stop: &Stop<'_>) -> Outcome {
+        let mut outcome = Outcome::new();
+        let ended = self.engine(member).and_then(|mut engine| {
+            let output = |t, y: &[f64]| {
+                outcome.times.push(t);
+                outcome.states.extend_from_slice(y);
+                ControlFlow::Continue(())
+            };
+            let step = |_: f64, _: &[f64]| {
+                if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            Ok(engine.run(self.times, output, |_| ControlFlow::Continue(()), step)?)
+        });
+        match ended {
+            Ok(Ending::Completed) => {}
+            Ok(Ending::Stopped) => outcome.status = pc_status::PC_STOPPED,
+            Ok(Ending::Event { .. }) => outcome.status = pc_status::PC_EVENT,
+            Err(fault) => outcome.fail(&fault),
+        }
+        outcome
+    }
+
+    fn engine(&self, member: usize) -> Result<Engine, Fault> {
+        let row = |all: &'_ [f64], length: usize| all[member * length..(member + 1) * length].to_vec();
+        // Nothing is changed while it is locked.
+        let (mut field, mut events) = self.prototype.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let start = self.states.map_or_else(|| self.start.to_vec(), |all| row(all, self.start.len()));
+        if let Some(all) = self.parameters {
+            let values = row(all, field.parameters().len());
+            for &value in &values {
+                finite(value, "a parameter")?;
+            }
+            field.parameters_mut().copy_from_slice(&values);
+            events.set_parameters(&values);
+        }
+        Ok(Engine::new(field, (self.t, &start), &self.options, Followed::new(events))?)
+    }
+}
+
+/// Integrates many members through the times, each from its own state, with its own parameters, as a solver of its
+/// own would: the numbers are the same for any number of threads. The events of the model are followed.
+///
+/// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
+/// not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
+/// are now. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
+/// told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
+/// found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_ensemble_run(
+    system: *const pc_system,
+    options: *const pc_solver_options,
+    members: usize,
+    t: f64,
+    states: *const f64,
+    states_length: usize,
+    parameters: *const f64,
+    parameters_length: usize,
+    times: *const f64,
+    times_length: usize,
+    threads: usize,
+    observer: pc_member_observer,
+    user: *mut c_void,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let run = || {
+        // SAFETY: null or a live handle, as the preamble demands.
+        let system = unsafe { handle(system, "system") }?;
+        let inventory = Arc::clone(&system.inventory);
+        let (mut field, events) = {
+            let inner = system.inner.take()?;
+            (inner.field.clone(), inner.events.clone())
+        };
+        let (t_start, start) = inventory.start();
+        let rows = |data: *const f64, found: usize, width: usize, what| {
+            if data.is_null() {
+                return Ok(None);
+            }
+            let too_many = Fault::Length { what, found, expected: usize::MAX };
+            let expected = members.checked_mul(width).ok_or(too_many)?;
+            // SAFETY: `found` numbers, as the preamble demands.
+            unsafe { numbers(data, found, expected, what) }.map(Some)
+        };
+        let states = rows(states, states_length, start.len(), "states")?;
+        let parameters = rows(parameters, parameters_length, field.parameters().len(), "parameters")?;
+        // SAFETY: null or `times_length` numbers, as the preamble demands.
+        let times = unsafe { numbers(times, times_length, times_length, "times") }?;
+        // SAFETY: null or options, as the preamble demands.
+        let options = unsafe { take(options, "options")?.options(start.len()) }?;
+        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+
+        let t = if states.is_none() { t_start } else { t };
+        if let Some(&end) = times.last() {
+            // A step of one member compiles the derivatives that all need. What goes wrong, each will hear of.
+            let first = states.and_then(|all| all.get(..start.len())).unwrap_or(start);
+            let _ = Cvode::new(&mut field, t, first, &options).and_then(|mut cvode| cvode.step(end));
+        }
+        let prototype = Mutex::new((field, events));
+        let plan = Plan { prototype, t, start, states, parameters, times, options };
+        let mut ensemble = Ensemble::new();
+        if let Some(threads) = NonZeroUsize::new(threads.min(members)) {
+            ensemble = ensemble.threads(threads);
+        }
+        let work = |member: u64, stop: &Stop<'_>| plan.follow(member as usize, stop);
+        let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
+            let outcome =
+                outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&Fault::Panic { message }));
+            // SAFETY: a function of that type, as the preamble demands.
+            unsafe { outcome.tell(member as usize, start.len(), observer, user) }
+        };
+        match ensemble.map(0..members as u64, work, consume)? {
+            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Completed | Ending::Event { .. } => Ok(()),
+        }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, run) }
+}

@@ -1,0 +1,173 @@
+//! Events of a model: said call by call, and for an integrator of one's own.
+
+use std::ffi::{c_char, c_int};
+
+use pc_expr::{Direction, Event, Events};
+
+use crate::builder::draft;
+use crate::draft::{Draft, Section, quoted};
+use crate::error::{Fault, pc_error};
+use crate::model::pc_model;
+use crate::pointer::{numbers, room, text};
+use crate::rates::{State, Target, slices};
+use crate::status::pc_status;
+use crate::system::{Inner, Inventory, count, inside, name, pc_system};
+
+/// In which direction the function of an event passes through zero, as the integration goes.
+#[repr(C)]
+pub enum pc_direction {
+    /// From above.
+    PC_FALLING = -1,
+    /// Either way.
+    PC_BOTH = 0,
+    /// From below.
+    PC_RISING = 1,
+}
+
+/// The direction of that number, and its name in the text.
+pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), Fault> {
+    match value {
+        -1 => Ok((Direction::Falling, "falling")),
+        0 => Ok((Direction::Both, "both")),
+        1 => Ok((Direction::Rising, "rising")),
+        value => Err(Fault::Choice { what: "pc_direction", value: value.into() }),
+    }
+}
+
+/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A `terminal` one, not
+/// 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in the order in which they were added.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_event(
+    model: *mut pc_model,
+    name: *const c_char,
+    when: *const c_char,
+    direction: c_int,
+    terminal: c_int,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, when) = unsafe { (text(name, "name")?, text(when, "when")?) };
+        let (_, direction) = self::direction(direction)?;
+        draft.add(Section::Events, &[name, "when"], quoted(when));
+        draft.add(Section::Events, &[name, "direction"], quoted(direction));
+        draft.add(Section::Events, &[name, "terminal"], (terminal != 0).to_string());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_event", write) }
+}
+
+/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or velocity `x'` that
+/// is called `variable` takes the value of the expression. All resets of an event take effect together, from the state before it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_event_reset(
+    model: *mut pc_model,
+    event: *const c_char,
+    variable: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (event, variable, expression) =
+            unsafe { (text(event, "event")?, text(variable, "variable")?, text(expression, "expression")?) };
+        draft.add_reset(event, variable, quoted(expression))
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_event_reset", write) }
+}
+
+/// The number of events of the model. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.events.len())
+}
+
+/// The name of an event, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_name(system: *const pc_system, index: usize) -> *const c_char {
+    name(system, index, |inventory| &inventory.event_names)
+}
+
+/// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that CVODE's
+/// CVodeSetRootDirection takes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, index: usize) -> c_int {
+    of_event(system, index, |event| match event.crosses() {
+        Direction::Falling => -1,
+        Direction::Both => 0,
+        Direction::Rising => 1,
+    })
+}
+
+/// 1 if an event ends the integration, else 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_is_terminal(system: *const pc_system, index: usize) -> c_int {
+    of_event(system, index, |event| event.is_terminal().into())
+}
+
+/// 1 if an event resets the state, else 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_resets(system: *const pc_system, index: usize) -> c_int {
+    of_event(system, index, |event| event.resets().into())
+}
+
+/// What is known of an event; 0 of null, and beyond the last.
+fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
+    inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
+}
+
+/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs where its own
+/// passes through zero. They are not finite where the model has no value for them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_events(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, expected) = (State { y, length: y_length }, inventory.events.len());
+        let target = Target { data: values, length, expected, what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
+        Ok(inner.events.evaluate(t, y, values)?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Turns the state y before an event, number `event` from 0, into the state after it. One that resets nothing
+/// leaves it as it is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_event_reset(
+    system: *mut pc_system,
+    event: usize,
+    t: f64,
+    y: *mut f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let reset = |inventory: &Inventory, inner: &mut Inner| {
+        let count = inventory.events.len();
+        let Some(known) = inventory.events.get(event) else {
+            return Err(Fault::Index { what: "the events", index: event, count });
+        };
+        // SAFETY: as the preamble demands.
+        let mut state = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
+        if known.resets() {
+            inner.events.reset(event, t, &mut state)?;
+        }
+        // SAFETY: as the preamble demands.
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&state);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, reset) }
+}

@@ -1,0 +1,101 @@
+//! The events of an integration: those of the model, then those that functions of the program compute.
+
+use std::ffi::{c_int, c_void};
+use std::rc::Rc;
+
+use ::pc_model::FlowEvents;
+use pc_expr::{Event, Events, Failure};
+
+use crate::user::User;
+
+/// g(t, y) of an event, for C.
+pub(crate) type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, *mut c_void) -> c_int;
+/// y⁺ in the place of y⁻, for C.
+pub(crate) type Reset = unsafe extern "C" fn(f64, *mut f64, usize, *mut c_void) -> c_int;
+/// What happens on the way of an integration. Copies share the functions of the program, and stay with one solver.
+#[derive(Clone)]
+pub(crate) struct Followed {
+    list: Vec<Event>,
+    model: FlowEvents,
+    own: Vec<Rc<Own>>,
+}
+
+/// The functions of an event of the program's own.
+pub(crate) struct Own {
+    pub(crate) name: String,
+    pub(crate) function: Function,
+    pub(crate) reset: Option<Reset>,
+    pub(crate) user: User,
+}
+
+/// A function of the program did not succeed.
+#[derive(Debug, thiserror::Error)]
+#[error("the {what} of the event {event} returned {code}")]
+struct Returned {
+    what: &'static str,
+    event: String,
+    code: c_int,
+}
+
+impl Own {
+    fn read(&self, what: &'static str, code: c_int) -> Result<(), Failure> {
+        match code {
+            0 => Ok(()),
+            _ => Err(Failure::fatal(Returned { what, event: self.name.clone(), code })),
+        }
+    }
+}
+
+impl Followed {
+    /// The events of the model.
+    pub(crate) fn new(model: FlowEvents) -> Followed {
+        Followed { list: model.events().to_vec(), model, own: Vec::new() }
+    }
+
+    /// These and one more.
+    pub(crate) fn with(&self, event: Event, own: Own) -> Followed {
+        let mut more = self.clone();
+        more.list.push(event);
+        more.own.push(Rc::new(own));
+        more
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+}
+
+impl Events for Followed {
+    fn events(&self) -> &[Event] {
+        &self.list
+    }
+
+    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let (of_model, of_own) = values.split_at_mut(self.list.len() - self.own.len());
+        if !of_model.is_empty() {
+            self.model.evaluate(t, y, of_model)?;
+        }
+        for (own, value) in self.own.iter().zip(of_own) {
+            // SAFETY: a function of that type, as pc_solver_add_event demands; `y` is as long as said.
+            let code = unsafe { (own.function)(t, y.as_ptr(), y.len(), value, own.user.data) };
+            if code != 0 {
+                *value = f64::NAN;
+            }
+            own.read("function", code)?;
+        }
+        Ok(())
+    }
+
+    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let of_model = self.list.len() - self.own.len();
+        if event < of_model {
+            return self.model.reset(event, t, y);
+        }
+        let own = &self.own[event - of_model];
+        match own.reset {
+            // SAFETY: a function of that type, as pc_solver_add_event demands; `y` is as long as said.
+            Some(reset) => own.read("reset", unsafe { reset(t, y.as_mut_ptr(), y.len(), own.user.data) }),
+            None => Ok(()),
+        }
+    }
+}

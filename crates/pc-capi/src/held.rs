@@ -1,0 +1,72 @@
+//! What only one call may use at a time.
+
+use std::cell::UnsafeCell;
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use crate::error::Fault;
+
+const FREE: u8 = 0;
+const IN_USE: u8 = 1;
+const BROKEN: u8 = 2;
+
+/// A value that one call at a time may use, and none after a panic in one.
+///
+/// As a mutex that nobody waits for; to give it back takes no atomic exchange, which is felt in an evaluation of
+/// some nanoseconds.
+pub(crate) struct Held<T> {
+    state: AtomicU8,
+    value: UnsafeCell<T>,
+}
+
+// SAFETY: the value goes from thread to thread, and only one has it at a time.
+unsafe impl<T: Send> Sync for Held<T> {}
+
+/// The value, until this is dropped.
+pub(crate) struct Use<'a, T>(&'a Held<T>);
+
+impl<T> Held<T> {
+    pub(crate) fn new(value: T) -> Held<T> {
+        Held { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
+    }
+
+    /// The value, if nobody else uses it.
+    #[inline]
+    pub(crate) fn take(&self) -> Result<Use<'_, T>, Fault> {
+        match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {
+            Ok(_) => Ok(Use(self)),
+            Err(BROKEN) => Err(Fault::Broken),
+            Err(_) => Err(Fault::Busy),
+        }
+    }
+
+    /// Whether a call uses the value.
+    pub(crate) fn is_in_use(&self) -> bool {
+        self.state.load(Ordering::Acquire) == IN_USE
+    }
+}
+
+impl<T> Deref for Use<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        // SAFETY: `take` gives the value to one at a time.
+        unsafe { &*self.0.value.get() }
+    }
+}
+
+impl<T> DerefMut for Use<'_, T> {
+    fn deref_mut(&mut self) -> &mut T {
+        // SAFETY: `take` gives the value to one at a time, which borrows it exclusively.
+        unsafe { &mut *self.0.value.get() }
+    }
+}
+
+impl<T> Drop for Use<'_, T> {
+    #[inline]
+    fn drop(&mut self) {
+        // What a panic leaves half done is not used again. A call during another panic would be taken for that too.
+        let state = if std::thread::panicking() { BROKEN } else { FREE };
+        self.0.state.store(state, Ordering::Release);
+    }
+}

@@ -1,0 +1,191 @@
+//! The events that a solver follows: what occurs, and events of the program's own.
+
+use std::ffi::{CString, c_char, c_int, c_void};
+use std::sync::{MutexGuard, PoisonError};
+
+use pc_expr::Event;
+
+use crate::engine::{Integration, Observer};
+use crate::error::{Fault, pc_error};
+use crate::events::direction;
+use crate::followed::Own;
+use crate::pointer::{apart, handle, room, text, write};
+use crate::solver::{integrate, pc_solver};
+use crate::status::pc_status;
+use crate::strings::{c_string, nth};
+use crate::user::{User, pc_destroy};
+
+/// Is given each event where it occurs, by its number among the events of the solver, with the states before and
+/// after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
+/// that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED. Otherwise as pc_observer.
+pub type pc_event_observer = Option<
+    unsafe extern "C" fn(
+        event: usize,
+        t: f64,
+        before: *const f64,
+        after: *const f64,
+        y_length: usize,
+        user: *mut c_void,
+    ) -> c_int,
+>;
+
+/// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends the
+/// integration with PC_INTEGRATION, as a value does that is not finite or not written. It should depend on
+/// nothing but its arguments and be smooth. It must return: no exceptions, no longjmp.
+pub type pc_event_function = Option<
+    unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
+>;
+
+/// Turns the state y before the event into the state after it. Otherwise as pc_event_function.
+pub type pc_event_reset =
+    Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
+
+/// Has an observer told of each event from now on, instead of the one before; of none if it is NULL. It is called
+/// within the calls that integrate, on their thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_observe_events(
+    solver: *mut pc_solver,
+    observer: pc_event_observer,
+    user: *mut c_void,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |integration: &mut Integration, _: usize| {
+        integration.record.observer = observer.map(|function| Observer { function, user });
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, observe) }
+}
+
+/// Follows an event of the program's own, after those of the model and those added before: `function` passes
+/// through zero in a direction, a pc_direction. There `reset`, unless NULL, changes the state, which is then
+/// projected to the constraints; a `terminal` event, not 0, ends the call with PC_EVENT. Comes before the first
+/// step. `name` is for messages.
+///
+/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
+/// pc_solver_free. It must not use the solver.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_add_event(
+    solver: *mut pc_solver,
+    name: *const c_char,
+    direction: c_int,
+    terminal: c_int,
+    function: pc_event_function,
+    reset: pc_event_reset,
+    user: *mut c_void,
+    destroy: pc_destroy,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let user = User { data: user, destroy };
+    let add = |integration: &mut Integration, _: usize| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        let (direction, _) = self::direction(direction)?;
+        let function = function.ok_or(Fault::Null { what: "function" })?;
+        let event = Event::new(name).direction(direction).terminal(terminal != 0).resetting(reset.is_some());
+        integration.add(event, Own { name: name.to_owned(), function, reset, user })?;
+        // SAFETY: a live handle: it has given the integration.
+        names(unsafe { handle(solver, "solver") }?).push(c_string(name));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, add) }
+}
+
+fn names(solver: &pc_solver) -> MutexGuard<'_, Vec<CString>> {
+    // Nothing fails while it is locked.
+    solver.event_names.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The number of events that a solver follows: those of the model, then those added. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_event_count(solver: *const pc_solver) -> usize {
+    // SAFETY: null or a live handle, as the preamble demands.
+    unsafe { solver.as_ref() }.map_or(0, |solver| names(solver).len())
+}
+
+/// The name of an event, from 0; NULL beyond the last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_event_name(solver: *const pc_solver, index: usize) -> *const c_char {
+    // SAFETY: null or a live handle, as the preamble demands.
+    unsafe { solver.as_ref() }.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
+}
+
+/// Writes how often an event has occurred.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_event_occurrences(
+    solver: *const pc_solver,
+    event: usize,
+    occurrences: *mut u64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = |integration: &mut Integration, _: usize| {
+        let counts = &integration.record.counts;
+        let Some(&number) = counts.get(event) else { return Err(no_such(event, counts.len())) };
+        // SAFETY: null or a place for a number, as the preamble demands.
+        unsafe { write(occurrences, number, "occurrences") }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, read) }
+}
+
+fn no_such(event: usize, count: usize) -> Fault {
+    Fault::Index { what: "the events", index: event, count }
+}
+
+/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not occurred. Only
+/// the last occurrence is kept; an observer sees all. `before` and `after` may be NULL, of length 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_last_occurrence(
+    solver: *const pc_solver,
+    event: usize,
+    t: *mut f64,
+    before: *mut f64,
+    before_length: usize,
+    after: *mut f64,
+    after_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = |integration: &mut Integration, dim: usize| {
+        let last = &integration.record.last;
+        let Some(last) = last.get(event) else { return Err(no_such(event, last.len())) };
+        if before_length == dim && after_length == dim {
+            apart((before, dim, "before"), (after, dim, "after"))?;
+        }
+        let skipped = |state: *mut f64, length: usize| state.is_null() && length == 0;
+        let place = |state: *mut f64, length: usize, what| {
+            let dim = if skipped(state, length) { 0 } else { dim };
+            // SAFETY: null or room for `length` numbers, as the preamble demands; the two share no memory.
+            unsafe { room(state, length, dim, what) }
+        };
+        let (before, after) = (place(before, before_length, "before")?, place(after, after_length, "after")?);
+        let Some(last) = last else {
+            // SAFETY: a live handle: it has given the integration.
+            let name = nth(&names(unsafe { handle(solver, "solver") }?), event);
+            // SAFETY: the name of an event that there is.
+            return Err(Fault::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
+        };
+        before.copy_from_slice(&last.state_before[..before.len()]);
+        after.copy_from_slice(&last.state_after[..after.len()]);
+        // SAFETY: null or a place for a number, as the preamble demands.
+        unsafe { write(t, last.time, "t") }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, read) }
+}
+
+/// Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND if none did.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_terminal_event(
+    solver: *const pc_solver,
+    event: *mut usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = |integration: &mut Integration, _: usize| {
+        let number = integration.record.terminal.ok_or(Fault::NotEnded)?;
+        // SAFETY: null or a place for a number, as the preamble demands.
+        unsafe { write(event, number, "event") }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, read) }
+}

@@ -1,0 +1,232 @@
+//! Motions as functions of time, and motions that are taken up again.
+
+#![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
+
+#[macro_use]
+mod common;
+
+use std::ffi::{c_char, c_void};
+use std::ptr;
+
+use common::{Refusal, Solver, System, c, call, sharp, taken};
+use pc::pc_status::*;
+use pc::*;
+
+#[track_caller]
+fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= tolerance * (1.0 + expected.abs()), "{found} is not {expected}");
+    }
+}
+
+#[test]
+fn a_motion_as_a_function_is_the_run_at_its_times() {
+    for name in ["heavy-top-lagrange", "bouncing-ball"] {
+        let system = System::of(name);
+        let (solver, other) = (Solver::of(&system, &sharp()), Solver::of(&system, &sharp()));
+        let (outcome, motion) = solver.run_dense(2.5);
+        outcome.unwrap();
+        assert_eq!((motion.span(), solver.time()), ((0.0, 2.5), 2.5));
+        for i in 0..=50 {
+            let t = 0.05 * f64::from(i);
+            let (outcome, y) = other.advance(t);
+            outcome.unwrap();
+            // The same polynomials written about other points: rounding, grown by the degree up to 13. (No time is that of
+            // a bounce, which the function locates to 1e-15.)
+            assert_near(&motion.at(t).unwrap(), &y, 1e-10);
+            if name == "heavy-top-lagrange" {
+                // The rate of the polynomial is of one order less than the states.
+                let rate = system.at(pc_system_rhs, t, &y, y.len()).unwrap();
+                assert_near(&motion.rate(t).unwrap(), &rate, 1e-7);
+            }
+        }
+        for t in [-0.1, 2.6, f64::NAN] {
+            assert_eq!(motion.at(t).unwrap_err().status, PC_INVALID_ARGUMENT);
+        }
+    }
+    // At an event it is the state after it.
+    let solver = Solver::of(&System::of("bouncing-ball"), &sharp());
+    let (_, motion) = solver.run_dense(0.6);
+    let (t, _, after) = solver.last(0).unwrap();
+    assert_eq!(motion.at(t).unwrap()[1].signum(), after[1].signum());
+    assert_near(&motion.at(t).unwrap(), &after, 1e-10);
+}
+
+#[test]
+fn states_inside_the_last_step_are_interpolated() {
+    let system = System::of("heavy-top-lagrange");
+    let solver = Solver::of(&system, &sharp());
+    assert_eq!(solver.interpolate(0.0, 0).unwrap_err().status, PC_INVALID_ARGUMENT);
+    let mut t = 0.0;
+    let (mut begin, mut y) = (0.0, vec![]);
+    while t < 1.0 {
+        begin = t;
+        let (outcome, end, state) = solver.step(2.0);
+        outcome.unwrap();
+        (t, y) = (end, state);
+    }
+    assert_near(&solver.interpolate(t, 0).unwrap(), &y, 1e-15); // the end itself
+    let rate = system.at(pc_system_rhs, t, &y, y.len()).unwrap();
+    assert_near(&solver.interpolate(t, 1).unwrap(), &rate, 1e-9); // the corrector meets f to its tolerance
+    let other = Solver::of(&system, &sharp());
+    let middle = 0.5 * (begin + t);
+    assert_near(&solver.interpolate(middle, 0).unwrap(), &other.advance(middle).1, 1e-10);
+    for (t, order) in [(t + 1.0, 0), (begin - 1.0, 0), (t, 40), (f64::NAN, 0), (f64::INFINITY, 1)] {
+        let refusal = solver.interpolate(t, order).unwrap_err();
+        assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{t} {order} {}", refusal.message);
+    }
+    assert_eq!(solver.time(), t); // which none of this has moved
+}
+
+/// The bytes of a checkpoint, and its label.
+fn checkpoint(solver: &Solver, label: *const c_char) -> Result<Vec<u8>, Refusal> {
+    let (mut data, mut length) = (ptr::dangling_mut::<c_void>(), 1);
+    // SAFETY: a live solver, text or null, and places for results; the bytes are freed once.
+    unsafe {
+        let written =
+            call(|error| pc_solver_checkpoint(solver.0, label, &raw mut data, &raw mut length, error));
+        if written.is_err() {
+            assert!(data.is_null() && length == 0);
+        }
+        written?;
+        let bytes = std::slice::from_raw_parts(data.cast(), length).to_vec();
+        pc_bytes_free(data);
+        Ok(bytes)
+    }
+}
+
+fn label(bytes: &[u8]) -> Result<String, Refusal> {
+    let mut text = ptr::null_mut();
+    // SAFETY: as many bytes as said, and a place for the text.
+    call(|error| unsafe { pc_checkpoint_label(bytes.as_ptr().cast(), bytes.len(), &raw mut text, error) })?;
+    Ok(taken(text))
+}
+
+#[test]
+fn a_motion_taken_up_again_is_the_same_to_the_last_bit() {
+    let stiff = pc_solver_options { method: pc_method::PC_BDF as i32, ..Default::default() };
+    for name in ["heavy-top-lagrange", "rod", "chaplygin-sleigh", "voronets-rheonomic"] {
+        for options in [pc_solver_options::default(), stiff] {
+            let system = System::of(name);
+            let start = system.start().0;
+            let solver = Solver::of(&system, &options);
+            solver.advance(start + 1.3).0.unwrap();
+            let text = c("λόγος");
+            let bytes = checkpoint(&solver, text.as_ptr()).unwrap();
+            assert_eq!(label(&bytes).as_deref(), Ok("λόγος"));
+            let steps = |solver: &Solver| {
+                let (mut work, size) = (pc_statistics::default(), size_of::<pc_statistics>());
+                // SAFETY: a live solver and room as said.
+                call(|error| unsafe { pc_solver_statistics(solver.0, &raw mut work, size, error) }).unwrap();
+                work.steps
+            };
+            let before = steps(&solver);
+            let (outcome, y) = solver.advance(start + 3.0);
+            outcome.unwrap();
+            let other = Solver::restored(&System::of(name), &options, &bytes).unwrap();
+            assert_eq!((other.time(), steps(&other)), (start + 1.3, 0));
+            assert_eq!(other.advance(start + 3.0), (Ok(()), y), "{name}");
+            assert_eq!(before + steps(&other), steps(&solver));
+            // From there again.
+            let bytes = checkpoint(&other, ptr::null()).unwrap();
+            assert_eq!(label(&bytes).as_deref(), Ok(""));
+            let third = Solver::restored(&system, &options, &bytes).unwrap();
+            assert_eq!(third.advance(start + 4.0), other.advance(start + 4.0));
+        }
+    }
+}
+
+#[test]
+fn torn_checkpoints_are_refused() {
+    let system = System::of("heavy-top-lagrange");
+    let solver = Solver::of(&system, &pc_solver_options::default());
+    solver.advance(1.0).0.unwrap();
+    let bytes = checkpoint(&solver, c"top".as_ptr()).unwrap();
+    let options = pc_solver_options::default();
+    for i in 0..20 {
+        let place = i * bytes.len() / 20;
+        let mut changed = bytes.clone();
+        changed[place] ^= 1 << (i % 8);
+        let longer = [&bytes[..], &vec![0; i + 1]].concat();
+        for torn in [&bytes[..place], &changed, &longer] {
+            let refusal = Solver::restored(&system, &options, torn).err().unwrap();
+            assert_eq!(refusal.status, PC_INVALID_CHECKPOINT, "{place}");
+            assert_eq!(label(torn).unwrap_err().status, PC_INVALID_CHECKPOINT);
+        }
+    }
+    assert_eq!(label(b"\x89PNG").unwrap_err().message, "it is not a checkpoint");
+    Solver::restored(&system, &options, &bytes).unwrap();
+}
+
+#[test]
+fn wrong_calls_are_refused() {
+    let (system, ball) = (System::of("heavy-top-lagrange"), System::of("bouncing-ball"));
+    let options = pc_solver_options::default();
+    let (solver, bouncing) = (Solver::of(&system, &options), Solver::of(&ball, &options));
+    solver.advance(1.0).0.unwrap();
+    let bytes = checkpoint(&solver, ptr::null()).unwrap();
+    assert_eq!(checkpoint(&bouncing, ptr::null()).unwrap_err().status, PC_UNSUPPORTED);
+    assert_eq!(Solver::restored(&ball, &options, &bytes).err().unwrap().status, PC_UNSUPPORTED);
+    let refusal = Solver::restored(&System::of("rod"), &options, &bytes).err();
+    assert!(refusal.is_none()); // of as many components: what it is of, the label says
+    let refusal = Solver::restored(&System::of("euler-top"), &options, &bytes).err().unwrap();
+    assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{}", refusal.message);
+    let latin = [b'\xff', 0];
+    let refusal = checkpoint(&solver, latin.as_ptr().cast()).unwrap_err();
+    assert_eq!(refusal.message, "label is not UTF-8 text: byte number 0 (from 0) does not fit");
+
+    let (mut made, mut text, mut data, mut length) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut(), 0);
+    let (mut dense, mut y) = (ptr::null_mut(), [0.0; 6]);
+    let (no_solver, no_system): (*mut pc_solver, *mut pc_system) = (ptr::null_mut(), ptr::null_mut());
+    let (made, text, data, length, dense, y, none) = (
+        &raw mut made,
+        &raw mut text,
+        &raw mut data,
+        &raw mut length,
+        &raw mut dense,
+        y.as_mut_ptr(),
+        ptr::null_mut(),
+    );
+    let (written, size) = (bytes.as_ptr().cast(), bytes.len());
+    let (_, motion) = solver.run_dense(2.0);
+    refused! { PC_INVALID_ARGUMENT, "is a null pointer";
+        pc_solver_checkpoint(no_solver, ptr::null(), data, length);
+        pc_solver_checkpoint(solver.0, ptr::null(), ptr::null_mut(), length);
+        pc_solver_checkpoint(solver.0, ptr::null(), data, ptr::null_mut());
+        pc_solver_restore(no_system, ptr::null(), written, size, made);
+        pc_solver_restore(system.0, ptr::null(), ptr::null(), size, made);
+        pc_solver_restore(system.0, ptr::null(), written, size, ptr::null_mut());
+        pc_checkpoint_label(ptr::null(), size, text);
+        pc_checkpoint_label(written, size, ptr::null_mut());
+        pc_solver_interpolate(no_solver, 1.0, 0, y, 6);
+        pc_solver_interpolate(solver.0, 1.0, 0, none, 6);
+        pc_solver_run_dense(no_solver, 3.0, dense);
+        pc_solver_run_dense(solver.0, 3.0, ptr::null_mut());
+        pc_dense_eval(ptr::null(), 1.0, y, 6);
+        pc_dense_eval(motion.0, 1.5, none, 6);
+        pc_dense_rate(ptr::null(), 1.0, y, 6);
+        pc_dense_rate(motion.0, 1.5, none, 6);
+    }
+    refused! { PC_INVALID_ARGUMENT, "room for 5 numbers, but there are 6";
+        pc_solver_interpolate(solver.0, 2.0, 0, y, 5);
+        pc_dense_eval(motion.0, 1.5, y, 5);
+        pc_dense_rate(motion.0, 1.5, y, 5);
+    }
+    refused! { PC_INVALID_CHECKPOINT, "it is not a checkpoint";
+        pc_solver_restore(system.0, ptr::null(), ptr::null(), 0, made);
+        pc_checkpoint_label(ptr::null(), 0, text);
+    }
+    for t in [f64::NAN, 1.0, 2.0] {
+        let (outcome, motion) = solver.run_dense(t);
+        assert_eq!((outcome.unwrap_err().status, motion.0.is_null()), (PC_INVALID_ARGUMENT, true));
+    }
+    // SAFETY: null.
+    unsafe {
+        assert_eq!(pc_dense_dim(ptr::null()), 0);
+        assert!(pc_dense_t_begin(ptr::null()).is_nan() && pc_dense_t_end(ptr::null()).is_nan());
+        pc_dense_free(ptr::null_mut());
+        pc_bytes_free(ptr::null_mut());
+        assert!((*made).is_null() && (*text).is_null() && (*data).is_null() && (*dense).is_null());
+    }
+}

@@ -1,0 +1,59 @@
+//! Single steps, and states inside them.
+
+use std::ops::ControlFlow;
+
+use pc_expr::{Events, VectorField};
+
+use super::{Ending, Hybrid};
+use crate::code::Code;
+use crate::error::{InputError, Reason, SolveError};
+use crate::events::Occurrence;
+use crate::options::finite;
+
+impl<F: VectorField, E: Events> Hybrid<F, E> {
+    /// Takes one internal step in the direction of `towards`, or the part of it before the next event, and tells what
+    /// occurs at its end, which may lie beyond `towards`, to `occurred`.
+    ///
+    /// If the integration stands inside such a step, goes to the end of that instead. It stands at y⁺ then.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Hybrid::advance_to); [`InputError::EndIsStart`] if `towards` is where it stands.
+    pub fn step(
+        &mut self,
+        towards: f64,
+        mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.engine.check_ahead(towards)?;
+        if towards == self.time() {
+            return Err(InputError::EndIsStart { t: towards }.into());
+        }
+        if self.time() == self.front.t && self.due.is_empty() {
+            self.go_on(towards)?;
+        }
+        self.engine.time = self.front.t;
+        if self.due.is_empty() {
+            return Ok(Ending::Completed);
+        }
+        Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
+    }
+
+    /// The derivative of y of the given order at `t` in the last internal step, as
+    /// [`Cvode::interpolate`](crate::Cvode::interpolate) gives it, up to where it is known what occurs.
+    ///
+    /// # Errors
+    /// As there; [`InputError::NoStep`] also after a reset, which makes a new start.
+    pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        finite("the time", t)?;
+        let Some(direction) = self.direction.filter(|_| !self.engine.restarted) else {
+            return Err(InputError::NoStep.into());
+        };
+        if (t - self.front.t) * direction > 0.0 {
+            let message = format!("{t} lies beyond {}, up to where events are known.", self.front.t);
+            return Err(self.engine.error(Reason::Cvode { code: Code::BadTime, message }, None));
+        }
+        let time = self.engine.time;
+        let interpolated = self.engine.interpolate_to_work(t, order);
+        self.engine.time = time;
+        interpolated.map(|()| self.engine.work.as_slice())
+    }
+}

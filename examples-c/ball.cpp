@@ -1,0 +1,95 @@
+// A ball in C++: events as lambdas, the motion as a function, a checkpoint, an ensemble.
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pc.hpp"
+
+int main()
+{
+    try {
+        pc::model model("Ball");
+        model.parameter("e", 0.8).coordinate("y", 1.0).kinetic("y'^2/2").potential("9.81*y");
+        pc::system falling(model);
+        model.event("bounce", "y", PC_FALLING).event_reset("bounce", "y'", "-e*y'");
+        pc::system ball(model);
+        auto options = pc::solver::default_options();
+        options.relative_tolerance = 1e-12;
+
+        // It lands at t0 = √(2/g), next after 2 t0 e.
+        const double t0 = std::sqrt(2.0 / 9.81);
+        bool right = true;
+        std::vector<double> bounces;
+        pc::solver solver(ball, options);
+        solver.observe_events([&](const pc::occurrence &event) {
+            bounces.push_back(event.t);
+            return true;
+        });
+        const pc::dense motion = solver.run_dense(1.5);
+        right = right && bounces.size() == 2 && std::fabs(bounces[1] - 2.6 * t0) < 1e-9;
+        right = right && std::fabs(motion(t0 / 2)[0] - 0.75) < 1e-9 && motion.t_end() == 1.5;
+        right = right && solver.occurrences(0) == 2 && solver.last_occurrence(0)->t == bounces[1];
+
+        // The same by functions of one's own, and an end on the way up.
+        pc::solver own(falling, options);
+        own.add_event("floor", PC_FALLING, false, [](double, const pc::vector &y) { return y[0]; },
+                      [](double, pc::vector &y) { y[1] *= -0.8; });
+        own.add_event("caught", PC_RISING, true, [](double, const pc::vector &y) { return y[0] - 0.3; });
+        own.advance(2.0);
+        right = right && own.event_names() == std::vector<std::string>{"floor", "caught"};
+        right = right && own.ended_by() == std::size_t(1) && std::fabs(own.state()[0] - 0.3) < 1e-9;
+
+        // What a function throws comes out of the call.
+        bool caught = false;
+        pc::solver throwing(falling, options);
+        throwing.add_event("odd", PC_BOTH, false, [](double t, const pc::vector &y) {
+            return t < 0.1 ? y[0] : throw std::domain_error("too late");
+        });
+        try {
+            throwing.advance(1.0);
+        } catch (const std::domain_error &) {
+            caught = true;
+        }
+        try {
+            solver.checkpoint(); // there are events
+            right = false;
+        } catch (const pc::error &error) {
+            right = right && error.status() == PC_UNSUPPORTED;
+        }
+
+        // Taken up again, to the last bit.
+        pc::solver first(falling, options);
+        first.advance(0.5);
+        const std::vector<unsigned char> bytes = first.checkpoint("falling");
+        auto second = pc::solver::restore(falling, bytes, options);
+        right = right && first.advance(1.0) == second.advance(1.0) && pc::checkpoint_label(bytes) == "falling";
+
+        // Balls from many heights; one is nowhere.
+        const std::vector<pc::vector> starts{{1.0, 0.0}, {std::numeric_limits<double>::quiet_NaN(), 0.0}, {4.0, 0.0}};
+        std::vector<double> speeds;
+        std::size_t failed = 0;
+        pc::run_ensemble(falling, 0.0, starts, {}, {0.1, 0.4}, [&](const pc::member &member) {
+            if (member.status == PC_OK) {
+                speeds.push_back(member.states.back()[1]);
+            } else {
+                failed++;
+                std::cout << "member " << member.number << ": " << member.message << '\n';
+            }
+            return true;
+        });
+        right = right && failed == 1 && speeds.size() == 2 && std::fabs(speeds[1] + 9.81 * 0.4) < 1e-8;
+        try {
+            pc::run_ensemble(falling, 0.0, starts, {}, {0.1}, [](const pc::member &) -> bool { throw 42; });
+            right = false;
+        } catch (int) {
+        }
+        std::cout << "bounces at " << bounces[0] << " and " << bounces[1] << '\n';
+        return right && caught ? 0 : 1; // tolerances of the integrations, 1e-12 and 1e-9, with room for a few steps
+    } catch (const std::exception &error) {
+        std::cerr << error.what() << '\n';
+        return 1;
+    }
+}
