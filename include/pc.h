@@ -1555,7 +1555,8 @@ void pc_dense_free(pc_dense *dense);
  * in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
  *
  * A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
- * it and those restored go through the same numbers to the last bit. PC_UNSUPPORTED with events.
+ * it and those restored go through the same numbers to the last bit. Events of the model
+ * are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,

@@ -6,7 +6,7 @@ use pc_solve::Checkpoint;
 
 use crate::engine::Integration;
 use crate::entry::entry;
-use crate::error::{Fault, pc_error};
+use crate::error::pc_error;
 use crate::followed::Followed;
 use crate::options::{pc_solver_options, take};
 use crate::pointer::{bytes, clear, text, write};
@@ -19,7 +19,8 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 /// in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
 ///
 /// A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
-/// it and those restored go through the same numbers to the last bit. PC_UNSUPPORTED with events.
+/// it and those restored go through the same numbers to the last bit. Events of the model
+/// are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -32,9 +33,7 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
         let label = if label.is_null() { c"".as_ptr() } else { label };
         // SAFETY: text, as the preamble demands.
         let label = unsafe { text(label, "label") }?;
-        let Some(smooth) = integration.smooth() else { return Err(no_events()) };
-        let written = smooth.checkpoint().to_bytes(label);
-        integration.begin_anew()?;
+        let written = integration.checkpoint()?.to_bytes(label);
         // SAFETY: places for results, neither of which is null.
         unsafe {
             write(length, written.len(), "length")?;
@@ -53,10 +52,6 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
     }
 }
 
-fn no_events() -> Fault {
-    Fault::Unsupported { what: "a checkpoint", why: "there are events" }
-}
-
 /// An integration from a checkpoint, with the parameters of the system as they are now. It goes on as the one did that
 /// was written if system, parameters and options are the same. `options` may be NULL. PC_INVALID_CHECKPOINT unless
 /// the bytes are all that pc_solver_checkpoint wrote, unchanged. The work of the solver is counted from there.
@@ -72,13 +67,10 @@ pub unsafe extern "C" fn pc_solver_restore(
     let restore = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: null or `length` bytes, as the preamble demands.
         let (checkpoint, _) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
-        if !inner.events.is_empty() {
-            return Err(no_events());
-        }
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(inventory.dim()) }?;
-        let (start, events) = ((checkpoint.time(), checkpoint.state()), Followed::new(inner.events.clone()));
-        let integration = Integration::new(inner.field.clone(), start, options, events.clone())?;
+        let events = Followed::new(inner.events.clone());
+        let integration = Integration::new(inner.field.clone(), &checkpoint, options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, inventory.dim());
         // SAFETY: null or a place for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }

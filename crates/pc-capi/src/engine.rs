@@ -4,7 +4,7 @@ use std::ffi::c_void;
 use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
-use pc_solve::{Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
+use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
 
 use crate::error::Fault;
 use crate::field::Field;
@@ -17,20 +17,19 @@ pub(crate) enum Engine {
 }
 
 impl Engine {
-    /// From the state y at the time t. What `field` keeps by projection are its values there.
+    /// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
     pub(crate) fn new(
         mut field: Field,
-        (t, y): (f64, &[f64]),
+        from: &Checkpoint,
         options: &Options,
         events: Followed,
     ) -> Result<Engine, SolveError> {
         use pc_expr::VectorField;
-        field.restart(t, y);
-        let smooth = Cvode::new(field, t, y, options)?;
+        field.restart(from.time(), from.state());
         Ok(if events.is_empty() {
-            Engine::Smooth(Box::new(smooth))
+            Engine::Smooth(Box::new(Cvode::resume(field, from, options)?))
         } else {
-            Engine::Hybrid(Box::new(smooth.with_events(events)?))
+            Engine::Hybrid(Box::new(Hybrid::resume(field, events, from, options)?))
         })
     }
 
@@ -127,11 +126,11 @@ pub(crate) struct Integration {
 impl Integration {
     pub(crate) fn new(
         field: Field,
-        start: (f64, &[f64]),
+        from: &Checkpoint,
         options: Options,
         events: Followed,
     ) -> Result<Integration, SolveError> {
-        let engine = Engine::new(field, start, &options, events.clone())?;
+        let engine = Engine::new(field, from, &options, events.clone())?;
         let record = Record::of(events.events().len());
         Ok(Integration { engine, events, options, earlier: Statistics::default(), record })
     }
@@ -142,32 +141,32 @@ impl Integration {
             return Err(Fault::Begun { what: "an event" });
         }
         let events = self.events.with(event, own);
-        self.begin(events)?;
+        self.begin(&Checkpoint::start(self.time(), self.state()), events)?;
         self.record.counts.push(0);
         self.record.last.push(None);
         Ok(())
     }
 
-    /// Begins anew where it stands, with these events.
-    fn begin(&mut self, events: Followed) -> Result<(), SolveError> {
-        let (field, start) = (self.engine.field().clone(), (self.time(), self.state()));
-        let engine = Engine::new(field, start, &self.options, events.clone())?;
+    /// Begins anew with these events.
+    fn begin(&mut self, from: &Checkpoint, events: Followed) -> Result<(), SolveError> {
+        let engine = Engine::new(self.engine.field().clone(), from, &self.options, events.clone())?;
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
     }
 
-    /// The integration without events, if there are none.
-    pub(crate) fn smooth(&self) -> Option<&Cvode<Field>> {
-        match &self.engine {
-            Engine::Smooth(cvode) => Some(cvode),
-            Engine::Hybrid(_) => None,
+    /// What the motion can be taken up from. It begins anew there itself.
+    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, Fault> {
+        if self.events.has_own() {
+            let why = "there are events of the program's own";
+            return Err(Fault::Unsupported { what: "a checkpoint", why });
         }
-    }
-
-    /// Begins anew where it stands.
-    pub(crate) fn begin_anew(&mut self) -> Result<(), SolveError> {
-        self.begin(self.events.clone())
+        let checkpoint = match &self.engine {
+            Engine::Smooth(cvode) => cvode.checkpoint(),
+            Engine::Hybrid(hybrid) => hybrid.checkpoint(),
+        };
+        self.begin(&checkpoint, self.events.clone())?;
+        Ok(checkpoint)
     }
 
     pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
-use pc_solve::{Cvode, Ending, Ensemble, Options, Panicked, Stop};
+use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
 
 use crate::engine::Engine;
 use crate::entry::entry;
@@ -144,7 +144,7 @@ impl Plan<'_> {
             field.parameters_mut().copy_from_slice(&values);
             events.set_parameters(&values);
         }
-        Ok(Engine::new(field, (self.t, &start), &self.options, Followed::new(events))?)
+        Ok(Engine::new(field, &Checkpoint::start(self.t, &start), &self.options, Followed::new(events))?)
     }
 }
 

@@ -63,6 +63,11 @@ impl Followed {
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
+
+    /// Whether some are the program's.
+    pub(crate) fn has_own(&self) -> bool {
+        !self.own.is_empty()
+    }
 }
 
 impl Events for Followed {

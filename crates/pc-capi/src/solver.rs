@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use pc_expr::Events;
+use pc_solve::Checkpoint;
 
 use crate::engine::Integration;
 use crate::entry::{entry, free};
@@ -64,7 +65,8 @@ pub unsafe extern "C" fn pc_solver_new(
             (t, unsafe { numbers(y, y_length, dim, "y") }?)
         };
         let events = Followed::new(inner.events.clone());
-        let integration = Integration::new(inner.field.clone(), (t, y), options, events.clone())?;
+        let integration =
+            Integration::new(inner.field.clone(), &Checkpoint::start(t, y), options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, dim);
         // SAFETY: null or a place for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }

@@ -96,6 +96,24 @@ fn falling() -> System {
 }
 
 #[test]
+fn functions_of_the_program_are_in_no_checkpoint() {
+    let (mut own, solver) = (Own::default(), Solver::of(&falling(), &sharp()));
+    add(&solver, &mut own, false, false).unwrap();
+    let (mut data, mut length) = (ptr::null_mut(), 0);
+    // SAFETY: a live solver, null where it is allowed, and places for results.
+    let refusal = call(|error| unsafe {
+        pc_solver_checkpoint(solver.0, ptr::null(), &raw mut data, &raw mut length, error)
+    });
+    let refusal = refusal.unwrap_err();
+    assert_eq!((refusal.status, data.is_null()), (PC_UNSUPPORTED, true));
+    assert_eq!(
+        refusal.message,
+        "a checkpoint is not known of this system: there are events of the program's own"
+    );
+    drop(solver); // while there is what its function is given
+}
+
+#[test]
 fn a_reset_of_the_program_makes_the_same_ball() {
     let mut own = Own { restitution: 0.8, ..Own::default() };
     let system = falling();

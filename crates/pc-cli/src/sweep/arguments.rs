@@ -172,10 +172,18 @@ mod tests {
     fn what_is_varied_is_read_or_refused() {
         let m = |from, to, count| Vary { name: "m".to_owned(), from, to, count };
         assert_eq!(vary("m=1:2:11"), Ok(m(1.0, 2.0, 11)));
-        assert_eq!(vary("m = -1e3 : 0 : 1"), Ok(m(-1e3, 0.0, 1)));
-        for wrong in
-            ["m", "m=1:2", "m=1:2:0", "m=1:2:-3", "m=1:inf:3", "m=1:2:3:4", "=1:2:3", "m=-1e308:1e308:3"]
-        {
+        assert_eq!(vary("m = -1e3 : -1e3 : 1"), Ok(m(-1e3, -1e3, 1)));
+        for wrong in [
+            "m",
+            "m=1:2",
+            "m=1:2:0",
+            "m=1:2:1",
+            "m=1:2:-3",
+            "m=1:inf:3",
+            "m=1:2:3:4",
+            "=1:2:3",
+            "m=-1e308:1e308:3",
+        ] {
             assert!(vary(wrong).is_err(), "{wrong}");
         }
         let x = |law| Random { name: "x".to_owned(), law };
