@@ -80,6 +80,16 @@ template <class Function, class... Arguments> std::string text(Function function
     return given.get();
 }
 
+/// The row, if it has as many numbers as it should.
+inline const std::vector<double> &sized(const std::vector<double> &row, std::size_t width, const char *what)
+{
+    if (row.size() != width) {
+        throw std::invalid_argument(std::string(what) + " has " + std::to_string(row.size()) + " numbers, but there are "
+                                    + std::to_string(width));
+    }
+    return row;
+}
+
 } // namespace detail
 
 /// A model: a text, or what is said call by call.
@@ -370,7 +380,7 @@ public:
     }
     /// From the state y at the time t.
     solver(const system &of, double t, const vector &y, const pc_solver_options &options = default_options())
-        : solver(of, t, y.data(), y.size(), options)
+        : solver(of, t, detail::sized(y, of.dim(), "y").data(), y.size(), options)
     {
     }
     /// From a checkpoint.
@@ -564,6 +574,10 @@ private:
     void settle(pc_status status, pc_error *raw)
     {
         detail::owned<pc_error, pc_error_free> from(raw);
+        // What a function threw where the integration then did without its value is no failure.
+        if (status == PC_OK) {
+            *thrown_ = nullptr;
+        }
         if (*thrown_) {
             std::rethrow_exception(std::exchange(*thrown_, nullptr));
         }
@@ -633,16 +647,18 @@ inline bool run_ensemble(const system &of, double t, const std::vector<vector> &
                 return 1;
             }
         }
-        static vector flat(const std::vector<vector> &rows)
+        static vector flat(const std::vector<vector> &rows, std::size_t width, const char *what)
         {
             vector all;
             for (const vector &row : rows) {
+                detail::sized(row, width, what);
                 all.insert(all.end(), row.begin(), row.end());
             }
             return all;
         }
     };
-    const vector starts = local::flat(states), values = local::flat(parameters);
+    const vector starts = local::flat(states, of.dim(), "a state");
+    const vector values = local::flat(parameters, pc_system_parameter_count(of.get()), "a set of parameters");
     watch watching{observe, nullptr};
     const pc_status status = detail::call(
         pc_ensemble_run, static_cast<const pc_system *>(of.get()), &options,

@@ -17,7 +17,7 @@
  * N_VGetArrayPointer gives, such as N_VNew_Serial's, of the length pc_system_dim.
  *
  * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that CVODE tries a smaller step;
- * -1 for what no step helps. Then `error` of the pc_cvode says why.
+ * -1 for what no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit.
  */
 
 #ifndef PC_CVODE_H
@@ -171,6 +171,7 @@ static inline int pc_cvode_jac(double t, N_Vector y, N_Vector fy, SUNMatrix jaco
         return pc_cvode_sparse_jac(t, from, jacobian, equations);
     }
     if (!from || SUNMatGetID(jacobian) != SUNMATRIX_DENSE || SM_LDATA_D(jacobian) != (sunindextype)(n * n)) {
+        pc_cvode_error(equations); /* that of an earlier call is not this one's */
         return -1;
     }
     answer = pc_kernel_jacobian(t, from, SM_DATA_D(jacobian), equations->kernel);
@@ -210,6 +211,7 @@ static inline int pc_cvode_proj(double t, N_Vector y, N_Vector correction, doubl
     size_t i;
     (void)tolerance;
     if (!from || !c || (error_estimate && !e)) {
+        pc_cvode_error(equations);
         return -1;
     }
     for (i = 0; i < n; i++) {

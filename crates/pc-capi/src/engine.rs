@@ -137,7 +137,7 @@ impl Integration {
 
     /// Follows one more event. Where that is refused, nothing has changed.
     pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), Fault> {
-        if self.engine.statistics().steps > 0 {
+        if self.statistics().steps > 0 {
             return Err(Fault::Begun { what: "an event" });
         }
         let events = self.events.with(event, own);

@@ -134,11 +134,7 @@ impl VectorField for Field {
     }
 
     fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        match self {
-            Field::Free(motion) => motion.sparse_jacobian(t, y, values),
-            // The pattern is full: the same numbers in the same order.
-            Field::Forced(forced) => forced.jacobian(t, y, values),
-        }
+        delegate!(self, field => field.sparse_jacobian(t, y, values))
     }
 
     fn has_jvp(&self) -> bool {

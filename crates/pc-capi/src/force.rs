@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use pc_mech::{ExternalForce, Failure};
 
+use crate::entry::entry;
 use crate::error::{Fault, pc_error};
 use crate::model::{Contents, change, pc_model};
 use crate::pointer::text;
@@ -170,8 +171,11 @@ pub unsafe extern "C" fn pc_system_set_force(
 ) -> pc_status {
     let user = User { data: user, destroy };
     let mut unused = Controller::default();
+    let Some(function) = function else {
+        // SAFETY: `error` is null or a place for a pointer.
+        return unsafe { entry(error, || Err(Fault::Null { what: "function" })) };
+    };
     let set = |_: &Inventory, inner: &mut Inner| {
-        let function = function.ok_or(Fault::Null { what: "function" })?;
         let controller = Controller(Some(Arc::new(Callback { function, jacobian, user: Shared(user) })));
         let outcome = inner.field.set_force(controller);
         let fault = outcome.is_err().then_some(NO_FORCES);

@@ -1,6 +1,7 @@
 //! What only one call may use at a time.
 
 use std::cell::UnsafeCell;
+use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -23,7 +24,7 @@ pub(crate) struct Held<T> {
 unsafe impl<T: Send> Sync for Held<T> {}
 
 /// The value, until this is dropped.
-pub(crate) struct Use<'a, T>(&'a Held<T>);
+pub(crate) struct Use<'a, T>(&'a Held<T>, PhantomData<&'a mut T>);
 
 impl<T> Held<T> {
     pub(crate) fn new(value: T) -> Held<T> {
@@ -34,7 +35,7 @@ impl<T> Held<T> {
     #[inline]
     pub(crate) fn take(&self) -> Result<Use<'_, T>, Fault> {
         match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {
-            Ok(_) => Ok(Use(self)),
+            Ok(_) => Ok(Use(self, PhantomData)),
             Err(BROKEN) => Err(Fault::Broken),
             Err(_) => Err(Fault::Busy),
         }

@@ -312,7 +312,7 @@ pub unsafe extern "C" fn pc_system_set_parameters(
         for &value in values {
             finite(value, "a parameter")?;
         }
-        inner.set_parameters(|parameters| parameters.copy_from_slice(values));
+        inner.set_parameters(inventory, |parameters| parameters.copy_from_slice(values));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -333,7 +333,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
             return Err(Fault::Index { what: "the parameters", index, count });
         }
         let value = finite(value, "value")?;
-        inner.set_parameters(|parameters| parameters[index] = value);
+        inner.set_parameters(inventory, |parameters| parameters[index] = value);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -341,8 +341,11 @@ pub unsafe extern "C" fn pc_system_set_parameter(
 }
 
 impl Inner {
-    fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
+    /// What is kept by projection are then the values of these parameters.
+    fn set_parameters(&mut self, inventory: &Inventory, set: impl Fn(&mut [f64])) {
         set(self.field.parameters_mut());
+        let (t, start) = inventory.start();
+        self.field.restart(t, start);
         self.events.set_parameters(self.field.parameters());
         if let Some(legendre) = &mut self.legendre {
             set(legendre.parameters_mut());

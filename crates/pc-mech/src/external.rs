@@ -1,7 +1,7 @@
 //! Forces that are computed outside: opaque functions of time and state.
 
 use pc_algebra::Frame;
-use pc_expr::{Expr, Failure, VectorField};
+use pc_expr::{Expr, Failure, Pattern, VectorField};
 
 use crate::canonical::Canonical;
 use crate::compiled::motion::Motion;
@@ -114,6 +114,7 @@ pub struct ForcedMotion<F> {
     slopes: Vec<f64>,
     /// ∂f/∂(p, q)
     columns: Vec<f64>,
+    pattern: Pattern,
 }
 
 impl Equations<'_> {
@@ -199,6 +200,7 @@ impl Motion {
             values: vec![0.0; forces],
             slopes: vec![0.0; forces * dim],
             columns: vec![0.0; inputs * dim],
+            pattern: Pattern::full(dim, dim),
             motion: self,
         })
     }
@@ -345,6 +347,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
             }
         }
         Ok(())
+    }
+
+    fn sparsity(&self) -> Option<&Pattern> {
+        self.motion.has_jacobian().then_some(&self.pattern)
     }
 
     fn has_jvp(&self) -> bool {

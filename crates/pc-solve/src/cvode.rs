@@ -180,7 +180,10 @@ impl<F: VectorField> Cvode<F> {
         if self.direction.is_none() {
             return Err(InputError::NoStep.into());
         }
-        self.interpolate_to_work(t, order)?;
+        let stands_at = self.time;
+        let outcome = self.interpolate_to_work(t, order);
+        self.time = stands_at; // which a failed projection moves
+        outcome?;
         Ok(self.work.as_slice())
     }
 

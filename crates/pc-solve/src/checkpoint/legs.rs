@@ -211,6 +211,9 @@ impl Plan<'_> {
             hybrid.stand_at(t)?;
             let _ = output(t, hybrid.state());
         }
+        if next().is_none() {
+            return Ok(Some(Ending::Completed)); // what lies beyond the last output is not asked for
+        }
         let ending = hybrid.settle(&mut occurred)?;
         if ending.is_some() || next() == Some(here) {
             let _ = output(here, hybrid.state());
