@@ -54,7 +54,7 @@ int main()
             caught = true;
         }
         try {
-            solver.checkpoint(); // there are events
+            own.checkpoint(); // functions of the program are in none
             right = false;
         } catch (const pc::error &error) {
             right = right && error.status() == PC_UNSUPPORTED;
