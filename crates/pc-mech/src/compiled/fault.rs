@@ -57,8 +57,8 @@ pub(crate) fn check_finite(
     evaluator: &Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
 ) -> Result<(), Fault> {
-    // Without an early end, which would keep the numbers from being looked at several at a time.
-    if values.iter().fold(true, |finite, value| finite & value.is_finite()) {
+    // Number by number, with an early end: to look at several at a time would wait for those just written.
+    if values.iter().all(|value| value.is_finite()) {
         Ok(())
     } else {
         Err(blame(evaluator, (t, state, parameters)))
