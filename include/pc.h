@@ -1085,14 +1085,25 @@ pc_status pc_system_jvp(pc_system *system,
                         pc_error **error);
 
 /**
- * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and to the values at
- * the start of the integrals of pc_model_keep. Where there is nothing to be kept it stays.
+ * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the integrals of
+ * pc_model_keep to their values at the start of the model, or where pc_system_keep_from said. Where there is nothing to
+ * be kept it stays.
  */
 pc_status pc_system_project(pc_system *system,
                             double t,
                             double *y,
                             size_t y_length,
                             pc_error **error);
+
+/**
+ * Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to the constraints, also
+ * after the parameters are set. Solvers keep those at their own start.
+ */
+pc_status pc_system_keep_from(pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              pc_error **error);
 
 /**
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.

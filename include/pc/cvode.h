@@ -8,7 +8,8 @@
  *         CVodeSetLinearSolver(cvode, solver, matrix);   the matrix dense, or sparse by columns
  *         CVodeSetJacFn(cvode, pc_cvode_jac);
  *         CVodeSetProjFn(cvode, pc_cvode_proj);          for CV_BDF, where there is something to be kept
- *         CVode(cvode, ...);
+ *         CVodeRootInit(cvode, pc_cvode_root_count(&equations), pc_cvode_roots);
+ *         CVode(cvode, ...);                             at a root pc_cvode_reset, then CVodeReInit
  *     }
  *     pc_cvode_free(&equations);
  *
@@ -41,7 +42,8 @@
 extern "C" {
 #endif
 
-/* A root: where the observable of this place, as pc_system_observable_name counts, has this value. */
+/* A root beside the events of the model: where the observable of this place, as pc_system_observable_name counts, has this
+ * value. */
 typedef struct {
     size_t observable;
     double value;
@@ -52,7 +54,7 @@ typedef struct {
     /* Copies of its own. Their parameters are set by pc_kernel_set_parameters and pc_system_set_parameters, both. */
     pc_kernel *kernel;
     pc_system *system;
-    /* Yours to set, for pc_cvode_roots: an array that you keep, as long as the number given to CVodeRootInit. */
+    /* Yours to set before CVodeRootInit: an array that you keep, and its length. */
     const pc_cvode_root *roots;
     size_t roots_length;
     /* Why a function here failed last, or NULL. */
@@ -193,7 +195,8 @@ static inline int pc_cvode_jtimes(N_Vector v, N_Vector product, double t, N_Vect
 }
 
 /* CVProjFn: the correction c that moves the state to Π(y) = y + c, where constraints are satisfied and the integrals of
- * pc_model_keep have their values at the start of the model (so start CVODE there), to rounding, whatever `tolerance` is.
+ * pc_model_keep have their values at the start of the model, to rounding, whatever `tolerance` is. Where CVODE starts from
+ * another state, say pc_system_keep_from(equations.system, t, y, n, &error).
  *
  * The error estimate e is projected as CVODE asks, by the derivative of Π at y + c, which is Π(y + c + e) - (y + c) but for
  * terms of the order e². It is what an error leaves after projection; across the surface nothing is left.
@@ -233,14 +236,28 @@ static inline int pc_cvode_proj(double t, N_Vector y, N_Vector correction, doubl
     return pc_cvode_answer(status);
 }
 
-/* CVRootFn: each of `roots`, its observable less its value. */
+/* How many roots there are, for CVodeRootInit: the events of the model, then those of `roots`. */
+static inline int pc_cvode_root_count(const pc_cvode *equations)
+{
+    return (int)(pc_system_event_count(equations->system) + equations->roots_length);
+}
+
+/* CVRootFn: the functions of the events of the model, in the order of pc_system_event_name, then for each of `roots` its
+ * observable less its value. For the directions of the events CVodeSetRootDirection takes the numbers of
+ * pc_system_event_direction. */
 static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_data)
 {
     pc_cvode *equations = (pc_cvode *)user_data;
-    const size_t n = pc_kernel_dim(equations->kernel), observables = pc_system_observable_count(equations->system);
-    pc_status status = pc_system_observe(equations->system, t, pc_cvode_numbers(y, n), n, equations->observables, observables,
-                                         pc_cvode_error(equations));
+    const size_t n = pc_kernel_dim(equations->kernel), events = pc_system_event_count(equations->system);
+    const size_t observables = equations->roots_length > 0 ? pc_system_observable_count(equations->system) : 0;
+    const double *from = pc_cvode_numbers(y, n);
+    pc_status status =
+        pc_system_events(equations->system, t, from, n, gout, events, pc_cvode_error(equations));
     size_t i;
+    if (status == PC_OK && observables > 0) {
+        status = pc_system_observe(equations->system, t, from, n, equations->observables, observables,
+                                   pc_cvode_error(equations));
+    }
     if (status != PC_OK) {
         return pc_cvode_answer(status);
     }
@@ -249,12 +266,38 @@ static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_
         if (root.observable >= observables) {
             return -1;
         }
-        gout[i] = equations->observables[root.observable] - root.value;
+        gout[events + i] = equations->observables[root.observable] - root.value;
+    }
+    for (i = 0; i < events + equations->roots_length; i++) {
         if (gout[i] != gout[i]) {
             return -1; /* CVODE would pass over what is no number. */
         }
     }
     return 0;
+}
+
+/* Turns y before an event of the model, by its number among the roots, into the state after it, on the constraints, whose
+ * integrals are those kept from now on. CVODE is then to be started anew there, by CVodeReInit. What resets nothing leaves y
+ * as it is: an event, or one of `roots`. */
+static inline int pc_cvode_reset(double t, N_Vector y, size_t event, pc_cvode *equations)
+{
+    const size_t n = pc_kernel_dim(equations->kernel);
+    double *state = pc_cvode_numbers(y, n);
+    pc_status status = PC_OK;
+    if (!state) {
+        pc_cvode_error(equations);
+        return -1;
+    }
+    if (pc_system_event_resets(equations->system, event)) {
+        status = pc_system_event_reset(equations->system, event, t, state, n, pc_cvode_error(equations));
+        if (status == PC_OK) {
+            status = pc_system_keep_from(equations->system, t, state, n, pc_cvode_error(equations));
+        }
+        if (status == PC_OK) {
+            status = pc_system_project(equations->system, t, state, n, pc_cvode_error(equations));
+        }
+    }
+    return pc_cvode_answer(status);
 }
 
 #ifdef __cplusplus

@@ -3,7 +3,7 @@
 use pc_mech::VectorField;
 
 use crate::error::{Fault, pc_error};
-use crate::pointer::{apart, numbers, room, write};
+use crate::pointer::{apart, finite, numbers, room, write};
 use crate::status::pc_status;
 use crate::system::{Inner, Inventory, inside, pc_system};
 
@@ -180,8 +180,9 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and to the values at
-/// the start of the integrals of pc_model_keep. Where there is nothing to be kept it stays.
+/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the integrals of
+/// pc_model_keep to their values at the start of the model, or where pc_system_keep_from said. Where there is nothing to
+/// be kept it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
     system: *mut pc_system,
@@ -202,4 +203,28 @@ pub unsafe extern "C" fn pc_system_project(
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, project) }
+}
+
+/// Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to the constraints, also
+/// after the parameters are set. Solvers keep those at their own start.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_keep_from(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let keep = |inventory: &Inventory, inner: &mut Inner| {
+        let t = finite(t, "t")?;
+        // SAFETY: as the preamble demands.
+        let y = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
+        for &value in y {
+            finite(value, "a number of y")?;
+        }
+        inner.keep_from(t, y);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, keep) }
 }

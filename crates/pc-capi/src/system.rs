@@ -60,6 +60,8 @@ impl Inventory {
 #[derive(Clone)]
 pub(crate) struct Inner {
     pub(crate) field: Field,
+    /// The time and state with the values of the integrals that are kept by projection.
+    kept_at: (f64, Vec<f64>),
     /// What happens where; none in most models.
     pub(crate) events: FlowEvents,
     /// Derived when first asked for.
@@ -104,7 +106,8 @@ impl pc_system {
             model,
         };
         let field = Field::new(flow.motion, forces)?;
-        let inner = Inner { field, events: flow.events, mechanics: None, legendre: None };
+        let kept_at = (assembly.t_start, flow.start);
+        let inner = Inner { field, kept_at, events: flow.events, mechanics: None, legendre: None };
         Ok(pc_system { inventory: Arc::new(inventory), inner: Held::new(inner) })
     }
 }
@@ -312,7 +315,7 @@ pub unsafe extern "C" fn pc_system_set_parameters(
         for &value in values {
             finite(value, "a parameter")?;
         }
-        inner.set_parameters(inventory, |parameters| parameters.copy_from_slice(values));
+        inner.set_parameters(|parameters| parameters.copy_from_slice(values));
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -333,7 +336,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
             return Err(Fault::Index { what: "the parameters", index, count });
         }
         let value = finite(value, "value")?;
-        inner.set_parameters(inventory, |parameters| parameters[index] = value);
+        inner.set_parameters(|parameters| parameters[index] = value);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -342,14 +345,19 @@ pub unsafe extern "C" fn pc_system_set_parameter(
 
 impl Inner {
     /// What is kept by projection are then the values of these parameters.
-    fn set_parameters(&mut self, inventory: &Inventory, set: impl Fn(&mut [f64])) {
+    fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
         set(self.field.parameters_mut());
-        let (t, start) = inventory.start();
-        self.field.restart(t, start);
+        self.field.restart(self.kept_at.0, &self.kept_at.1);
         self.events.set_parameters(self.field.parameters());
         if let Some(legendre) = &mut self.legendre {
             set(legendre.parameters_mut());
         }
+    }
+
+    /// What is kept by projection are then the values there.
+    pub(crate) fn keep_from(&mut self, t: f64, y: &[f64]) {
+        self.kept_at = (t, y.to_vec());
+        self.field.restart(t, y);
     }
 }
 

@@ -297,6 +297,58 @@ fn projection_brings_a_state_to_the_constraints() {
 }
 
 #[test]
+fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
+    let model = Model::named("heavy-top-lagrange");
+    // SAFETY: a live model and a text.
+    call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();
+    let system = model.system(pc_form::PC_POINCARE).unwrap();
+    let (t, start) = system.start();
+    let mut y = start.clone();
+    // SAFETY: a live system and arrays as said.
+    unsafe {
+        let count = pc_system_parameter_count(system.0);
+        for i in 0..count {
+            call(|error| pc_system_set_parameter(system.0, i, 1.5 + i as f64, error)).unwrap();
+        }
+        call(|error| pc_system_project(system.0, t, y.as_mut_ptr(), y.len(), error)).unwrap();
+    }
+    assert_eq!(y, start); // where the energy of these parameters is what it is at the start
+}
+
+#[test]
+fn integrals_are_kept_at_their_values_where_one_says() {
+    let model = Model::named("heavy-top-lagrange");
+    // SAFETY: a live model and a text.
+    call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();
+    let system = model.system(pc_form::PC_POINCARE).unwrap();
+    let (t, start) = system.start();
+    let there: Vec<f64> = start.iter().map(|y| 1.5 * y).collect();
+    let projected = |y: &[f64]| {
+        let mut y = y.to_vec();
+        // SAFETY: a live system and an array as long as its state.
+        call(|error| unsafe { pc_system_project(system.0, t, y.as_mut_ptr(), y.len(), error) }).unwrap();
+        y
+    };
+    assert_ne!(projected(&there), there); // the start of the model has another energy
+    // SAFETY: as above.
+    unsafe {
+        call(|error| pc_system_keep_from(system.0, t, there.as_ptr(), there.len(), error)).unwrap();
+        assert_eq!(projected(&there), there);
+        // It stays there where parameters change.
+        call(|error| pc_system_set_parameter(system.0, 0, 1.5, error)).unwrap();
+        assert_eq!(projected(&there), there);
+        assert_ne!(projected(&start), start);
+
+        let nowhere =
+            call(|error| pc_system_keep_from(system.0, f64::NAN, there.as_ptr(), there.len(), error));
+        assert_eq!(nowhere.unwrap_err().message, "t is NaN, but must be finite");
+        let short = call(|error| pc_system_keep_from(system.0, t, there.as_ptr(), 1, error));
+        assert_eq!(short.unwrap_err().status, pc_status::PC_INVALID_ARGUMENT);
+        assert_eq!(projected(&there), there);
+    }
+}
+
+#[test]
 fn equations_are_printed_and_emitted() {
     let model = Model::named("heavy-top-lagrange");
     for (form, format, line) in [

@@ -114,6 +114,24 @@ fn functions_of_the_program_are_in_no_checkpoint() {
 }
 
 #[test]
+fn no_event_is_added_on_the_way() {
+    let (mut own, solver) = (Own::default(), Solver::of(&System::of("bouncing-ball"), &sharp()));
+    solver.advance(0.6).0.unwrap();
+    let (mut data, mut length) = (ptr::null_mut(), 0);
+    // SAFETY: a live solver and places for results; the bytes are freed once.
+    unsafe {
+        call(|error| pc_solver_checkpoint(solver.0, ptr::null(), &raw mut data, &raw mut length, error))
+            .unwrap();
+        pc_bytes_free(data);
+    }
+    // Also where it has begun anew, at a checkpoint.
+    let refusal = add(&solver, &mut own, false, false).unwrap_err();
+    assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
+    assert_eq!(refusal.message, "an event comes before the first step, and there has been one");
+    assert_eq!(own.destroyed, 1);
+}
+
+#[test]
 fn a_reset_of_the_program_makes_the_same_ball() {
     let mut own = Own { restitution: 0.8, ..Own::default() };
     let system = falling();

@@ -384,5 +384,5 @@ fn any_sequence_of_calls_is_survived_and_leaves_nothing_behind() {
         Ok(())
     });
     outcome.unwrap();
-    assert!(succeeded.get() > 3 * cases as usize, "only {} calls did something", succeeded.get());
+    assert!(3 * succeeded.get() > 10 * cases as usize, "only {} calls did something", succeeded.get());
 }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use std::cell::Cell;
 use std::ops::ControlFlow::{Break, Continue};
 
 use pc_solve::{
@@ -232,4 +233,21 @@ fn the_step_limit_holds() {
     let error = failed.unwrap_err();
     assert_eq!(error.code(), Some(pc_solve::Code::TooMuchWork));
     assert!(error.to_string().contains("10 internal steps taken before reaching t = 1"), "{error}");
+}
+
+#[test]
+fn an_interpolation_that_fails_moves_nothing() {
+    let broken = Cell::new(false);
+    let field = from_fn(1, |_, _: &[f64], ydot: &mut [f64]| {
+        ydot[0] = 1.0;
+        Ok(())
+    })
+    .with_projection(|_, _| if broken.get() { Err(Failure::recoverable(std::fmt::Error)) } else { Ok(()) });
+    let mut motion = Cvode::new(field, 0.0, &[0.0], &Options::default().initial_step(0.4)).unwrap();
+    let here = motion.advance_to(0.3).unwrap().to_vec();
+    broken.set(true);
+    assert!(motion.interpolate(0.1, 0).is_err());
+    assert_eq!((motion.time(), motion.state()), (0.3, &here[..]));
+    broken.set(false);
+    assert!((motion.advance_to(0.35).unwrap()[0] - 0.35).abs() < 1e-15); // not behind the end of the step
 }

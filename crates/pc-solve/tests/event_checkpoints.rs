@@ -391,3 +391,19 @@ fn what_is_not_of_this_motion_is_refused() {
         );
     }
 }
+
+#[test]
+fn nothing_happens_beyond_the_last_output() {
+    // At rest, so that the third step goes from 0.8 to 1.2, past the output and the end behind it.
+    let parts: Parts = (
+        |_, _, ydot| ydot.fill(0.0),
+        || FnEvents::new().with(Event::new("end").terminal(true), |t, _| Ok(t - 1.1)),
+    );
+    for steps in [1, 2, 3, 30] {
+        let options = Options::default().initial_step(0.4).stop_time(10.0);
+        let motion =
+            solve(parts, Checkpoint::start(0.0, &[1.0]), &[1.0], &options, steps, |_, _| ()).unwrap();
+        assert_eq!(motion.trajectory.times(), [1.0], "{steps}");
+        assert_eq!((motion.ending, motion.occurrences.len()), (Some(Ending::Completed), 0), "{steps}");
+    }
+}
