@@ -7,7 +7,14 @@ use std::process::Command;
 
 use crate::command::{announce_and_run, line_of, workspace_root};
 use crate::error::Error;
-use crate::header::functions_of_header;
+use crate::header::{self, functions_of_header};
+
+/// What is taken for a std::span, which C++17 does not know.
+const SPANS: &str = "#include <span>\n#include <pc.hpp>\n\
+    template <class From, class To> constexpr bool taken = std::is_convertible_v<From, pc::view<To>>;\n\
+    static_assert(taken<std::span<double>, double> && taken<std::span<double, 3>, const double>);\n\
+    static_assert(taken<std::span<const double>, const double> && !taken<std::span<const double>, double>);\n\
+    int main() {}\n";
 
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"];
 
@@ -40,7 +47,10 @@ pub(crate) fn headers(
     compile(c, "c99", written("pc.c", &twice("pc.h"))?, &[])?;
     compile(c, "c11", written("layout.c", &layout)?, &[])?;
     compile(cpp, "c++17", written("pc_h.cpp", &twice("pc.h"))?, &[])?;
-    compile(cpp, "c++17", written("pc_hpp.cpp", &twice("pc.hpp"))?, &[])?;
+    for name in header::headers(include)?.iter().filter(|name| name.ends_with(".hpp")) {
+        compile(cpp, "c++17", written(&format!("{}.cpp", name.replace('/', "_")), &twice(name))?, &[])?;
+    }
+    compile(cpp, "c++20", written("spans.cpp", SPANS)?, &[])?;
     compile(cpp, "c++17", written("layout.cpp", &layout)?, &[])?;
     for directories in sundials {
         compile(c, "c99", written("cvode.c", &twice("pc/cvode.h"))?, directories)?;
@@ -133,6 +143,23 @@ mod tests {
         for function in functions_of_header().unwrap() {
             let named = |line: &str| line.split('(').next().unwrap().ends_with(&function);
             assert!(interface.lines().any(named), "{function}");
+        }
+    }
+
+    /// What is for C++ as it stands, and what a call has told by itself.
+    const LEFT_TO_C: [&str; 2] = ["pc_version", "pc_error_status"];
+
+    #[test]
+    fn every_function_is_wrapped_for_cpp() {
+        let include = workspace_root().join("include");
+        let wrappers = header::headers(&include).unwrap().into_iter().filter(|name| name.ends_with(".hpp"));
+        let text: String = wrappers.map(|name| fs::read_to_string(include.join(name)).unwrap()).collect();
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let words: BTreeSet<&str> =
+            code.flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || c == '_'))).collect();
+        for function in functions_of_header().unwrap() {
+            let left = LEFT_TO_C.contains(&function.as_str());
+            assert!(words.contains(function.as_str()) != left, "{function}");
         }
     }
 

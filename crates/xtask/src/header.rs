@@ -1,6 +1,7 @@
 //! `cargo xtask header`: writes `include/pc.h` from the sources of the C interface.
 
 use std::fs;
+use std::path::Path;
 
 use crate::command::{announce_and_run, cargo, workspace_root};
 use crate::error::Error;
@@ -43,6 +44,26 @@ pub(crate) fn functions_of_header() -> Result<Vec<String>, Error> {
     Ok(names.filter(|name| name.starts_with("pc_")).map(str::to_owned).collect())
 }
 
+/// The headers below a directory, as programs include them, in order.
+///
+/// # Errors
+/// [`Error::File`] where it cannot be read.
+pub(crate) fn headers(include: &Path) -> Result<Vec<String>, Error> {
+    let mut found = Vec::new();
+    for part in ["", "pc/"] {
+        let directory = include.join(part);
+        let wrong = |source| Error::File { path: directory.display().to_string(), source };
+        for entry in fs::read_dir(&directory).map_err(wrong)? {
+            let name = entry.map_err(wrong)?.file_name().to_string_lossy().into_owned();
+            if name.ends_with(".h") || name.ends_with(".hpp") {
+                found.push(format!("{part}{name}"));
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,5 +75,14 @@ mod tests {
         let functions = functions_of_header().unwrap();
         assert!(functions.iter().any(|name| name == "pc_version"));
         assert!(functions.iter().any(|name| name == "pc_system_rhs"));
+    }
+
+    #[test]
+    fn headers_are_named_as_they_are_included() {
+        let headers = headers(&workspace_root().join("include")).unwrap();
+        for name in ["pc.h", "pc.hpp", "pc/cvode.h", "pc/system.hpp"] {
+            assert!(headers.iter().any(|header| header == name), "{name}");
+        }
+        assert!(headers.is_sorted() && !headers.iter().any(|header| header.ends_with(".md")));
     }
 }

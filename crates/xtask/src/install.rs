@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::command::{announce_and_run, cargo, run, target_directory, workspace_root};
 use crate::error::Error;
-use crate::header::{abi_version, functions_of_header, macro_of_header};
+use crate::header::{abi_version, functions_of_header, headers, macro_of_header};
 use crate::setup;
 
 /// What a program linked with the archive needs beside it, and what compilers add by themselves.
@@ -112,17 +112,18 @@ fn files(built: &Path, prefix: &Path) -> Result<Vec<Installed>, Error> {
     let number = |name| macro_of_header(&format!("PC_VERSION_{name}"));
     let version = format!("{}.{}.{}", number("MAJOR")?, number("MINOR")?, number("PATCH")?);
     let of = |path: &str, contents| Installed { path: path.to_owned(), contents };
-    Ok(vec![
-        of("include/pc.h", Contents::Copy(root.join("include/pc.h"))),
-        of("include/pc.hpp", Contents::Copy(root.join("include/pc.hpp"))),
-        of("include/pc/cvode.h", Contents::Copy(root.join("include/pc/cvode.h"))),
+    let include = root.join("include");
+    let headers = headers(&include)?.into_iter();
+    let headers = headers.map(|name| of(&format!("include/{name}"), Contents::Copy(include.join(name))));
+    let libraries = [
         of(&format!("lib/libpc.so.{abi}"), Contents::Copy(built.join("libpc.so"))),
         of("lib/libpc.so", Contents::Link(format!("libpc.so.{abi}"))),
         of("lib/libpc.a", Contents::Archive(built.join("libpc.a"))),
         of("lib/pkgconfig/libpc.pc", Contents::Text(pkg_config(prefix, &version))),
         of("lib/cmake/pc/pcConfig.cmake", Contents::Text(cmake_config(&abi))),
         of("lib/cmake/pc/pcConfigVersion.cmake", Contents::Text(cmake_version(&version))),
-    ])
+    ];
+    Ok(headers.chain(libraries).collect())
 }
 
 /// Links what the functions of the header need to one object, in which nothing else is global: a program may

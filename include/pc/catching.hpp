@@ -1,0 +1,70 @@
+// What functions of the program throw, and where it comes out.
+
+#ifndef PC_CATCHING_HPP
+#define PC_CATCHING_HPP
+
+#include <exception>
+#include <utility>
+
+namespace pc {
+
+/// Keeps what functions of the program throw where C stands between them and their caller.
+///
+/// Forces, events, resets and observers are called by C, through which nothing may be thrown. What they throw is kept by
+/// the youngest catching of the thread, and no such function is called again before it is rethrown: each counts as
+/// failed. So an exception is no answer; where a force or an event has no value, its function says so by NaN.
+///
+/// Every call of these headers has a catching of its own, and throws what that has kept, also where C did without.
+/// Another is needed where a program has C in between by itself, such as an integrator that is given pc_kernel_rhs:
+///
+///     pc::catching thrown;
+///     const int status = gsl_odeiv2_driver_apply(driver, &t, 1.0, y);
+///     thrown.rethrow();
+///
+/// Where there is none, the function of C fails, and why is not kept.
+class catching {
+public:
+    catching() noexcept : outer_(std::exchange(youngest(), this)) {}
+    ~catching() { youngest() = outer_; }
+    catching(const catching &) = delete;
+    catching &operator=(const catching &) = delete;
+
+    /// Throws what is kept, if anything is.
+    void rethrow()
+    {
+        if (thrown_) {
+            std::rethrow_exception(std::exchange(thrown_, nullptr));
+        }
+    }
+
+    /// What `body` answers to C; `otherwise` if it throws, or if something has been thrown before.
+    template <class Body> static int guard(int otherwise, Body body) noexcept
+    {
+        catching *const call = youngest();
+        if (call && call->thrown_) {
+            return otherwise;
+        }
+        try {
+            return body();
+        } catch (...) {
+            if (call && !call->thrown_) {
+                call->thrown_ = std::current_exception();
+            }
+            return otherwise;
+        }
+    }
+
+private:
+    static catching *&youngest() noexcept
+    {
+        thread_local catching *of_thread = nullptr;
+        return of_thread;
+    }
+
+    catching *outer_;
+    std::exception_ptr thrown_;
+};
+
+} // namespace pc
+
+#endif // PC_CATCHING_HPP

@@ -1,0 +1,207 @@
+// Models: a text, or what is said call by call.
+
+#ifndef PC_MODEL_HPP
+#define PC_MODEL_HPP
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../pc.h"
+#include "call.hpp"
+
+namespace pc {
+
+/// A model. Expressions are texts. What pc.h says of pc_model_add_... and pc_model_set_... holds for the functions that
+/// build it; each returns the model, so that they can be chained.
+class model {
+public:
+    /// The components of a vector, as expressions.
+    using components = std::array<std::string, 3>;
+    /// The entries of a matrix, row by row.
+    using matrix = std::array<std::string, 9>;
+
+    /// Without anything, to be built.
+    explicit model(const std::string &name) : handle_(make(pc_model_new, name.c_str())) {}
+    static model parse(const std::string &text, const std::string &name = "model")
+    {
+        return model(make(pc_model_parse, text.data(), text.size(), name.c_str()));
+    }
+    static model from_file(const std::string &path) { return model(make(pc_model_from_file, path.c_str())); }
+    /// One that comes with the library.
+    static model builtin(const std::string &name) { return model(make(pc_model_builtin, name.c_str())); }
+    static std::vector<std::string> builtin_names()
+    {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < pc_builtin_count(); i++) {
+            names.emplace_back(pc_builtin_name(i));
+        }
+        return names;
+    }
+    model clone() const { return model(make(pc_model_clone, get())); }
+
+    model &description(const std::string &text) { return say(pc_model_set_description, text.c_str()); }
+    model &reference(const std::string &text) { return say(pc_model_set_reference, text.c_str()); }
+    model &parameter(const std::string &name, double value)
+    {
+        return say(pc_model_add_parameter, name.c_str(), value);
+    }
+    model &definition(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_add_definition, name.c_str(), expression.c_str());
+    }
+
+    model &coordinate(const std::string &name, double start)
+    {
+        return say(pc_model_add_coordinate, name.c_str(), start);
+    }
+    model &quasi_velocity(const std::string &name, double start)
+    {
+        return say(pc_model_add_quasi_velocity, name.c_str(), nullptr, start);
+    }
+    model &quasi_velocity(const std::string &name, const std::string &definition, double start)
+    {
+        return say(pc_model_add_quasi_velocity, name.c_str(), definition.c_str(), start);
+    }
+    model &kinematics(const std::string &coordinate, const std::string &velocity)
+    {
+        return say(pc_model_set_kinematics, coordinate.c_str(), velocity.c_str());
+    }
+    model &algebra(const std::string &name) { return say(pc_model_set_algebra, name.c_str()); }
+    model &bracket(const std::string &left, const std::string &right, const std::string &value)
+    {
+        return say(pc_model_set_bracket, left.c_str(), right.c_str(), value.c_str());
+    }
+    model &constraint(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_add_constraint, name.c_str(), expression.c_str());
+    }
+    model &constraint_kind(const std::string &constraint, const std::string &kind)
+    {
+        return say(pc_model_set_constraint_kind, constraint.c_str(), kind.c_str());
+    }
+
+    model &lagrangian(const std::string &expression) { return say(pc_model_set_lagrangian, expression.c_str()); }
+    model &kinetic(const std::string &expression) { return say(pc_model_set_kinetic, expression.c_str()); }
+    model &potential(const std::string &expression) { return say(pc_model_set_potential, expression.c_str()); }
+    model &dissipation(const std::string &expression)
+    {
+        return say(pc_model_set_dissipation, expression.c_str());
+    }
+    model &force(const std::string &on, const std::string &expression)
+    {
+        return say(pc_model_add_force, on.c_str(), expression.c_str());
+    }
+    /// A force that a function will compute: system::set_force.
+    model &external_force(const std::string &on) { return say(pc_model_add_external_force, on.c_str()); }
+
+    model &body(const std::string &name, const std::string &mass, const components &position)
+    {
+        return of_body(pc_model_add_body, name, position, mass.c_str());
+    }
+    model &body_force(const std::string &body, const components &force)
+    {
+        return of_body(pc_model_set_body_force, body, force);
+    }
+    model &body_torque(const std::string &body, const components &torque)
+    {
+        return of_body(pc_model_set_body_torque, body, torque);
+    }
+    model &body_angular_velocity(const std::string &body, const components &velocity)
+    {
+        return of_body(pc_model_set_body_angular_velocity, body, velocity);
+    }
+    /// Three entries or six.
+    model &body_inertia(const std::string &body, const std::vector<std::string> &entries)
+    {
+        return entries_of_body(pc_model_set_body_inertia, body, entries);
+    }
+    model &body_rotation(const std::string &body, const matrix &entries)
+    {
+        return entries_of_body(pc_model_set_body_rotation, body, entries);
+    }
+
+    model &integral(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_add_integral, name.c_str(), expression.c_str());
+    }
+    model &output(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_add_output, name.c_str(), expression.c_str());
+    }
+    model &event(const std::string &name, const std::string &when, pc_direction direction = PC_BOTH,
+                 bool terminal = false)
+    {
+        return say(pc_model_add_event, name.c_str(), when.c_str(), direction, terminal);
+    }
+    model &event_reset(const std::string &event, const std::string &variable, const std::string &expression)
+    {
+        return say(pc_model_add_event_reset, event.c_str(), variable.c_str(), expression.c_str());
+    }
+
+    /// Sets a parameter to another value.
+    model &set(const std::string &parameter, double value)
+    {
+        return say(pc_model_set, parameter.c_str(), value);
+    }
+    model &start(const std::string &name, double value) { return say(pc_model_set_start, name.c_str(), value); }
+    model &start(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_set_start_expression, name.c_str(), expression.c_str());
+    }
+    model &start_time(double t) { return say(pc_model_set_start_time, t); }
+    model &keep(const std::string &integral) { return say(pc_model_keep, integral.c_str()); }
+    model &project_start(bool yes = true) { return say(pc_model_project_start, yes); }
+    model &observe_reactions(bool yes = true) { return say(pc_model_observe_reactions, yes); }
+
+    /// How the program `pc` runs the model; a solver has its own options.
+    model &end_time(double t) { return say(pc_model_set_end_time, t); }
+    model &samples(std::size_t samples) { return say(pc_model_set_samples, samples); }
+    model &tolerances(double relative, double absolute)
+    {
+        return say(pc_model_set_tolerances, relative, absolute);
+    }
+    model &method(const std::string &method) { return say(pc_model_set_method, method.c_str()); }
+    model &form(const std::string &form) { return say(pc_model_set_form, form.c_str()); }
+
+    /// Throws unless all that has been said is well formed.
+    void check() const { detail::call(pc_model_check, get()); }
+    std::string text() const { return detail::text(pc_model_text, get()); }
+    pc_model *get() const noexcept { return handle_.get(); }
+
+private:
+    using handle = detail::owned<pc_model, pc_model_free>;
+
+    explicit model(handle made) : handle_(std::move(made)) {}
+    template <class Function, class... Arguments> static handle make(Function function, Arguments... arguments)
+    {
+        return detail::make<handle>(function, arguments...);
+    }
+    template <class Function, class... Arguments> model &say(Function function, Arguments... arguments)
+    {
+        detail::call(function, get(), arguments...);
+        return *this;
+    }
+    template <class Function, class... Arguments>
+    model &of_body(Function function, const std::string &body, const components &of, Arguments... arguments)
+    {
+        return say(function, body.c_str(), arguments..., of[0].c_str(), of[1].c_str(), of[2].c_str());
+    }
+    template <class Function, class Entries>
+    model &entries_of_body(Function function, const std::string &body, const Entries &entries)
+    {
+        std::vector<const char *> texts;
+        for (const std::string &entry : entries) {
+            texts.push_back(entry.c_str());
+        }
+        return say(function, body.c_str(), texts.data(), texts.size());
+    }
+
+    handle handle_;
+};
+
+} // namespace pc
+
+#endif // PC_MODEL_HPP

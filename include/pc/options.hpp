@@ -1,0 +1,30 @@
+// How to integrate.
+
+#ifndef PC_OPTIONS_HPP
+#define PC_OPTIONS_HPP
+
+#include "../pc.h"
+#include "view.hpp"
+
+namespace pc {
+
+/// The options of an integration, at first the defaults; pc.h says what they are.
+struct solver_options : pc_solver_options {
+    /// One for each component; none for `absolute_tolerance` of all. It stands for the pointer in C.
+    vector absolute_tolerances;
+
+    solver_options() noexcept { pc_solver_options_init(this, sizeof(pc_solver_options)); }
+
+    /// The same for C, good for as long as these are there.
+    pc_solver_options get() const noexcept
+    {
+        pc_solver_options options = *this;
+        options.absolute_tolerances = absolute_tolerances.empty() ? nullptr : absolute_tolerances.data();
+        options.absolute_tolerances_length = absolute_tolerances.size();
+        return options;
+    }
+};
+
+} // namespace pc
+
+#endif // PC_OPTIONS_HPP

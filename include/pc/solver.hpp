@@ -1,0 +1,188 @@
+// Integration by CVODE.
+
+#ifndef PC_SOLVER_HPP
+#define PC_SOLVER_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../pc.h"
+#include "call.hpp"
+#include "checkpoint.hpp"
+#include "dense.hpp"
+#include "event.hpp"
+#include "options.hpp"
+#include "system.hpp"
+#include "view.hpp"
+
+namespace pc {
+
+/// An integration, which stands at a time with a state.
+///
+/// What a function or observer throws ends the call that called it, and comes out there; so does what the forces of the
+/// system throw. The integration then stands where it came to, as time() and state() tell.
+class solver {
+public:
+    /// From the start of the model.
+    explicit solver(const system &of, const solver_options &options = {}) : dim_(of.dim())
+    {
+        const pc_solver_options chosen = options.get();
+        detail::call(pc_solver_new, of.get(), &chosen, 0.0, nullptr, std::size_t(0), handle_.place());
+    }
+    /// From the state y at the time t.
+    solver(const system &of, double t, view<const double> y, const solver_options &options = {}) : dim_(of.dim())
+    {
+        const pc_solver_options chosen = options.get();
+        const double nothing = 0.0; // no numbers are not the start of the model
+        detail::call(pc_solver_new, of.get(), &chosen, t, y.empty() ? &nothing : y.data(), y.size(), handle_.place());
+    }
+    /// From a checkpoint.
+    static solver restore(const system &of, view<const unsigned char> checkpoint, const solver_options &options = {})
+    {
+        const pc_solver_options chosen = options.get();
+        return solver(detail::make<handle>(pc_solver_restore, of.get(), &chosen, checkpoint.data(), checkpoint.size()),
+                      of.dim());
+    }
+
+    /// Follows an event of one's own; before the first step.
+    void add_event(const std::string &name, pc_direction direction, bool terminal, event_function function,
+                   event_reset reset = nullptr)
+    {
+        using user = detail::event_user;
+        const auto value = function ? &user::value : nullptr;
+        const auto change = reset ? &user::change : nullptr;
+        auto event = std::make_unique<user>(user{std::move(function), std::move(reset)});
+        detail::call(pc_solver_add_event, get(), name.c_str(), direction, terminal, value, change, event.release(),
+                     &user::destroy);
+    }
+    /// Has `observe` told of each event from now on, or, if it is none, nobody.
+    void observe_events(event_observer observe)
+    {
+        const auto told = observe ? &detail::tell_event : nullptr;
+        auto kept = std::make_unique<event_observer>(std::move(observe));
+        detail::call(pc_solver_observe_events, get(), told, kept.get());
+        event_observer_ = std::move(kept);
+    }
+
+    /// The state at t, or where an event or its observer ended the call: ended_by() and time() tell.
+    vector advance(double t)
+    {
+        vector y(dim_);
+        advance(t, y);
+        return y;
+    }
+    /// Writes it, and says with PC_OK, PC_EVENT or PC_STOPPED how the call ended.
+    pc_status advance(double t, view<double> y)
+    {
+        return detail::call(pc_solver_advance, get(), t, y.data(), y.size());
+    }
+    /// The state at the end of one step of the method in the direction of `towards`, which time() tells.
+    vector step(double towards)
+    {
+        vector y(dim_);
+        step(towards, y);
+        return y;
+    }
+    pc_status step(double towards, view<double> y)
+    {
+        double t = 0.0;
+        return detail::call(pc_solver_step, get(), towards, &t, y.data(), y.size());
+    }
+    /// Calls `observe` at each time until it answers false; whether all times were reached.
+    bool run(view<const double> times, const observer &observe)
+    {
+        const auto told = observe ? &detail::tell_state : nullptr;
+        void *user = const_cast<observer *>(&observe);
+        return detail::call(pc_solver_run, get(), times.data(), times.size(), told, user) == PC_OK;
+    }
+    /// The motion up to t, or to where an event or its observer ended it.
+    dense run_dense(double t) { return dense(detail::make<dense::handle>(pc_solver_run_dense, get(), t)); }
+
+    double time() const
+    {
+        double t = 0.0;
+        detail::call(pc_solver_time, get(), &t);
+        return t;
+    }
+    vector state() const
+    {
+        vector y(dim_);
+        state(y);
+        return y;
+    }
+    void state(view<double> y) const { detail::call(pc_solver_state, get(), y.data(), y.size()); }
+    /// A derivative of y, or y itself, inside the last step.
+    vector interpolate(double t, unsigned derivative = 0)
+    {
+        vector y(dim_);
+        interpolate(t, derivative, y);
+        return y;
+    }
+    void interpolate(double t, unsigned derivative, view<double> y)
+    {
+        detail::call(pc_solver_interpolate, get(), t, derivative, y.data(), y.size());
+    }
+    pc_statistics statistics() const
+    {
+        pc_statistics work{};
+        detail::call(pc_solver_statistics, get(), &work, sizeof work);
+        return work;
+    }
+    /// Time and state, for restore().
+    bytes checkpoint(const std::string &label = "")
+    {
+        detail::owned<void, pc_bytes_free> data;
+        std::size_t length = 0;
+        detail::call(pc_solver_checkpoint, get(), label.c_str(), data.place(), &length);
+        const auto *first = static_cast<const unsigned char *>(data.get());
+        return bytes(first, first + length);
+    }
+
+    std::size_t event_count() const noexcept { return pc_solver_event_count(get()); }
+    std::vector<std::string> event_names() const { return detail::names(get(), pc_solver_event_name, event_count()); }
+    /// How often an event has occurred.
+    std::uint64_t occurrences(std::size_t event) const
+    {
+        std::uint64_t count = 0;
+        detail::call(pc_solver_event_occurrences, get(), event, &count);
+        return count;
+    }
+    /// Its last occurrence, if there was one.
+    std::optional<occurrence> last_occurrence(std::size_t event) const
+    {
+        if (occurrences(event) == 0) {
+            return std::nullopt;
+        }
+        occurrence last{event, 0.0, vector(dim_), vector(dim_)};
+        detail::call(pc_solver_last_occurrence, get(), event, &last.t, last.before.data(), dim_, last.after.data(),
+                     dim_);
+        return last;
+    }
+    /// The terminal event that ended the last call, if one did.
+    std::optional<std::size_t> ended_by() const
+    {
+        std::size_t event = 0;
+        const pc_status status = pc_solver_terminal_event(get(), &event, nullptr);
+        return status == PC_OK ? std::optional<std::size_t>(event) : std::nullopt;
+    }
+    pc_solver *get() const noexcept { return handle_.get(); }
+
+private:
+    using handle = detail::owned<pc_solver, pc_solver_free>;
+
+    solver(handle made, std::size_t dim) : handle_(std::move(made)), dim_(dim) {}
+
+    // It stays in its place when the solver moves, and outlives the handle.
+    std::unique_ptr<event_observer> event_observer_;
+    handle handle_;
+    std::size_t dim_;
+};
+
+} // namespace pc
+
+#endif // PC_SOLVER_HPP

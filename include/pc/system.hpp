@@ -1,0 +1,278 @@
+// Equations of motion.
+
+#ifndef PC_SYSTEM_HPP
+#define PC_SYSTEM_HPP
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../pc.h"
+#include "call.hpp"
+#include "force.hpp"
+#include "model.hpp"
+#include "view.hpp"
+
+namespace pc {
+namespace detail {
+struct told_elsewhere;
+}
+
+/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j are those from place
+/// column_starts[j] up to but without column_starts[j + 1]. It belongs to the system and its copies.
+struct sparsity {
+    view<const std::size_t> column_starts, row_indices;
+};
+
+/// C source: the text of a header and that of what it declares.
+struct c_source {
+    std::string header, source;
+};
+
+/// Equations of motion, compiled: ẏ = f(t, y). Matrices are column-major.
+///
+/// What is evaluated in loops can be written to numbers that are there.
+class system {
+public:
+    explicit system(const model &of, pc_form form = PC_POINCARE)
+    {
+        pc_system_options options;
+        pc_system_options_init(&options, sizeof options);
+        options.form = form;
+        detail::call(pc_system_new, of.get(), &options, handle_.place());
+    }
+    /// A copy for another thread. Both call the same functions of forces.
+    system clone() const
+    {
+        return system(detail::make<handle>(pc_system_clone, get()), forces_);
+    }
+
+    /// The length of the state: coordinates, then quasi-velocities or momenta.
+    std::size_t dim() const noexcept { return pc_system_dim(get()); }
+    std::size_t coordinate_count() const noexcept { return pc_system_coordinate_count(get()); }
+    std::size_t parameter_count() const noexcept { return pc_system_parameter_count(get()); }
+    std::size_t observable_count() const noexcept { return pc_system_observable_count(get()); }
+    /// The number of observables, the first ones, that should stay constant.
+    std::size_t conserved_count() const noexcept { return pc_system_conserved_count(get()); }
+    std::size_t constraint_count() const noexcept { return pc_system_constraint_count(get()); }
+    std::size_t reaction_count() const noexcept { return pc_system_reaction_count(get()); }
+    std::size_t force_count() const noexcept { return pc_system_force_count(get()); }
+    std::size_t event_count() const noexcept { return pc_system_event_count(get()); }
+
+    std::vector<std::string> names() const { return list(pc_system_name, dim()); }
+    std::vector<std::string> parameter_names() const { return list(pc_system_parameter_name, parameter_count()); }
+    std::vector<std::string> observable_names() const
+    {
+        return list(pc_system_observable_name, observable_count());
+    }
+    std::vector<std::string> constraint_names() const
+    {
+        return list(pc_system_constraint_name, constraint_count());
+    }
+    std::vector<std::string> reaction_names() const { return list(pc_system_reaction_name, reaction_count()); }
+    std::vector<std::string> force_names() const { return list(pc_system_force_name, force_count()); }
+    std::vector<std::string> event_names() const { return list(pc_system_event_name, event_count()); }
+
+    pc_direction event_direction(std::size_t event) const noexcept
+    {
+        return static_cast<pc_direction>(pc_system_event_direction(get(), event));
+    }
+    bool event_is_terminal(std::size_t event) const noexcept { return pc_system_event_is_terminal(get(), event); }
+    bool event_resets(std::size_t event) const noexcept { return pc_system_event_resets(get(), event); }
+
+    /// The time at which the model starts, and its state.
+    std::pair<double, vector> start() const
+    {
+        std::pair<double, vector> start(0.0, vector(dim()));
+        detail::call(pc_system_start, get(), &start.first, start.second.data(), start.second.size());
+        return start;
+    }
+    vector parameters() const
+    {
+        vector values(parameter_count());
+        detail::call(pc_system_parameters, get(), values.data(), values.size());
+        return values;
+    }
+    void set_parameters(view<const double> values)
+    {
+        detail::call(pc_system_set_parameters, get(), values.data(), values.size());
+    }
+    void set_parameter(std::size_t index, double value)
+    {
+        detail::call(pc_system_set_parameter, get(), index, value);
+    }
+
+    /// Sets what computes the external forces, and, if given, their derivatives, which else are difference quotients.
+    /// Copies, solvers and kernels made from now on share the functions; used on several threads, they call them there.
+    ///
+    /// What these throw ends the call that called them, be it of the system, a copy, a solver or a kernel, and comes
+    /// out there. See catching for calls in C, and run_ensemble, whose members have threads of their own.
+    void set_force(force_function function, force_jacobian jacobian = nullptr)
+    {
+        const auto forces =
+            std::make_shared<const detail::forces>(detail::forces{std::move(function), std::move(jacobian)});
+        detail::set_force(get(), forces);
+        forces_ = forces;
+    }
+
+    vector rhs(double t, view<const double> y) { return at(pc_system_rhs, dim(), t, y); }
+    void rhs(double t, view<const double> y, view<double> ydot) { to(ydot, pc_system_rhs, t, y); }
+
+    vector jacobian(double t, view<const double> y) { return at(pc_system_jacobian, dim() * dim(), t, y); }
+    void jacobian(double t, view<const double> y, view<double> matrix) { to(matrix, pc_system_jacobian, t, y); }
+
+    sparsity jacobian_pattern() const
+    {
+        std::size_t entries = 0;
+        const std::size_t *column_starts = nullptr, *row_indices = nullptr;
+        detail::call(pc_system_jacobian_pattern, get(), &entries, &column_starts, &row_indices);
+        return {{column_starts, dim() + 1}, {row_indices, entries}};
+    }
+    /// The entries of the pattern, in its order.
+    vector sparse_jacobian(double t, view<const double> y)
+    {
+        return at(pc_system_sparse_jacobian, jacobian_pattern().row_indices.size(), t, y);
+    }
+    void sparse_jacobian(double t, view<const double> y, view<double> values)
+    {
+        to(values, pc_system_sparse_jacobian, t, y);
+    }
+
+    /// (∂f/∂y) v
+    vector jvp(double t, view<const double> y, view<const double> v)
+    {
+        return at(pc_system_jvp, dim(), t, y, v.data(), v.size());
+    }
+    void jvp(double t, view<const double> y, view<const double> v, view<double> product)
+    {
+        to(product, pc_system_jvp, t, y, v.data(), v.size());
+    }
+
+    /// F(t, y, ẏ), which vanishes on motions.
+    vector residual(double t, view<const double> y, view<const double> ydot)
+    {
+        return at(pc_system_residual, dim(), t, y, ydot.data(), ydot.size());
+    }
+    void residual(double t, view<const double> y, view<const double> ydot, view<double> residual)
+    {
+        to(residual, pc_system_residual, t, y, ydot.data(), ydot.size());
+    }
+
+    vector observe(double t, view<const double> y) { return at(pc_system_observe, observable_count(), t, y); }
+    void observe(double t, view<const double> y, view<double> values) { to(values, pc_system_observe, t, y); }
+
+    /// The integrals and the energy, the first of the observables.
+    vector integrals(double t, view<const double> y) { return at(pc_system_integrals, conserved_count(), t, y); }
+    void integrals(double t, view<const double> y, view<double> values) { to(values, pc_system_integrals, t, y); }
+
+    vector reactions(double t, view<const double> y) { return at(pc_system_reactions, reaction_count(), t, y); }
+    void reactions(double t, view<const double> y, view<double> values) { to(values, pc_system_reactions, t, y); }
+
+    /// The functions of the events, which pass through zero where these occur.
+    vector events(double t, view<const double> y) { return at(pc_system_events, event_count(), t, y); }
+    void events(double t, view<const double> y, view<double> values) { to(values, pc_system_events, t, y); }
+
+    /// Turns the state before an event into the one after it.
+    void reset(std::size_t event, double t, view<double> y)
+    {
+        detail::call(pc_system_event_reset, get(), event, t, y.data(), y.size());
+    }
+    /// Has project() keep the integrals of model::keep() at their values at (t, y).
+    void keep_from(double t, view<const double> y)
+    {
+        detail::call(pc_system_keep_from, get(), t, y.data(), y.size());
+    }
+    /// Moves the state to the constraints, and to the integrals that are kept.
+    void project(double t, view<double> y)
+    {
+        detail::call(pc_system_project, get(), t, y.data(), y.size());
+    }
+    /// What should be zero of each constraint.
+    vector constraint_residuals(double t, view<const double> y)
+    {
+        return at(pc_system_constraint_residuals, constraint_count(), t, y);
+    }
+
+    double energy(double t, view<const double> y)
+    {
+        double energy = 0.0;
+        detail::call(pc_system_energy, get(), t, y.data(), y.size(), &energy);
+        return energy;
+    }
+    /// The Poisson bracket of two expressions.
+    double bracket(const std::string &f, const std::string &g, double t, view<const double> y)
+    {
+        double value = 0.0;
+        detail::call(pc_system_bracket, get(), f.c_str(), g.c_str(), t, y.data(), y.size(), &value);
+        return value;
+    }
+    vector mass_matrix(double t, view<const double> y)
+    {
+        const std::size_t k = dim() - coordinate_count();
+        return at(pc_system_mass_matrix, k * k, t, y);
+    }
+    /// The number K of operators X_1 … X_K.
+    std::size_t operator_count()
+    {
+        std::size_t operators = 0;
+        detail::call(pc_system_operator_count, get(), &operators);
+        return operators;
+    }
+    /// c_rs^m of [X_r, X_s] = c_rs^m X_m, at the place (r*(K + 1) + s)*K + m - 1, for r, s = 0 … K.
+    vector structure_coefficients(double t, view<const double> y)
+    {
+        const std::size_t k = operator_count();
+        return at(pc_system_structure_coefficients, (k + 1) * (k + 1) * k, t, y);
+    }
+    vector to_momenta(double t, view<const double> y) { return at(pc_system_to_momenta, dim(), t, y); }
+    vector to_quasi_velocities(double t, view<const double> y)
+    {
+        return at(pc_system_to_quasi_velocities, dim(), t, y);
+    }
+
+    std::string print(pc_format format = PC_TEXT) const { return detail::text(pc_system_print, get(), format); }
+    /// The equations as C source, which with -DNAME_MAIN is a program that integrates to t_end, if that is finite.
+    c_source emit_c(const std::string &name, double t_end = std::numeric_limits<double>::infinity()) const
+    {
+        detail::owned<char, pc_string_free> header, source;
+        detail::call(pc_system_emit_c, get(), name.c_str(), t_end, header.place(), source.place());
+        return {header.get(), source.get()};
+    }
+    pc_system *get() const noexcept { return handle_.get(); }
+
+private:
+    friend struct detail::told_elsewhere;
+    using handle = detail::owned<pc_system, pc_system_free>;
+
+    system(handle made, std::shared_ptr<const detail::forces> forces)
+        : handle_(std::move(made)), forces_(std::move(forces))
+    {
+    }
+    template <class Name> std::vector<std::string> list(Name name, std::size_t count) const
+    {
+        return detail::names(get(), name, count);
+    }
+    /// Has a function write to the target what it has at (t, y), and of further numbers.
+    template <class Function, class... Further>
+    void to(view<double> target, Function function, double t, view<const double> y, Further... further)
+    {
+        detail::call(function, get(), t, y.data(), y.size(), further..., target.data(), target.size());
+    }
+    template <class Function, class... Further>
+    vector at(Function function, std::size_t length, double t, view<const double> y, Further... further)
+    {
+        vector values(length);
+        to(values, function, t, y, further...);
+        return values;
+    }
+
+    handle handle_;
+    std::shared_ptr<const detail::forces> forces_;
+};
+
+} // namespace pc
+
+#endif // PC_SYSTEM_HPP
