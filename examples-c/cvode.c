@@ -51,12 +51,12 @@ int main(void)
 {
     /* A quarter of the period is K(sin 45 degrees), the complete elliptic integral of the first kind. */
     static const double QUARTER = 1.85407467730137191843;
-    const double tolerance = 1e-10;
+    const double tolerance = 1e-10, end = 20.0;
     pc_system *system = pendulum();
     pc_solver *solver;
     pc_solver_options options;
     pc_cvode equations;
-    pc_cvode_root bottom;
+    pc_cvode_root bottom = {0, 0.0};
     SUNContext context;
     char version[32];
     double t, start[DIM], inner[DIM], late = 0.0, apart = 0.0, off = 0.0;
@@ -66,7 +66,6 @@ int main(void)
     must(pc_cvode_init(&equations, system, &error));
     must(pc_system_start(system, &t, start, DIM, &error));
     bottom.observable = pc_system_conserved_count(system); /* the first of the outputs */
-    bottom.value = 0.0;
     equations.roots = &bottom;
     equations.roots_length = 1;
     done(SUNContext_Create(0, &context), "SUNContext_Create");
@@ -81,18 +80,19 @@ int main(void)
     done(CVodeSetLinearSolver(cvode, linear, matrix), "CVodeSetLinearSolver");
     done(CVodeSetJacFn(cvode, pc_cvode_jac), "CVodeSetJacFn");
     done(CVodeSetProjFn(cvode, pc_cvode_proj), "CVodeSetProjFn");
-    done(CVodeRootInit(cvode, 1, pc_cvode_roots), "CVodeRootInit");
+    done(CVodeRootInit(cvode, pc_cvode_root_count(&equations), pc_cvode_roots), "CVodeRootInit");
 
     /* Inside: the library's own, with the same method and tolerance, step by step beside it. */
     pc_solver_options_init(&options, sizeof options);
     options.method = PC_BDF;
     options.relative_tolerance = options.absolute_tolerance = tolerance;
+    options.stop_time = end; /* so the program pc steps, too */
     must(pc_solver_new(system, &options, 0.0, NULL, 0, &solver, &error));
 
     done(SUNDIALSGetVersion(version, sizeof version), "SUNDIALSGetVersion");
     printf("SUNDIALS %s here, pc %s with its own\n", version, pc_version());
     for (n = 0; n < PASSAGES; n++) {
-        done(CVode(cvode, 100.0, y, &t, CV_NORMAL), "CVode");
+        done(CVode(cvode, end, y, &t, CV_NORMAL), "CVode");
         must(pc_solver_advance(solver, t, inner, DIM, &error));
         printf("passage %d at t = %.9f, there x = %.1e by CVODE, %.1e by pc\n", n + 1, t, start[0], inner[0]);
         late = fmax(late, fabs(t - (2 * n + 1) * QUARTER));
@@ -102,6 +102,9 @@ int main(void)
         off = fmax(off, fabs(start[0] * start[0] + start[1] * start[1] - 1.0));
     }
     printf("late by %.1e, apart by %.1e, off the rod by %.1e\n", late, apart, off);
+    must(pc_solver_advance(solver, end, inner, DIM, &error));
+    printf("pc run rod.toml --method bdf --rtol 1e-10 --atol 1e-10\nt = %.17g: %.17g %.17g %.17g %.17g\n", end,
+           inner[0], inner[1], inner[2], inner[3]);
 
     CVodeFree(&cvode);
     SUNLinSolFree(linear);

@@ -37,6 +37,7 @@ int main(void)
     pc_model *model = NULL;
     pc_system *pendulum = NULL;
     pc_error *error = NULL;
+    pc_solver_options options;
     pc_status status = PC_INTERNAL;
     double worst = 0.0;
     size_t i, j;
@@ -46,15 +47,17 @@ int main(void)
         lengths[i] = 0.5 + 0.01 * (double)i;
     }
     states[7][0] = NAN;
+    pc_solver_options_init(&options, sizeof options);
+    options.stop_time = times[TIMES - 1]; /* so the program pc steps, too */
     if (pc_model_new("Pendulum", &model, &error) == PC_OK &&
         pc_model_add_parameter(model, "l", 1.0, &error) == PC_OK &&
         pc_model_add_coordinate(model, "theta", 0.5, &error) == PC_OK &&
         pc_model_set_kinetic(model, "l^2*theta'^2/2", &error) == PC_OK &&
         pc_model_set_potential(model, "-9.81*l*cos(theta)", &error) == PC_OK &&
         pc_system_new(model, NULL, &pendulum, &error) == PC_OK &&
-        pc_ensemble_run(pendulum, NULL, MEMBERS, 0.0, states[0], MEMBERS * DIM, lengths, MEMBERS, times, TIMES, 1,
+        pc_ensemble_run(pendulum, &options, MEMBERS, 0.0, states[0], MEMBERS * DIM, lengths, MEMBERS, times, TIMES, 1,
                         keep, &alone, &error) == PC_OK) {
-        status = pc_ensemble_run(pendulum, NULL, MEMBERS, 0.0, states[0], MEMBERS * DIM, lengths, MEMBERS, times,
+        status = pc_ensemble_run(pendulum, &options, MEMBERS, 0.0, states[0], MEMBERS * DIM, lengths, MEMBERS, times,
                                  TIMES, 0, keep, &together, &error);
     }
     if (error) {
@@ -70,6 +73,11 @@ int main(void)
     if (status == PC_OK) {
         printf("%lu members, %lu failed, energy within %.1e\n", (unsigned long)together.seen,
                (unsigned long)together.failed, worst);
+        for (i = 0; i < MEMBERS; i += MEMBERS - 1) {
+            const double *y = together.states[i] + (TIMES - 1) * DIM;
+            printf("pc run pendulum.toml --set l=%.17g --set theta0=%.17g\nt = 5: %.17g %.17g\n", lengths[i],
+                   states[i][0], y[0], y[1]);
+        }
     }
     pc_error_free(error);
     pc_system_free(pendulum);

@@ -45,7 +45,7 @@ int main(void)
     size_t i;
 
     for (i = 0; i < TIMES; i++) {
-        times[i] = 0.01 * (double)(i + 1);
+        times[i] = 10.0 * ((double)(i + 1) / TIMES);
     }
     if (pc_model_builtin("heavy-top-lagrange", &model, &error) == PC_OK &&
         pc_system_new(model, NULL, &top, &error) == PC_OK &&
@@ -69,6 +69,14 @@ int main(void)
         for (i = 0; i < w.count; i++) {
             printf("  %s stays %.12f\n", pc_system_observable_name(top, i), w.now[i]);
         }
+        printf("pc run heavy-top-lagrange --samples %d\nt = %.17g:", TIMES + 1, w.t);
+        for (i = 0; i < 6; i++) {
+            printf(" %.17g", y[i]);
+        }
+        for (i = 0; i < w.observables; i++) {
+            printf(" %.17g", w.now[i]);
+        }
+        printf("\n");
     }
     free(w.start);
     free(w.now);

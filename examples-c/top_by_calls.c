@@ -26,7 +26,7 @@ int main(void)
     pc_model *model;
     pc_system *top;
     double t, energy, y[6], ydot[6], momenta[6], mass[9], c[48];
-    int ok;
+    int i, ok;
 
     must(pc_model_new("Heavy top", &model, &error));
     must(pc_model_add_parameter(model, "A", 1.0, &error));
@@ -73,6 +73,11 @@ int main(void)
     ok = ok && near(c[(1 * 4 + 2) * 3 + 2], 1.0);
     ok = ok && near(momenta[5], 1.5);
     printf("energy %.6f, momentum about the axis %.6f: %s\n", energy, momenta[5], ok ? "right" : "wrong");
+    printf("pc run top.toml\nt = %.17g:", t); /* its first row: the state, the energy */
+    for (i = 0; i < 6; i++) {
+        printf(" %.17g", y[i]);
+    }
+    printf(" %.17g\n", energy);
     pc_system_free(top);
     return ok ? 0 : 1;
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask c-examples`: builds the examples in C and C++ with every compiler there is, runs them, and runs them again
-//! under the sanitizers and valgrind.
+//! `cargo xtask c-examples`: builds the examples in C and C++ with every compiler there is, runs them, compares their numbers
+//! with those of the program `pc`, and runs them again under the sanitizers and valgrind.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -9,7 +9,7 @@ use std::process::Command;
 use crate::command::{announce_and_run, cargo, succeeds, target_directory, workspace_root};
 use crate::error::Error;
 use crate::tools::Machine;
-use crate::{c_fresh, c_interface, install, setup};
+use crate::{c_fresh, c_interface, c_numbers, install, setup};
 
 /// A C compiler with its C++ compiler.
 const COMPILERS: [(&str, &str); 2] = [("gcc", "g++"), ("clang", "clang++")];
@@ -35,8 +35,10 @@ const RACES: &str = "valgrind --quiet --error-exitcode=9 --tool=helgrind";
 pub(crate) fn run() -> Result<(), Error> {
     setup::native_tools()?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
+    announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
     let place = target_directory()?.join("c-examples");
     let (built, installed) = (target_directory()?.join("debug"), place.join("installed"));
+    let pc = built.join("pc");
     install::place(&built, &installed)?;
     let library = Library::shared(&installed.join("lib"), &place);
 
@@ -52,7 +54,9 @@ pub(crate) fn run() -> Result<(), Error> {
         let sundials = c_interface::sundials(&built);
         c_interface::headers(compiler, &installed.join("include"), &sundials, &place.join("headers"))?;
         for (flags, build) in [("-O2", "plain"), (SANITIZED, "sanitized")] {
-            announce_and_run(&mut library.check(compiler, flags, &format!("{c}/{build}")))?;
+            let build = format!("{c}/{build}");
+            c_numbers::check(&mut library.check(compiler, flags, &build), &pc)?;
+            c_numbers::check_source(&place.join(build), &pc)?;
         }
     }
     if machine.has_program("valgrind") {
@@ -70,7 +74,7 @@ pub(crate) fn run() -> Result<(), Error> {
     }
     let archive = format!("{} {}", installed.join("lib/libpc.a").display(), install::STATIC_LIBS);
     let archive = Library { flags: archive, place: place.clone() };
-    announce_and_run(&mut archive.check(("cc", "c++"), "-O2", "static"))?;
+    c_numbers::check(&mut archive.check(("cc", "c++"), "-O2", "static"), &pc)?;
     with_cmake(&installed, &place.join("cmake"))?;
     c_fresh::run(&installed)?;
     install::uninstall(&installed)?;
@@ -91,9 +95,12 @@ pub(crate) fn quick() -> Result<(), Error> {
         return Ok(());
     }
     let (built, place) = (target_directory()?.join("debug"), target_directory()?.join("c-examples/quick"));
-    let (shared, libraries) = (built.join("deps/libpc.so"), place.join("lib"));
+    let (shared, libraries, pc) = (built.join("deps/libpc.so"), place.join("lib"), built.join("pc"));
     if !shared.exists() {
         announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
+    }
+    if !pc.exists() {
+        announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
     }
     let wrong = |source| Error::File { path: libraries.display().to_string(), source };
     fs::create_dir_all(&libraries).map_err(wrong)?;
@@ -104,7 +111,8 @@ pub(crate) fn quick() -> Result<(), Error> {
     let (compiler, include) = (("cc", "c++"), workspace_root().join("include"));
     c_interface::headers(compiler, &include, &c_interface::sundials(&built), &place.join("headers"))?;
     let library = Library::shared(&libraries, &place);
-    announce_and_run(&mut library.check(compiler, "-O1", "plain"))?;
+    c_numbers::check(&mut library.check(compiler, "-O1", "plain"), &pc)?;
+    c_numbers::check_source(&place.join("plain"), &pc)?;
     if !works("cc", SANITIZED, &place) {
         println!("skipped: the sanitizers, which do not run here");
         return Ok(());

@@ -29,6 +29,8 @@ pub(crate) enum Error {
     Tests { counts: Counts, failure: Box<Error> },
     /// The installed library is not as it should be.
     Installed { wrong: String },
+    /// An example does not give the numbers of the program `pc`.
+    Numbers { example: String, wrong: String },
     /// Every test binary was empty, or none was run.
     NoTests,
 }
@@ -62,6 +64,7 @@ impl fmt::Display for Error {
             Error::Failed { command, status } => write!(f, "`{command}` failed: {status}"),
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
+            Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
             Error::NoTests => f.write_str("no test was run"),
         }
     }

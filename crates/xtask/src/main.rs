@@ -7,6 +7,7 @@ mod bench;
 mod c_examples;
 mod c_fresh;
 mod c_interface;
+mod c_numbers;
 mod command;
 mod counts;
 mod demo;
@@ -32,7 +33,8 @@ usage: cargo xtask <command>
   test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
   header           write include/pc.h from the sources of the C interface
-  c-examples       build the examples in C and C++, run them, and run them under sanitizers and valgrind
+  c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
+                   under sanitizers and valgrind
   valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
   install --prefix DIR     build the C library and install it with its headers; `uninstall` removes it
   setup            install what the build needs (the commands above do it by themselves)

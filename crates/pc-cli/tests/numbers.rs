@@ -1,0 +1,144 @@
+//! The C library goes through the numbers of `pc run`.
+//!
+//! Both derive the same equations, compile them in the same way, and integrate them with the same calls of CVODE: the same
+//! operations in the same order. So states, observables, times of events and counts of the work are equal to the last bit,
+//! and that is what is demanded.
+
+#![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
+
+mod followed;
+
+use std::fs;
+use std::process::Command;
+
+use followed::{Asked, Motion, builtin_models, by_library, by_program};
+
+/// Models whose constraints multipliers hold. Their canonical equations are those of independent momenta, and the library
+/// observes their Hamiltonian alone, where the program shows the observables of all velocities.
+const WITH_MULTIPLIERS: [&str; 3] = ["vertical-disk", "carriage", "appell-hamel"];
+
+/// That Hamiltonian is the energy of all velocities as a sum of other terms: a few dozen roundings, as part of it.
+const ANOTHER_SUM: f64 = 1e-12;
+
+/// A motion that both give up, at the same time and state: the choice of independent momenta fails on its way.
+const GIVEN_UP: (&str, bool) = ("vertical-disk", true);
+
+/// The place of column `j` of the library among those of the program, which has quasi-velocities for momenta.
+fn place(program: &[String], library: &[String], j: usize) -> Option<usize> {
+    let name = &library[j];
+    let Some(eta) = name.strip_prefix("p_") else { return program.iter().position(|column| column == name) };
+    // The velocity of the coordinate X is called X', and its momentum p_X.
+    let coordinates = library.iter().position(|column| column.starts_with("p_"))?;
+    (coordinates..program.len()).find(|&k| program[k].trim_end_matches('\'') == eta)
+}
+
+/// Follows a motion in both ways and compares all there is. What the program has beside are velocities that follow from
+/// those of the state.
+fn compare(model: &str, asked: &Asked<'_>, further: &[&str]) -> Motion {
+    let (program, settings) = by_program(model, asked, further);
+    let (library, observables) = by_library(model, asked, &settings);
+    let other_energy = asked.canonical && WITH_MULTIPLIERS.contains(&model);
+    let observed = &library.columns[library.columns.len() - observables..];
+    if other_energy {
+        assert_eq!(observed, ["energy"], "{model}");
+    } else {
+        assert!(program.columns.ends_with(observed), "{model}: {:?} {observed:?}", program.columns);
+    }
+    let places: Vec<usize> = (0..library.columns.len())
+        .map(|j| place(&program.columns, &library.columns, j).unwrap_or_else(|| panic!("{model}: {j}")))
+        .collect();
+    assert_eq!(library.rows.len(), program.rows.len(), "{model}");
+    for (found, expected) in library.rows.iter().zip(&program.rows) {
+        for (j, (found, &k)) in found.iter().zip(&places).enumerate() {
+            let name = &library.columns[j];
+            let within = if other_energy && name == "energy" { ANOTHER_SUM * expected[k].abs() } else { 0.0 };
+            let off = (found - expected[k]).abs();
+            assert!(off <= within, "{model}: {name} at t = {} is {found}, not {}", expected[0], expected[k]);
+        }
+    }
+    assert_eq!(library.events, program.events, "{model}");
+    assert_eq!(library.ending, program.ending, "{model}");
+    assert_eq!(library.reached, program.reached, "{model}");
+    assert_eq!(library.work, program.work, "{model}");
+    program
+}
+
+fn every_model(canonical: bool) {
+    let models = builtin_models();
+    for model in &models {
+        let motion = compare(model, &Asked { canonical, ..Asked::default() }, &[]);
+        let expected = if (model.as_str(), canonical) == GIVEN_UP { "failed" } else { "completed" };
+        assert_eq!(motion.ending, expected, "{model}");
+        assert!(motion.work[0] > 10, "{model}: {:?}", motion.work);
+    }
+}
+
+#[test]
+fn every_model_in_quasi_velocities() {
+    every_model(false);
+}
+
+#[test]
+fn every_model_in_momenta() {
+    every_model(true);
+}
+
+#[test]
+fn the_models_are_those_of_the_program() {
+    let output = Command::new(env!("CARGO_BIN_EXE_pc")).arg("models").output().unwrap();
+    let listed = String::from_utf8(output.stdout).unwrap();
+    let listed: Vec<&str> = listed.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(builtin_models(), listed);
+}
+
+/// Parameters, also in the start; what is kept; method and tolerances; backwards in time.
+#[test]
+fn settings_mean_the_same() {
+    for canonical in [false, true] {
+        let asked = Asked { canonical, ..Asked::default() };
+        let parameters = Asked { set: &[("mg", 2.0), ("I3", 0.7)], ..asked };
+        compare("heavy-top-lagrange", &parameters, &["--method", "bdf", "--t-end", "-3"]);
+        let kept = Asked { keep: &["energy"], ..asked };
+        compare("double-pendulum-cartesian", &kept, &["--rtol", "1e-6", "--atol", "1e-8"]);
+        let start = Asked { set: &[("h", 2.5), ("e", 0.7)], ..asked };
+        let motion = compare("bouncing-ball", &start, &["--rtol", "1e-12"]);
+        assert_eq!(motion.events.len(), 4);
+    }
+}
+
+/// A start beside the constraint, not at zero, and an end by an event.
+const ROD: &str = r#"
+[coordinates]
+x = 0.61
+y = 0.0
+z = -0.8
+[quasi_velocities]
+"y'" = 1.5
+[constraints]
+rod = "(x^2 + y^2 + z^2 - 1)/2"
+[lagrangian]
+kinetic = "(x'^2 + y'^2 + z'^2)/2"
+potential = "10*z"
+[events.across]
+when = "x"
+[events.back]
+when = "y"
+direction = "falling"
+terminal = true
+[simulation]
+t_start = 1.0
+t_end = 9.0
+"#;
+
+#[test]
+fn a_start_is_moved_and_an_event_ends() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("rod.toml");
+    fs::write(&path, ROD).unwrap();
+    let asked = Asked { project_start: true, ..Asked::default() };
+    let motion = compare(path.to_str().unwrap(), &asked, &[]);
+    assert_eq!(motion.ending, "event");
+    let names: Vec<&str> = motion.events.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["across", "back"]);
+    assert_eq!(motion.rows.last().unwrap()[0], motion.events[1].1);
+}
