@@ -38,7 +38,7 @@ pub enum Command {
     Sweep(Box<SweepArguments>),
     /// Write the equations as C or Rust source that needs nothing of this program
     Emit(EmitArguments),
-    /// List the models that come with the program
+    /// List the models that come with the program, or print one
     Models(ModelsArguments),
 }
 
@@ -160,6 +160,9 @@ pub enum Lang {
 /// Arguments of `pc models`.
 #[derive(Clone, Debug, Args)]
 pub struct ModelsArguments {
+    /// Print the text of this one, to begin a model of one's own with
+    #[arg(value_name = "NAME", conflicts_with = "algebras")]
+    pub name: Option<String>,
     /// List the Lie algebras that `[algebra]` knows by name instead
     #[arg(long)]
     pub algebras: bool,

@@ -55,7 +55,8 @@ fn document(name: &str) -> Result<Document, CliError> {
     Ok(Document::from_bytes(name, &bytes)?)
 }
 
-fn no_such_model(name: &str) -> CliError {
+/// That there is no model of this name, with the one whose name is nearest.
+pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
     let nearest = nearest(stem, BUILTIN.iter().map(|model| model.name));
     let nearest = nearest.and_then(Builtin::named).map(|model| model.name);

@@ -8,14 +8,21 @@ use pc_print::{columns, combination};
 
 use crate::args::ModelsArguments;
 use crate::error::CliError;
+use crate::input::no_such_model;
 use crate::text::print;
 
-/// Prints the built-in models, or the algebras that have a name.
+/// Prints the list of the built-in models, the text of one, or the algebras that have a name.
 ///
 /// # Errors
-/// [`CliError::Write`].
+/// [`CliError::NoSuchModel`]; [`CliError::Write`].
 pub fn command(arguments: &ModelsArguments) -> Result<(), CliError> {
-    print(if arguments.algebras { algebras } else { models })
+    match &arguments.name {
+        Some(name) => {
+            let model = Builtin::named(name).ok_or_else(|| no_such_model(name))?;
+            print(|out| out.write_all(model.text.as_bytes()))
+        }
+        None => print(if arguments.algebras { algebras } else { models }),
+    }
 }
 
 fn models(out: &mut dyn Write) -> io::Result<()> {

@@ -385,6 +385,19 @@ fn models_and_algebras_are_listed() {
 }
 
 #[test]
+fn the_text_of_a_model_is_printed_to_be_changed() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("ball.toml");
+    let text = stdout(&run(&["models", "bouncing-ball"]));
+    std::fs::write(&path, text.replace("e = 0.8", "e = 0.5")).expect("written");
+    let path = path.display().to_string();
+    let changed = stdout(&run(&["run", &path, "--t-end", "1"]));
+    assert_eq!(changed, stdout(&run(&["run", "bouncing-ball", "--set", "e=0.5", "--t-end", "1"])));
+    refuses(&["models", "bouncing-bal"], 2, "bouncing-ball");
+    refuses(&["models", "bouncing-ball", "--algebras"], 2, "cannot be used with");
+}
+
+#[test]
 fn source_is_emitted_into_a_directory() {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("new").display().to_string();
