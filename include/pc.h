@@ -24,7 +24,7 @@
  * lives, and a system while its solvers and kernels do.
  *
  * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
- * and an array that is written shares no memory with another one; this is checked. Matrices are dense and column-major,
+ * and an array that is written shares no memory with another one; this is checked. NULL goes with the length 0. Matrices are dense and column-major,
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
@@ -32,7 +32,8 @@
  * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
  * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
  *
- * Not for signal handlers. A fault of the library is PC_INTERNAL and never ends your program.
+ * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program; memory that is exhausted does, and
+ * a stack: threads that make models and systems need some 256 KiB, more for long expressions.
  */
 
 #ifndef PC_H
@@ -57,12 +58,14 @@
 #define PC_VERSION_PATCH 0
 
 /**
- * Version of the binary interface, the number in the name libpc.so.N. Programs run with any library of the same.
+ * Version of the binary interface, the number in the name libpc.so.N. A program runs with
+ * any library of the same number that is not older than its header.
  */
 #define PC_ABI_VERSION 0
 
 /**
- * How a call ended. New ones may be added, so treat an unknown one as an error.
+ * How a call ended. New ones may be added, so treat an unknown one as an error; PC_STATUS_LAST, which is never returned,
+ * makes room for them.
  */
 typedef enum {
   /**
@@ -70,12 +73,12 @@ typedef enum {
    */
   PC_OK = 0,
   /**
-   * The call is wrong: a null pointer, a wrong length, text that is not UTF-8, a number that is not finite,
+   * The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that is not finite,
    * an unknown choice.
    */
   PC_INVALID_ARGUMENT = 1,
   /**
-   * The text of the model is wrong; the error has the place.
+   * The text of the model is wrong, or not UTF-8; the error has the place.
    */
   PC_INVALID_MODEL = 2,
   /**
@@ -87,11 +90,11 @@ typedef enum {
    */
   PC_UNSUPPORTED = 4,
   /**
-   * There is nothing of this name.
+   * There is nothing of this name, such as a file.
    */
   PC_NOT_FOUND = 5,
   /**
-   * A file could not be read.
+   * A file that there is could not be read.
    */
   PC_IO = 6,
   /**
@@ -99,7 +102,8 @@ typedef enum {
    */
   PC_EVALUATION = 7,
   /**
-   * The integration began and could not go on.
+   * The integration could not begin or go on. Events that occur ever more closely, as a ball's that comes to rest, are
+   * such an end.
    */
   PC_INTEGRATION = 8,
   /**
@@ -111,7 +115,8 @@ typedef enum {
    */
   PC_BUSY = 10,
   /**
-   * A fault of the library or no memory. The handle can only be freed.
+   * A fault of the library, after which the handle can only be freed; or threads or memory for a solver are not to be
+   * had, and the handle is as it was.
    */
   PC_INTERNAL = 11,
   /**
@@ -122,6 +127,10 @@ typedef enum {
    * The bytes are no checkpoint, or one of which a part is missing or changed.
    */
   PC_INVALID_CHECKPOINT = 13,
+  /**
+   * None.
+   */
+  PC_STATUS_LAST = 2147483647,
 } pc_status;
 
 /**
@@ -277,6 +286,10 @@ typedef struct {
    * A pc_form; PC_POINCARE by default.
    */
   int form;
+  /**
+   * 0: room for a choice to come.
+   */
+  int reserved;
 } pc_system_options;
 
 /**
@@ -380,7 +393,8 @@ typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *use
 /**
  * Is given each event where it occurs, by its number among the events of the solver, with the states before and
  * after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
- * that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED. Otherwise as pc_observer.
+ * that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED, or with PC_EVENT where a
+ * terminal event does so too. Otherwise as pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
                                  double t,
@@ -476,7 +490,7 @@ typedef struct {
    */
   const double *times;
   /**
-   * The states at these, one after the other, each of `dim` numbers.
+   * The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there are none.
    */
   const double *states;
   /**
@@ -541,9 +555,15 @@ size_t pc_error_offset(const pc_error *error);
 size_t pc_error_length(const pc_error *error);
 
 /**
- * The code that CVODES returned (cvodes.h), if the status is PC_INTEGRATION and CVODES is the reason; else 0.
+ * The code that CVODES returned (cvodes.h), where it is the reason; else 0, as of null.
  */
 int pc_error_integrator_code(const pc_error *error);
+
+/**
+ * 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should try a smaller step;
+ * else 0, as of null.
+ */
+int pc_error_is_recoverable(const pc_error *error);
 
 /**
  * Frees an error. Null is allowed.
@@ -581,9 +601,9 @@ pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error)
 size_t pc_builtin_count(void);
 
 /**
- * The name of such a model, to be freed with pc_string_free; NULL beyond the last. `index` from 0.
+ * The name of such a model, from 0; NULL beyond the last. Static.
  */
-char *pc_builtin_name(size_t index);
+const char *pc_builtin_name(size_t index);
 
 /**
  * A copy that can be changed by itself.
@@ -623,7 +643,9 @@ pc_status pc_model_observe_reactions(pc_model *model,
 
 /**
  * The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
- * wrote; lines and columns of errors are counted in it.
+ * wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
+ * pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
+ * pc_model_add_external_force.
  */
 pc_status pc_model_text(const pc_model *model,
                         char **text,
@@ -640,10 +662,11 @@ pc_status pc_model_new(const char *name,
                        pc_error **error);
 
 /**
- * Reads what has been said as a whole: PC_OK if all names and expressions are well formed. Whether equations
- * can be derived is found by pc_system_new.
+ * Reads what has been said as a whole: PC_OK if all names are known and all expressions well formed, and the frame and
+ * the start are in order. Whether equations can be derived is found by pc_system_new.
  */
-pc_status pc_model_check(const pc_model *model, pc_error **error);
+pc_status pc_model_check(const pc_model *model,
+                         pc_error **error);
 
 /**
  * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
@@ -902,7 +925,7 @@ pc_status pc_system_clone(const pc_system *system,
                           pc_error **error);
 
 /**
- * Frees a system. Null is allowed.
+ * Frees a system. Null is allowed. In a function that is called by a call of this system it does nothing.
  */
 void pc_system_free(pc_system *system);
 
@@ -1017,7 +1040,7 @@ const char *pc_system_force_name(const pc_system *system, size_t index);
  * sizes.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
- * that shares it is freed or given another function.
+ * that shares it is freed or given another function. It must not use a handle that is being freed.
  */
 pc_status pc_system_set_force(pc_system *system,
                               pc_force_function function,
@@ -1109,7 +1132,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
  *
  * In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
- * Observables with accelerations in them are not finite where external forces cannot be computed.
+ * An observable is not finite where the model has no value for it; one with accelerations in it, also where external
+ * forces cannot be computed.
  */
 pc_status pc_system_observe(pc_system *system,
                             double t,
@@ -1118,6 +1142,18 @@ pc_status pc_system_observe(pc_system *system,
                             double *values,
                             size_t length,
                             pc_error **error);
+
+/**
+ * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should stay constant, which
+ * are the first of the observables.
+ */
+pc_status pc_system_integrals(pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              double *values,
+                              size_t length,
+                              pc_error **error);
 
 /**
  * Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
@@ -1381,7 +1417,7 @@ size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
  * An integration of the system from the state y at the time t, with the parameters as they are now; from the
- * start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
+ * start of the model if y is NULL, of length 0, and then t is not looked at. `options` may be NULL. States stay on the
  * constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
  * values at this start. The events of the model are followed: where one occurs, the state is reset as the model
  * says, and a terminal one ends the call with PC_EVENT.
@@ -1444,7 +1480,8 @@ pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
 
 /**
- * Has an observer told of each event from now on, instead of the one before; of none if it is NULL. It is called
+ * Has an observer told of each event from now on, instead of the one before; of none if it is NULL. `user` has to live
+ * until there is another one, or the solver is freed. It is called
  * within the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
@@ -1482,7 +1519,7 @@ size_t pc_solver_event_count(const pc_solver *solver);
 const char *pc_solver_event_name(const pc_solver *solver, size_t index);
 
 /**
- * Writes how often an event has occurred.
+ * Writes how often an event has occurred since the solver was made.
  */
 pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       size_t event,
@@ -1523,7 +1560,7 @@ pc_status pc_solver_interpolate(pc_solver *solver,
                                 pc_error **error);
 
 /**
- * Integrates to the time t as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
+ * Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
  * numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
  */
 pc_status pc_solver_run_dense(pc_solver *solver,
@@ -1532,9 +1569,14 @@ pc_status pc_solver_run_dense(pc_solver *solver,
                               pc_error **error);
 
 /**
- * Writes y(t). At an event that is the state after it, but at the very end the limit from before.
+ * Writes y(t). At an event that is the state after it, but at the very end the limit from before. Between the ends of
+ * steps it is off the constraints by the error of a step; pc_system_project moves it there.
  */
-pc_status pc_dense_eval(const pc_dense *dense, double t, double *y, size_t y_length, pc_error **error);
+pc_status pc_dense_eval(const pc_dense *dense,
+                        double t,
+                        double *y,
+                        size_t y_length,
+                        pc_error **error);
 
 /**
  * Writes the rate of y at t, which may jump by the error of a step from one step to the next.
@@ -1614,7 +1656,7 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
  * not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
- * are now. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
+ * are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
  * told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
  * found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
  */

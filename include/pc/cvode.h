@@ -18,7 +18,8 @@
  * N_VGetArrayPointer gives, such as N_VNew_Serial's, of the length pc_system_dim.
  *
  * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that CVODE tries a smaller step;
- * -1 for what no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit.
+ * -1 for what no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit, or
+ * a root is no number.
  */
 
 #ifndef PC_CVODE_H
@@ -59,8 +60,8 @@ typedef struct {
     size_t roots_length;
     /* Why a function here failed last, or NULL. */
     pc_error *error;
-    /* Room for all observables. */
-    double *observables;
+    /* Room for all observables, and for a state. */
+    double *observables, *state;
 } pc_cvode;
 
 /* Frees what pc_cvode_init made. Twice does no harm. */
@@ -70,10 +71,12 @@ static inline void pc_cvode_free(pc_cvode *equations)
     pc_system_free(equations->system);
     pc_error_free(equations->error);
     free(equations->observables);
+    free(equations->state);
     equations->kernel = NULL;
     equations->system = NULL;
     equations->error = NULL;
     equations->observables = NULL;
+    equations->state = NULL;
 }
 
 /* Takes the equations of a system with its parameters as they are now, and no roots. After a failure there is nothing to be
@@ -88,13 +91,15 @@ static inline pc_status pc_cvode_init(pc_cvode *equations, const pc_system *syst
     equations->roots_length = 0;
     equations->error = NULL;
     equations->observables = NULL;
+    equations->state = NULL;
     status = pc_system_clone(system, &equations->system, error);
     if (status == PC_OK) {
         status = pc_kernel_new(equations->system, &equations->kernel, error);
     }
-    if (status == PC_OK && observables > 0) {
-        equations->observables = (double *)malloc(observables * sizeof(double));
-        status = equations->observables ? PC_OK : PC_INTERNAL;
+    if (status == PC_OK) {
+        equations->observables = (double *)malloc((observables + 1) * sizeof(double));
+        equations->state = (double *)malloc(pc_system_dim(system) * sizeof(double));
+        status = equations->observables && equations->state ? PC_OK : PC_INTERNAL;
     }
     if (status != PC_OK) {
         pc_cvode_free(equations);
@@ -108,10 +113,10 @@ static inline double *pc_cvode_numbers(N_Vector vector, size_t dim)
     return N_VGetLength(vector) == (sunindextype)dim ? N_VGetArrayPointer(vector) : NULL;
 }
 
-/* What CVODE is told of a status. */
-static inline int pc_cvode_answer(pc_status status)
+/* What CVODE is told of a status, with the error that belongs to it. */
+static inline int pc_cvode_answer(const pc_cvode *equations, pc_status status)
 {
-    return status == PC_OK ? 0 : status == PC_EVALUATION ? 1 : -1;
+    return status == PC_OK ? 0 : pc_error_is_recoverable(equations->error) ? 1 : -1;
 }
 
 /* Where the next error goes, in place of the last one. */
@@ -122,14 +127,25 @@ static inline pc_error **pc_cvode_error(pc_cvode *equations)
     return &equations->error;
 }
 
+/* The answer where something does not fit, without an error: that of an earlier call is not this one's. */
+static inline int pc_cvode_misfit(pc_cvode *equations)
+{
+    pc_cvode_error(equations);
+    return -1;
+}
+
 /* CVRhsFn: ẏ = f(t, y). */
 static inline int pc_cvode_rhs(double t, N_Vector y, N_Vector ydot, void *user_data)
 {
     pc_cvode *equations = (pc_cvode *)user_data;
     const size_t n = pc_kernel_dim(equations->kernel);
     double *from = pc_cvode_numbers(y, n), *to = pc_cvode_numbers(ydot, n);
-    int answer = from && to ? pc_kernel_rhs(t, from, to, equations->kernel) : -1;
-    if (answer != 0 && from && to) {
+    int answer;
+    if (!from || !to) {
+        return pc_cvode_misfit(equations);
+    }
+    answer = pc_kernel_rhs(t, from, to, equations->kernel);
+    if (answer != 0) {
         /* Only the system says why. */
         pc_system_rhs(equations->system, t, from, n, to, n, pc_cvode_error(equations));
     }
@@ -144,7 +160,7 @@ static inline int pc_cvode_sparse_jac(double t, const double *y, SUNMatrix jacob
     const size_t *starts = NULL, *rows = NULL;
     pc_status status = pc_system_jacobian_pattern(equations->system, &entries, &starts, &rows, pc_cvode_error(equations));
     if (status != PC_OK) {
-        return pc_cvode_answer(status);
+        return pc_cvode_answer(equations, status);
     }
     if (SM_SPARSETYPE_S(jacobian) != CSC_MAT || SM_NNZ_S(jacobian) < (sunindextype)entries) {
         return -1;
@@ -156,7 +172,7 @@ static inline int pc_cvode_sparse_jac(double t, const double *y, SUNMatrix jacob
         SM_INDEXVALS_S(jacobian)[i] = (sunindextype)rows[i];
     }
     status = pc_system_sparse_jacobian(equations->system, t, y, n, SM_DATA_S(jacobian), entries, pc_cvode_error(equations));
-    return pc_cvode_answer(status);
+    return pc_cvode_answer(equations, status);
 }
 
 /* CVLsJacFn: ∂f/∂y, for SUNDenseMatrix, and for SUNSparseMatrix of type CSC_MAT with room for the entries that
@@ -173,8 +189,7 @@ static inline int pc_cvode_jac(double t, N_Vector y, N_Vector fy, SUNMatrix jaco
         return pc_cvode_sparse_jac(t, from, jacobian, equations);
     }
     if (!from || SUNMatGetID(jacobian) != SUNMATRIX_DENSE || SM_LDATA_D(jacobian) != (sunindextype)(n * n)) {
-        pc_cvode_error(equations); /* that of an earlier call is not this one's */
-        return -1;
+        return pc_cvode_misfit(equations);
     }
     answer = pc_kernel_jacobian(t, from, SM_DATA_D(jacobian), equations->kernel);
     if (answer != 0) {
@@ -189,9 +204,15 @@ static inline int pc_cvode_jtimes(N_Vector v, N_Vector product, double t, N_Vect
 {
     pc_cvode *equations = (pc_cvode *)user_data;
     const size_t n = pc_kernel_dim(equations->kernel);
+    const double *at = pc_cvode_numbers(y, n), *along = pc_cvode_numbers(v, n);
+    double *to = pc_cvode_numbers(product, n);
+    pc_status status;
     (void)fy, (void)tmp;
-    return pc_cvode_answer(pc_system_jvp(equations->system, t, pc_cvode_numbers(y, n), n, pc_cvode_numbers(v, n), n,
-                                         pc_cvode_numbers(product, n), n, pc_cvode_error(equations)));
+    if (!at || !along || !to) {
+        return pc_cvode_misfit(equations);
+    }
+    status = pc_system_jvp(equations->system, t, at, n, along, n, to, n, pc_cvode_error(equations));
+    return pc_cvode_answer(equations, status);
 }
 
 /* CVProjFn: the correction c that moves the state to Π(y) = y + c, where constraints are satisfied and the integrals of
@@ -214,8 +235,7 @@ static inline int pc_cvode_proj(double t, N_Vector y, N_Vector correction, doubl
     size_t i;
     (void)tolerance;
     if (!from || !c || (error_estimate && !e)) {
-        pc_cvode_error(equations);
-        return -1;
+        return pc_cvode_misfit(equations);
     }
     for (i = 0; i < n; i++) {
         c[i] = from[i];
@@ -233,7 +253,7 @@ static inline int pc_cvode_proj(double t, N_Vector y, N_Vector correction, doubl
     for (i = 0; i < n; i++) {
         c[i] -= from[i];
     }
-    return pc_cvode_answer(status);
+    return pc_cvode_answer(equations, status);
 }
 
 /* How many roots there are, for CVodeRootInit: the events of the model, then those of `roots`. */
@@ -251,15 +271,18 @@ static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_
     const size_t n = pc_kernel_dim(equations->kernel), events = pc_system_event_count(equations->system);
     const size_t observables = equations->roots_length > 0 ? pc_system_observable_count(equations->system) : 0;
     const double *from = pc_cvode_numbers(y, n);
-    pc_status status =
-        pc_system_events(equations->system, t, from, n, gout, events, pc_cvode_error(equations));
+    pc_status status;
     size_t i;
+    if (!from) {
+        return pc_cvode_misfit(equations);
+    }
+    status = pc_system_events(equations->system, t, from, n, gout, events, pc_cvode_error(equations));
     if (status == PC_OK && observables > 0) {
         status = pc_system_observe(equations->system, t, from, n, equations->observables, observables,
                                    pc_cvode_error(equations));
     }
     if (status != PC_OK) {
-        return pc_cvode_answer(status);
+        return pc_cvode_answer(equations, status);
     }
     for (i = 0; i < equations->roots_length; i++) {
         const pc_cvode_root root = equations->roots[i];
@@ -278,26 +301,33 @@ static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_
 
 /* Turns y before an event of the model, by its number among the roots, into the state after it, on the constraints, whose
  * integrals are those kept from now on. CVODE is then to be started anew there, by CVodeReInit. What resets nothing leaves y
- * as it is: an event, or one of `roots`. */
+ * as it is: an event, or one of `roots`; so does a failure. */
 static inline int pc_cvode_reset(double t, N_Vector y, size_t event, pc_cvode *equations)
 {
     const size_t n = pc_kernel_dim(equations->kernel);
-    double *state = pc_cvode_numbers(y, n);
+    double *numbers = pc_cvode_numbers(y, n), *state = equations->state;
     pc_status status = PC_OK;
-    if (!state) {
-        pc_cvode_error(equations);
-        return -1;
+    size_t i;
+    if (!numbers) {
+        return pc_cvode_misfit(equations);
     }
-    if (pc_system_event_resets(equations->system, event)) {
-        status = pc_system_event_reset(equations->system, event, t, state, n, pc_cvode_error(equations));
-        if (status == PC_OK) {
-            status = pc_system_keep_from(equations->system, t, state, n, pc_cvode_error(equations));
-        }
-        if (status == PC_OK) {
-            status = pc_system_project(equations->system, t, state, n, pc_cvode_error(equations));
-        }
+    if (!pc_system_event_resets(equations->system, event)) {
+        return 0;
     }
-    return pc_cvode_answer(status);
+    for (i = 0; i < n; i++) {
+        state[i] = numbers[i];
+    }
+    status = pc_system_event_reset(equations->system, event, t, state, n, pc_cvode_error(equations));
+    if (status == PC_OK) {
+        status = pc_system_keep_from(equations->system, t, state, n, pc_cvode_error(equations));
+    }
+    if (status == PC_OK) {
+        status = pc_system_project(equations->system, t, state, n, pc_cvode_error(equations));
+    }
+    for (i = 0; i < n && status == PC_OK; i++) {
+        numbers[i] = state[i];
+    }
+    return pc_cvode_answer(equations, status);
 }
 
 #ifdef __cplusplus

@@ -2,6 +2,8 @@
 
 use std::ffi::c_char;
 
+use pc_mech::Graph;
+
 use crate::draft::{Draft, Section, number, quoted};
 use crate::entry::entry;
 use crate::error::{Fault, pc_error};
@@ -31,11 +33,14 @@ pub unsafe extern "C" fn pc_model_new(
     unsafe { entry(error, new) }
 }
 
-/// Reads what has been said as a whole: PC_OK if all names and expressions are well formed. Whether equations
-/// can be derived is found by pc_system_new.
+/// Reads what has been said as a whole: PC_OK if all names are known and all expressions well formed, and the frame and
+/// the start are in order. Whether equations can be derived is found by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
-    let check = |contents: &mut Contents| contents.model().map(|_| ());
+    let check = |contents: &mut Contents| {
+        contents.model()?.assemble(&Graph::new())?;
+        Ok(())
+    };
     // SAFETY: as the preamble demands; the contents are not changed.
     unsafe { change(model.cast_mut(), error, check) }
 }

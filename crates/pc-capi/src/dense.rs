@@ -41,7 +41,7 @@ pub unsafe extern "C" fn pc_solver_interpolate(
     unsafe { integrate(solver, error, interpolate) }
 }
 
-/// Integrates to the time t as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
+/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
 /// numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
@@ -96,7 +96,8 @@ unsafe fn at(
     unsafe { entry(error, evaluate) }
 }
 
-/// Writes y(t). At an event that is the state after it, but at the very end the limit from before.
+/// Writes y(t). At an event that is the state after it, but at the very end the limit from before. Between the ends of
+/// steps it is off the constraints by the error of a step; pc_system_project moves it there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,

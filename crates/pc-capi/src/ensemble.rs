@@ -3,6 +3,7 @@
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
@@ -29,7 +30,7 @@ pub struct pc_member {
     pub message: *const c_char,
     /// The output times that it reached, as many as `rows`; the time of a terminal event is the last one.
     pub times: *const f64,
-    /// The states at these, one after the other, each of `dim` numbers.
+    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there are none.
     pub states: *const f64,
     /// How many these are, also if it failed.
     pub rows: usize,
@@ -93,9 +94,9 @@ impl Outcome {
         let member = pc_member {
             number,
             status: self.status,
-            message: self.message.as_ref().map_or(std::ptr::null(), |message| message.as_ptr()),
-            times: self.times.as_ptr(),
-            states: self.states.as_ptr(),
+            message: self.message.as_ref().map_or(ptr::null(), |message| message.as_ptr()),
+            times: if self.times.is_empty() { ptr::null() } else { self.times.as_ptr() },
+            states: if self.states.is_empty() { ptr::null() } else { self.states.as_ptr() },
             rows: self.times.len(),
             dim,
         };
@@ -153,7 +154,7 @@ impl Plan<'_> {
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
 /// not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
-/// are now. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
+/// are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
 /// told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
 /// found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
 #[unsafe(no_mangle)]
@@ -183,7 +184,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
         };
         let (t_start, start) = inventory.start();
         let rows = |data: *const f64, found: usize, width: usize, what| {
-            if data.is_null() {
+            if data.is_null() && found == 0 {
                 return Ok(None);
             }
             let too_many = Fault::Length { what, found, expected: usize::MAX };

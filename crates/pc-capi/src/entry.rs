@@ -100,7 +100,7 @@ mod tests {
         let (status, message) = called(|| value.take().map(|_| ()));
         assert_eq!(status, pc_status::PC_INTERNAL);
         assert!(message.ends_with("this handle can only be freed"), "{message}");
-        assert!(!value.is_in_use()); // so that it is freed
+        assert!(value.close()); // so that it is freed
     }
 
     #[test]

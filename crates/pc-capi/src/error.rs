@@ -18,6 +18,7 @@ pub struct pc_error {
     message: CString,
     place: Place,
     integrator_code: c_int,
+    recoverable: bool,
 }
 
 /// A place in a model text; zeros where there is none.
@@ -36,12 +37,18 @@ pub(crate) enum Fault {
     Null { what: &'static str },
     #[error("{what}: room for {found} numbers, but there are {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what}: {found} numbers are more than any memory has, which is {most}; is it −1?")]
+    TooLong { what: &'static str, found: usize, most: usize },
+    #[error("{what} does not stand at a multiple of {alignment} bytes, as its type does")]
+    Misaligned { what: &'static str, alignment: usize },
     #[error("{what} is not UTF-8 text: byte number {offset} (from 0) does not fit")]
     NotText { what: &'static str, offset: usize },
     #[error("{what} is {value}, but must be finite")]
     NotFinite { what: &'static str, value: f64 },
     #[error("{first} and {second} share memory")]
     Overlap { first: &'static str, second: &'static str },
+    #[error("{what} has no value here: it is {value}")]
+    NoValue { what: &'static str, value: f64 },
     #[error("{value} is not a value of {what}")]
     Choice { what: &'static str, value: i64 },
     #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
@@ -101,6 +108,8 @@ impl Fault {
         match self {
             Fault::Null { .. }
             | Fault::Length { .. }
+            | Fault::TooLong { .. }
+            | Fault::Misaligned { .. }
             | Fault::NotText { .. }
             | Fault::NotFinite { .. }
             | Fault::Overlap { .. }
@@ -131,7 +140,7 @@ impl Fault {
                 pc_status::PC_NOT_FOUND
             }
             Fault::Read { .. } => pc_status::PC_IO,
-            Fault::Evaluation(_) | Fault::Mechanics(_) => pc_status::PC_EVALUATION,
+            Fault::Evaluation(_) | Fault::Mechanics(_) | Fault::NoValue { .. } => pc_status::PC_EVALUATION,
             Fault::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
             Fault::Stopped => pc_status::PC_STOPPED,
             Fault::Terminal => pc_status::PC_EVENT,
@@ -177,7 +186,13 @@ impl Fault {
             Fault::Solve(error) => error.code().map_or(0, Code::number),
             _ => 0,
         };
-        pc_error { status: self.status(), message: c_string(&self.message()), place, integrator_code: code }
+        let (status, message) = self.told();
+        let recoverable = match &self {
+            Fault::Evaluation(failure) => failure.is_recoverable(),
+            Fault::NoValue { .. } => true,
+            _ => false,
+        };
+        pc_error { status, message, place, integrator_code: code, recoverable }
     }
 }
 
@@ -220,11 +235,19 @@ pub unsafe extern "C" fn pc_error_length(error: *const pc_error) -> usize {
     place(error).length
 }
 
-/// The code that CVODES returned (cvodes.h), if the status is PC_INTEGRATION and CVODES is the reason; else 0.
+/// The code that CVODES returned (cvodes.h), where it is the reason; else 0, as of null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_integrator_code(error: *const pc_error) -> c_int {
     // SAFETY: null or a live error, as the preamble demands.
     unsafe { error.as_ref() }.map_or(0, |error| error.integrator_code)
+}
+
+/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should try a smaller step;
+/// else 0, as of null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_int {
+    // SAFETY: null or a live error, as the preamble demands.
+    unsafe { error.as_ref() }.map_or(0, |error| error.recoverable.into())
 }
 
 /// Frees an error. Null is allowed.

@@ -1,5 +1,6 @@
 //! What is integrated.
 
+use pc_expr::Entry;
 use pc_mech::{Failure, ForcedMotion, MechError, Motion, VectorField};
 
 use crate::force::Controller;
@@ -32,6 +33,14 @@ impl Field {
         match self {
             Field::Free(motion) => motion,
             Field::Forced(forced) => forced.motion(),
+        }
+    }
+
+    /// The machine code of f alone, if it is no more than that.
+    pub(crate) fn machine_code(&mut self) -> Option<(Entry, usize)> {
+        match self {
+            Field::Free(motion) => motion.machine_code(),
+            Field::Forced(_) => None,
         }
     }
 
@@ -113,6 +122,7 @@ impl VectorField for Field {
         delegate!(self, field => field.dim())
     }
 
+    #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         delegate!(self, field => field.rhs(t, y, ydot))
     }

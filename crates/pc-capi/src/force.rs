@@ -159,7 +159,7 @@ pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: u
 /// sizes.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
-/// that shares it is freed or given another function.
+/// that shares it is freed or given another function. It must not use a handle that is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_force(
     system: *mut pc_system,

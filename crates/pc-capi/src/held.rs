@@ -41,9 +41,9 @@ impl<T> Held<T> {
         }
     }
 
-    /// Whether a call uses the value.
-    pub(crate) fn is_in_use(&self) -> bool {
-        self.state.load(Ordering::Acquire) == IN_USE
+    /// Lets no call use the value any more, so that it can be dropped; false if one does now.
+    pub(crate) fn close(&self) -> bool {
+        self.state.swap(IN_USE, Ordering::Acquire) != IN_USE
     }
 }
 

@@ -2,13 +2,15 @@
 
 use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::slice;
 
+use pc_expr::Entry;
 use pc_mech::VectorField;
 
 use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
 use crate::field::Field;
-use crate::pointer::{apart, clear, handle, numbers, room, write};
+use crate::pointer::{are_usable, clear, fresh, handle, numbers, write};
 use crate::status::pc_status;
 use crate::system::{Inner, Inventory, inside, pc_system};
 
@@ -18,8 +20,30 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 /// It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
 /// return there are no locks.
 pub struct pc_kernel {
-    motion: Field,
     dim: usize,
+    direct: Option<Direct>,
+    motion: Field,
+}
+
+/// The machine code of f alone, which needs no more than a look at what it wrote.
+struct Direct {
+    entry: Entry,
+    scratch: Vec<f64>,
+}
+
+impl pc_kernel {
+    fn new(mut motion: Field, dim: usize) -> pc_kernel {
+        let direct = Direct::of(&mut motion);
+        pc_kernel { dim, direct, motion }
+    }
+}
+
+impl Direct {
+    /// It lives as long as the field, and is for its parameters as they are now.
+    fn of(motion: &mut Field) -> Option<Direct> {
+        let (entry, scratch) = motion.machine_code()?;
+        Some(Direct { entry, scratch: vec![0.0; scratch] })
+    }
 }
 
 /// A kernel of the system with the parameters as they are now.
@@ -30,7 +54,7 @@ pub unsafe extern "C" fn pc_kernel_new(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let new = |inventory: &Inventory, inner: &mut Inner| {
-        let made = Box::new(pc_kernel { motion: inner.field.clone(), dim: inventory.dim() });
+        let made = Box::new(pc_kernel::new(inner.field.clone(), inventory.dim()));
         // SAFETY: null or a place for a handle, as the preamble demands.
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
@@ -71,6 +95,7 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
             return Err(Fault::NotFinite { what: "a parameter", value });
         }
         parameters.copy_from_slice(values);
+        kernel.direct = Direct::of(&mut kernel.motion);
         Ok(())
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -85,8 +110,21 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 /// `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
-    // SAFETY: a kernel and arrays of its dimension, as the documentation demands.
-    unsafe { evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot)) }
+    // SAFETY: a kernel and arrays of its dimension, as the documentation demands, which are apart. The code, which lives
+    // as long as the motion, reads the state and the parameters, and writes all rates and the scratch, which is ours.
+    unsafe {
+        if let Some(pc_kernel { dim, direct: Some(direct), motion }) = kernel.cast::<pc_kernel>().as_mut()
+            && are_usable((y, *dim), (ydot, *dim))
+        {
+            let parameters = motion.parameters().as_ptr();
+            (direct.entry)(t, y, parameters, ydot, direct.scratch.as_mut_ptr());
+            if slice::from_raw_parts(ydot, *dim).iter().all(|rate| rate.is_finite()) {
+                return 0;
+            }
+        }
+        // Also for what is to be said of rates that are not finite.
+        evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot))
+    }
 }
 
 /// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
@@ -104,6 +142,7 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
 /// # Safety
 /// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its state, `target` null or as long as
 /// `len` says.
+#[inline]
 unsafe fn evaluate(
     y: *const f64,
     target: *mut f64,
@@ -111,29 +150,20 @@ unsafe fn evaluate(
     len: impl FnOnce(usize) -> usize,
     function: impl FnOnce(&mut Field, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
 ) -> c_int {
-    let body = || {
-        // SAFETY: as promised.
-        let Some(kernel) = (unsafe { kernel.cast::<pc_kernel>().as_mut() }) else { return -1 };
-        let (dim, len) = (kernel.dim, len(kernel.dim));
-        if apart((y, dim, "y"), (target, len, "the result")).is_err() {
-            return -1;
-        }
-        // SAFETY: as promised; they share no memory.
-        let slices = unsafe { (numbers(y, dim, dim, "y"), room(target, len, len, "the result")) };
-        let (Ok(y), Ok(target)) = slices else { return -1 };
-        match function(&mut kernel.motion, y, target) {
-            Ok(()) => 0,
-            Err(failure) => {
-                if failure.is_recoverable() {
-                    1
-                } else {
-                    -1
-                }
-            }
-        }
-    };
+    // SAFETY: as promised.
+    let Some(kernel) = (unsafe { kernel.cast::<pc_kernel>().as_mut() }) else { return -1 };
+    let (dim, len) = (kernel.dim, len(kernel.dim));
+    if !are_usable((y, dim), (target, len)) {
+        return -1;
+    }
+    // SAFETY: not null, aligned, and as promised; they share no memory.
+    let (y, target) = unsafe { (slice::from_raw_parts(y, dim), fresh(target, len)) };
     // Unwind safe: after a panic the room to compute in holds other numbers, which are written before they are read.
-    catch_unwind(AssertUnwindSafe(body)).unwrap_or(-1)
+    match catch_unwind(AssertUnwindSafe(|| function(&mut kernel.motion, y, target))) {
+        Ok(Ok(())) => 0,
+        Ok(Err(failure)) if failure.is_recoverable() => 1,
+        _ => -1,
+    }
 }
 
 /// The dimension of a kernel's state. 0 of NULL.

@@ -1,6 +1,7 @@
 //! Models: a text, or what has been said call by call.
 
-use std::ffi::{c_char, c_int};
+use std::ffi::{CString, c_char, c_int};
+use std::sync::OnceLock;
 
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
@@ -10,7 +11,7 @@ use crate::error::{Fault, pc_error};
 use crate::held::Held;
 use crate::pointer::{bytes, clear, finite, handle, text, write};
 use crate::status::pc_status;
-use crate::strings::give;
+use crate::strings::{c_string, give, nth};
 
 /// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
 pub struct pc_model {
@@ -140,10 +141,11 @@ pub extern "C" fn pc_builtin_count() -> usize {
     BUILTIN.len()
 }
 
-/// The name of such a model, to be freed with pc_string_free; NULL beyond the last. `index` from 0.
+/// The name of such a model, from 0; NULL beyond the last. Static.
 #[unsafe(no_mangle)]
-pub extern "C" fn pc_builtin_name(index: usize) -> *mut c_char {
-    BUILTIN.get(index).map_or(std::ptr::null_mut(), |builtin| give(builtin.name))
+pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
+    static NAMES: OnceLock<Vec<CString>> = OnceLock::new();
+    nth(NAMES.get_or_init(|| BUILTIN.iter().map(|builtin| c_string(builtin.name)).collect()), index)
 }
 
 /// A copy that can be changed by itself.
@@ -170,7 +172,7 @@ pub unsafe extern "C" fn pc_model_clone(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { model.as_ref() }.is_some_and(|model| model.contents.is_in_use()) {
+    if unsafe { model.as_ref() }.is_none_or(|model| model.contents.close()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(model) };
     }
@@ -261,7 +263,9 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
 }
 
 /// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
-/// wrote; lines and columns of errors are counted in it.
+/// wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
+/// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
+/// pc_model_add_external_force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

@@ -8,7 +8,8 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
 ///
 /// In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
-/// Observables with accelerations in them are not finite where external forces cannot be computed.
+/// An observable is not finite where the model has no value for it; one with accelerations in it, also where external
+/// forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *mut pc_system,
@@ -31,6 +32,38 @@ pub unsafe extern "C" fn pc_system_observe(
     unsafe { inside(system, error, observe) }
 }
 
+/// That there are values.
+fn all_finite(what: &'static str, values: &[f64]) -> Result<(), Fault> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(Fault::NoValue { what, value }),
+        None => Ok(()),
+    }
+}
+
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should stay constant, which
+/// are the first of the observables.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_integrals(
+    system: *mut pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let observe = |inventory: &Inventory, inner: &mut Inner| {
+        let (state, expected) = (State { y, length: y_length }, inventory.conserved);
+        let target = Target { data: values, length, expected, what: "values" };
+        // SAFETY: as the preamble demands.
+        let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
+        values.copy_from_slice(&inner.field.observe_unforced(t, y)[..expected]);
+        all_finite("an integral", values)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, observe) }
+}
+
 /// Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_energy(
@@ -47,7 +80,7 @@ pub unsafe extern "C" fn pc_system_energy(
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         // The last of those that should stay constant.
         energy[0] = inner.field.observe_unforced(t, y)[inventory.conserved - 1];
-        Ok(())
+        all_finite("the energy", energy)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, observe) }
@@ -79,7 +112,7 @@ pub unsafe extern "C" fn pc_system_reactions(
         for (value, &place) in values.iter_mut().zip(reactions) {
             *value = all[place];
         }
-        Ok(())
+        all_finite("a reaction", values)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, observe) }
@@ -102,7 +135,7 @@ pub unsafe extern "C" fn pc_system_constraint_residuals(
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         values.copy_from_slice(&inner.field.constraint_residuals(t, y));
-        Ok(())
+        all_finite("a constraint", values)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, observe) }

@@ -17,7 +17,8 @@ use crate::user::{User, pc_destroy};
 
 /// Is given each event where it occurs, by its number among the events of the solver, with the states before and
 /// after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
-/// that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED. Otherwise as pc_observer.
+/// that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED, or with PC_EVENT where a
+/// terminal event does so too. Otherwise as pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
         event: usize,
@@ -40,7 +41,8 @@ pub type pc_event_function = Option<
 pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// Has an observer told of each event from now on, instead of the one before; of none if it is NULL. It is called
+/// Has an observer told of each event from now on, instead of the one before; of none if it is NULL. `user` has to live
+/// until there is another one, or the solver is freed. It is called
 /// within the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
@@ -111,7 +113,7 @@ pub unsafe extern "C" fn pc_solver_event_name(solver: *const pc_solver, index: u
     unsafe { solver.as_ref() }.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
 }
 
-/// Writes how often an event has occurred.
+/// Writes how often an event has occurred since the solver was made.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_event_occurrences(
     solver: *const pc_solver,

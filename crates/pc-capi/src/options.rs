@@ -6,7 +6,7 @@ use ::pc_model::Variables;
 use pc_solve::{Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
 use crate::error::Fault;
-use crate::pointer::numbers;
+use crate::pointer::{aligned, numbers};
 
 /// Which equations of motion; values of pc_system_options.form.
 #[repr(C)]
@@ -26,11 +26,13 @@ pub struct pc_system_options {
     pub size: usize,
     /// A pc_form; PC_POINCARE by default.
     pub form: c_int,
+    /// 0: room for a choice to come.
+    pub reserved: c_int,
 }
 
 impl Default for pc_system_options {
     fn default() -> Self {
-        pc_system_options { size: size_of::<Self>(), form: pc_form::PC_POINCARE as c_int }
+        pc_system_options { size: size_of::<Self>(), form: pc_form::PC_POINCARE as c_int, reserved: 0 }
     }
 }
 
@@ -147,15 +149,19 @@ pub unsafe extern "C" fn pc_solver_options_init(options: *mut pc_solver_options,
     unsafe { give(options, pc_solver_options { size, ..Default::default() }, size) };
 }
 
-/// Writes as much of `value` as there is room for.
+/// Writes as much of `value` as there is room for, and zeros where there is more.
 ///
 /// # Safety
 /// `place` is null, or has room for `size` bytes and is aligned as a `T`.
 pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
     if !place.is_null() {
-        let value = std::ptr::from_ref(&value).cast::<u8>();
+        let (value, place) = (std::ptr::from_ref(&value).cast::<u8>(), place.cast::<u8>());
+        let known = size.min(size_of::<T>());
         // SAFETY: no more bytes than either has; plain data.
-        unsafe { std::ptr::copy_nonoverlapping(value, place.cast::<u8>(), size.min(size_of::<T>())) };
+        unsafe {
+            std::ptr::copy_nonoverlapping(value, place, known);
+            std::ptr::write_bytes(place.add(known), 0, size - known);
+        }
     }
 }
 
@@ -169,10 +175,11 @@ pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str
     if place.is_null() {
         return Ok(options);
     }
-    // SAFETY: not null, and begins with its size.
+    aligned(place, what)?;
+    // SAFETY: not null, aligned, and begins with its size.
     let found = unsafe { place.cast::<usize>().read() };
     let (least, most) = (size_of::<usize>(), size_of::<T>());
-    if !(least..=most).contains(&found) {
+    if !(least..=most).contains(&found) || found % align_of::<T>() != 0 {
         return Err(Fault::StructSize { what, found, least, most });
     }
     let target = std::ptr::from_mut(&mut options).cast::<u8>();
@@ -207,7 +214,7 @@ impl pc_solver_options {
             value => return Err(choice("pc_linear_solver", value)),
         }
         options = options.relative_tolerance(self.relative_tolerance).max_steps(self.max_steps);
-        options = if self.absolute_tolerances.is_null() {
+        options = if self.absolute_tolerances.is_null() && self.absolute_tolerances_length == 0 {
             options.absolute_tolerance(self.absolute_tolerance)
         } else {
             let what = "absolute_tolerances";

@@ -24,11 +24,11 @@ pub(crate) unsafe fn numbers<'a>(
     expected: usize,
     what: &'static str,
 ) -> Result<&'a [f64], Fault> {
-    check(data.is_null(), found, expected, what)?;
+    check(data, found, expected, what)?;
     if expected == 0 {
         return Ok(&[]);
     }
-    // SAFETY: not null, and `found` = `expected` numbers as promised.
+    // SAFETY: not null, aligned, and `found` = `expected` numbers as promised.
     Ok(unsafe { slice::from_raw_parts(data, expected) })
 }
 
@@ -42,26 +42,53 @@ pub(crate) unsafe fn room<'a>(
     expected: usize,
     what: &'static str,
 ) -> Result<&'a mut [f64], Fault> {
-    check(data.is_null(), found, expected, what)?;
+    check(data, found, expected, what)?;
     if expected == 0 {
         return Ok(&mut []);
     }
-    for i in 0..expected {
-        // SAFETY: within the room promised, which may be uninitialised so far.
-        unsafe { data.add(i).write(f64::NAN) };
-    }
-    // SAFETY: not null, initialised just now, and nobody else's as promised.
-    Ok(unsafe { slice::from_raw_parts_mut(data, expected) })
+    // SAFETY: not null, aligned, and `found` = `expected` numbers as promised.
+    Ok(unsafe { fresh(data, expected) })
 }
 
-fn check(is_null: bool, found: usize, expected: usize, what: &'static str) -> Result<(), Fault> {
+/// `len` numbers at `data`, all set to NaN.
+///
+/// # Safety
+/// Room for `len` numbers that nobody else uses during the call; it may be uninitialised so far.
+#[inline]
+pub(crate) unsafe fn fresh<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
+    for i in 0..len {
+        // SAFETY: within the room promised.
+        unsafe { data.add(i).write(f64::NAN) };
+    }
+    // SAFETY: initialised just now, and nobody else's as promised.
+    unsafe { slice::from_raw_parts_mut(data, len) }
+}
+
+fn check(data: *const f64, found: usize, expected: usize, what: &'static str) -> Result<(), Fault> {
     if found != expected {
         return Err(Fault::Length { what, found, expected });
     }
-    if is_null && expected > 0 {
+    possible(data, expected, what)
+}
+
+/// Whether there can be so many at that place at all.
+fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), Fault> {
+    if len == 0 {
+        return Ok(());
+    }
+    if data.is_null() {
         return Err(Fault::Null { what });
     }
-    Ok(())
+    let most = isize::MAX as usize / size_of::<T>();
+    if len > most {
+        return Err(Fault::TooLong { what, found: len, most });
+    }
+    aligned(data, what)
+}
+
+/// Refuses what does not stand where its type does.
+pub(crate) fn aligned<T>(data: *const T, what: &'static str) -> Result<(), Fault> {
+    if data.is_aligned() { Ok(()) } else { Err(Fault::Misaligned { what, alignment: align_of::<T>() }) }
 }
 
 /// Refuses arrays of input and output that share memory, before either is made a slice.
@@ -69,12 +96,29 @@ pub(crate) fn apart(
     first: (*const f64, usize, &'static str),
     second: (*const f64, usize, &'static str),
 ) -> Result<(), Fault> {
-    let range = |(data, len, _): (*const f64, usize, &'static str)| {
+    if are_apart((first.0, first.1), (second.0, second.1)) {
+        Ok(())
+    } else {
+        Err(Fault::Overlap { first: first.2, second: second.2 })
+    }
+}
+
+/// Whether there can be two arrays of numbers at these places, which share no memory.
+#[inline]
+pub(crate) fn are_usable(first: (*const f64, usize), second: (*const f64, usize)) -> bool {
+    let there = |data: *const f64| !data.is_null() && data.is_aligned();
+    there(first.0) && there(second.0) && are_apart(first, second)
+}
+
+/// Whether arrays share no memory.
+#[inline]
+fn are_apart(first: (*const f64, usize), second: (*const f64, usize)) -> bool {
+    let range = |(data, len): (*const f64, usize)| {
         let start = data as usize;
-        (start, start.saturating_add(len.saturating_mul(size_of::<f64>())))
+        (start, start.wrapping_add(len.wrapping_mul(size_of::<f64>())))
     };
     let ((a, a_end), (b, b_end)) = (range(first), range(second));
-    if a < b_end && b < a_end { Err(Fault::Overlap { first: first.2, second: second.2 }) } else { Ok(()) }
+    a_end <= b || b_end <= a
 }
 
 /// The text of a C string.
@@ -99,12 +143,12 @@ pub(crate) unsafe fn bytes<'a>(
     len: usize,
     what: &'static str,
 ) -> Result<&'a [u8], Fault> {
-    match (data.is_null(), len) {
-        (_, 0) => Ok(&[]),
-        (true, _) => Err(Fault::Null { what }),
-        // SAFETY: not null, and then as promised.
-        (false, _) => Ok(unsafe { slice::from_raw_parts(data.cast(), len) }),
+    possible(data, len, what)?;
+    if len == 0 {
+        return Ok(&[]);
     }
+    // SAFETY: not null, and then as promised.
+    Ok(unsafe { slice::from_raw_parts(data.cast(), len) })
 }
 
 /// Writes a result.
@@ -143,11 +187,9 @@ pub(crate) unsafe fn texts<'a>(
     length: usize,
     what: &'static str,
 ) -> Result<Vec<&'a str>, Fault> {
+    possible(list, length, what)?;
     if length == 0 {
         return Ok(Vec::new());
-    }
-    if list.is_null() {
-        return Err(Fault::Null { what });
     }
     // SAFETY: not null, and then as promised.
     let list = unsafe { slice::from_raw_parts(list, length) };

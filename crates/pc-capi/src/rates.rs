@@ -1,9 +1,11 @@
 //! f(t, y) and its derivatives.
 
+use std::slice;
+
 use pc_mech::VectorField;
 
 use crate::error::{Fault, pc_error};
-use crate::pointer::{apart, finite, numbers, room, write};
+use crate::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::status::pc_status;
 use crate::system::{Inner, Inventory, inside, pc_system};
 
@@ -27,11 +29,28 @@ pub(crate) struct Target {
 ///
 /// # Safety
 /// Both are null or as long as they say.
+#[inline]
 pub(crate) unsafe fn slices<'a>(
     state: State,
     dim: usize,
     target: Target,
 ) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+    let Target { data, length, expected, .. } = target;
+    if state.length == dim && length == expected && are_usable((state.y, dim), (data, expected)) {
+        // SAFETY: not null, aligned, and as promised; they share no memory.
+        unsafe { Ok((slice::from_raw_parts(state.y, dim), fresh(data, expected))) }
+    } else {
+        // SAFETY: as promised.
+        unsafe { misfits(state, dim, target) }
+    }
+}
+
+/// The same where something does not fit, or one of them has no numbers.
+///
+/// # Safety
+/// As for [`slices`].
+#[cold]
+unsafe fn misfits<'a>(state: State, dim: usize, target: Target) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
     let Target { data, length, expected, what } = target;
     if state.length == dim && length == expected {
         apart((state.y, dim, "y"), (data, expected, what))?;

@@ -40,7 +40,7 @@ pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
 /// An integration of the system from the state y at the time t, with the parameters as they are now; from the
-/// start of the model if y is NULL, and then t is not looked at. `options` may be NULL. States stay on the
+/// start of the model if y is NULL, of length 0, and then t is not looked at. `options` may be NULL. States stay on the
 /// constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
 /// values at this start. The events of the model are followed: where one occurs, the state is reset as the model
 /// says, and a terminal one ends the call with PC_EVENT.
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn pc_solver_new(
         let dim = inventory.dim();
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(dim) }?;
-        let (t, y) = if y.is_null() {
+        let (t, y) = if y.is_null() && y_length == 0 {
             inventory.start()
         } else {
             // SAFETY: `y_length` numbers, as the preamble demands.
@@ -87,7 +87,7 @@ pub unsafe extern "C" fn pc_solver_new(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { solver.as_ref() }.is_some_and(|solver| solver.inner.is_in_use()) {
+    if unsafe { solver.as_ref() }.is_none_or(|solver| solver.inner.close()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(solver) };
     }

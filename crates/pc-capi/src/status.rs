@@ -2,39 +2,44 @@
 
 use std::ffi::{c_char, c_int};
 
-/// How a call ended. New ones may be added, so treat an unknown one as an error.
+/// How a call ended. New ones may be added, so treat an unknown one as an error; PC_STATUS_LAST, which is never returned,
+/// makes room for them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum pc_status {
     /// All went well.
     PC_OK = 0,
-    /// The call is wrong: a null pointer, a wrong length, text that is not UTF-8, a number that is not finite,
+    /// The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that is not finite,
     /// an unknown choice.
     PC_INVALID_ARGUMENT = 1,
-    /// The text of the model is wrong; the error has the place.
+    /// The text of the model is wrong, or not UTF-8; the error has the place.
     PC_INVALID_MODEL = 2,
     /// The model contradicts itself; the error has the place.
     PC_INCONSISTENT_MODEL = 3,
     /// What is asked for cannot be done, or not of this system.
     PC_UNSUPPORTED = 4,
-    /// There is nothing of this name.
+    /// There is nothing of this name, such as a file.
     PC_NOT_FOUND = 5,
-    /// A file could not be read.
+    /// A file that there is could not be read.
     PC_IO = 6,
     /// The equations cannot be evaluated at this time and state.
     PC_EVALUATION = 7,
-    /// The integration began and could not go on.
+    /// The integration could not begin or go on. Events that occur ever more closely, as a ball's that comes to rest, are
+    /// such an end.
     PC_INTEGRATION = 8,
     /// An observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,
     /// The handle is in use: by another thread, or by the call that called the observer or the force function.
     PC_BUSY = 10,
-    /// A fault of the library or no memory. The handle can only be freed.
+    /// A fault of the library, after which the handle can only be freed; or threads or memory for a solver are not to be
+    /// had, and the handle is as it was.
     PC_INTERNAL = 11,
     /// A terminal event ended the integration. This is no failure, and there is no pc_error.
     PC_EVENT = 12,
     /// The bytes are no checkpoint, or one of which a part is missing or changed.
     PC_INVALID_CHECKPOINT = 13,
+    /// None.
+    PC_STATUS_LAST = 0x7fff_ffff,
 }
 
 /// The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.

@@ -20,8 +20,9 @@ use crate::strings::{c_string, c_strings, nth};
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {
-    pub(crate) inventory: Arc<Inventory>,
+    /// Dropped first: what functions of the program destroy may look at names.
     pub(crate) inner: Held<Inner>,
+    pub(crate) inventory: Arc<Inventory>,
 }
 
 /// What never changes.
@@ -81,7 +82,8 @@ impl pc_system {
         let observables = motion.observable_names();
         let constraints = &model.document().constraints;
         let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
-        let places = motion.conserved_len()..observables.len();
+        // After the outputs of the model, of which one may be called as they are.
+        let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
         let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
         let forces = model.external_forces();
         let pattern = match forces.as_slice() {
@@ -160,11 +162,11 @@ pub unsafe extern "C" fn pc_system_clone(
     unsafe { entry(error, clone) }
 }
 
-/// Frees a system. Null is allowed.
+/// Frees a system. Null is allowed. In a function that is called by a call of this system it does nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     // SAFETY: null or a live handle, as the preamble demands.
-    if !unsafe { system.as_ref() }.is_some_and(|system| system.inner.is_in_use()) {
+    if unsafe { system.as_ref() }.is_none_or(|system| system.inner.close()) {
         // SAFETY: null or a handle of ours that nobody uses any more.
         unsafe { free(system) };
     }

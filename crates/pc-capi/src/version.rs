@@ -8,7 +8,8 @@ pub const PC_VERSION_MAJOR: u32 = 0;
 pub const PC_VERSION_MINOR: u32 = 1;
 /// Third number of the version of the header.
 pub const PC_VERSION_PATCH: u32 = 0;
-/// Version of the binary interface, the number in the name libpc.so.N. Programs run with any library of the same.
+/// Version of the binary interface, the number in the name libpc.so.N. A program runs with
+/// any library of the same number that is not older than its header.
 pub const PC_ABI_VERSION: u32 = 0;
 
 /// The version of the library, such as "0.1.0". Static.
@@ -46,7 +47,7 @@ pub const PREAMBLE: &str = "\
  * lives, and a system while its solvers and kernels do.
  *
  * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
- * and an array that is written shares no memory with another one; this is checked. Matrices are dense and column-major,
+ * and an array that is written shares no memory with another one; this is checked. NULL goes with the length 0. Matrices are dense and column-major,
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
@@ -54,5 +55,6 @@ pub const PREAMBLE: &str = "\
  * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
  * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
  *
- * Not for signal handlers. A fault of the library is PC_INTERNAL and never ends your program.
+ * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program; memory that is exhausted does, and
+ * a stack: threads that make models and systems need some 256 KiB, more for long expressions.
  */";

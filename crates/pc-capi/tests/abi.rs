@@ -41,7 +41,7 @@ macro_rules! places {
 #[test]
 fn members_stand_where_the_interface_says() {
     let places = places! {
-        pc_system_options { size, form }
+        pc_system_options { size, form, reserved }
         pc_solver_options {
             size, method, iteration, linear_solver, max_order, relative_tolerance, absolute_tolerance, absolute_tolerances,
             absolute_tolerances_length, max_steps, initial_step, min_step, max_step, stop_time,

@@ -34,8 +34,13 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
         assert_eq!((member.number, member.dim), (watch.seen.len(), pc_system_dim(watch.system)));
         let message =
             (!member.message.is_null()).then(|| CStr::from_ptr(member.message).to_str().unwrap().into());
-        let times = std::slice::from_raw_parts(member.times, member.rows).to_vec();
-        let states = std::slice::from_raw_parts(member.states, member.rows * member.dim).to_vec();
+        assert_eq!((member.times.is_null(), member.states.is_null()), (member.rows == 0, member.rows == 0));
+        let numbers = |data: *const f64, len| match data.is_null() {
+            true => Vec::new(),
+            false => std::slice::from_raw_parts(data, len).to_vec(),
+        };
+        let times = numbers(member.times, member.rows);
+        let states = numbers(member.states, member.rows * member.dim);
         watch.seen.push(Seen { status: member.status, message, times, states });
         // The system is not in use.
         let mut values = vec![0.0; pc_system_parameter_count(watch.system)];
@@ -100,9 +105,11 @@ impl Case<'_> {
                 call(|error| pc_system_set_parameters(system.0, values, count, error)).unwrap();
             }
             let dim = system.dim();
-            let y = self.states.as_ref().map_or(ptr::null(), |all| all[member * dim..].as_ptr());
+            let start = self.states.as_ref().map(|all| &all[member * dim..(member + 1) * dim]);
+            let (y, length) = start.map_or((ptr::null(), 0), |y| (y.as_ptr(), dim));
             let options = &raw const self.options;
-            call(|error| pc_solver_new(system.0, options, self.t, y, dim, &raw mut solver, error)).unwrap();
+            call(|error| pc_solver_new(system.0, options, self.t, y, length, &raw mut solver, error))
+                .unwrap();
             let mut seen = Seen { status: PC_OK, message: None, times: vec![], states: vec![] };
             let (data, count, user) = (self.times.as_ptr(), self.times.len(), (&raw mut seen).cast());
             match call(|error| pc_solver_run(solver, data, count, Some(output), user, error)) {

@@ -225,7 +225,7 @@ fn options_are_checked() {
     let (model, of) = (Model::named("euler-top"), System::of("euler-top"));
     let mut system = ptr::null_mut();
     for (size, form) in [(0, 0), (17 + size_of::<pc_system_options>(), 0), (16, 2), (16, -1)] {
-        let options = pc_system_options { size, form };
+        let options = pc_system_options { size, form, reserved: 0 };
         // SAFETY: live objects.
         let refused =
             call(|error| unsafe { pc_system_new(model.0, &raw const options, &raw mut system, error) });

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::ExprError;
-use crate::kernel::{Interpreter, Kernel, compile};
+use crate::kernel::{Entry, Interpreter, Kernel, compile};
 use crate::program::Program;
 
 /// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
@@ -52,12 +52,22 @@ impl Evaluator {
     /// Computes the outputs at (t, state, parameters), as [`Kernel::eval`] does.
     #[inline]
     pub fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
+        self.kernel().eval(t, state, parameters, outputs);
+    }
+
+    #[inline]
+    fn kernel(&mut self) -> &mut dyn Kernel {
         let (program, backend) = (&self.program, self.backend);
         let kernel = self.kernel.get_or_insert_with(|| match backend {
             Backend::Fastest => compile(Arc::clone(program)),
             Backend::Interpreter => Box::new(Interpreter::new(Arc::clone(program))),
         });
-        kernel.eval(t, state, parameters, outputs);
+        &mut **kernel
+    }
+
+    /// The machine code that runs, if any does: [`Kernel::machine_code`].
+    pub fn machine_code(&mut self) -> Option<(Entry, usize)> {
+        self.kernel().machine_code()
     }
 
     /// The innermost expression whose value is not finite at (t, state, parameters), if there is one.

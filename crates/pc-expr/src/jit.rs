@@ -20,27 +20,13 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::kernel::Kernel;
+use crate::kernel::{Entry, Kernel};
 use crate::program::Program;
 use host::{Code, Host};
 use plan::Plan;
 
 /// More registers than this are not compiled: offsets in memory are 32-bit.
 const MOST_REGISTERS: usize = i32::MAX as usize / 16;
-
-/// What compiled code is called through: t, the state, the parameters, where the outputs go, scratch memory.
-///
-/// The pointers lead to as many numbers as [`Jit`] says, those of scratch to [`Jit::scratch_len`]; a pointer to no
-/// numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
-/// the last input is read. The code keeps no state, so any number of threads may run it at once, each with its own
-/// outputs and scratch. On x86-64, foreign vector code that returned without `vzeroupper` slows it down many times.
-pub type Entry = unsafe extern "C" fn(
-    t: f64,
-    state: *const f64,
-    parameters: *const f64,
-    outputs: *mut f64,
-    scratch: *mut f64,
-);
 
 /// Choices in compiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,5 +181,9 @@ impl Kernel for Jit {
 
     fn fork(&self) -> Box<dyn Kernel> {
         Box::new(self.clone())
+    }
+
+    fn machine_code(&self) -> Option<(Entry, usize)> {
+        Some((self.entry(), self.scratch_len()))
     }
 }

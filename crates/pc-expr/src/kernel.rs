@@ -8,6 +8,20 @@ use crate::error::ExprError;
 use crate::program::{Instruction, Program, Register};
 use tape::Tape;
 
+/// What compiled code is called through: t, the state, the parameters, where the outputs go, scratch memory.
+///
+/// The pointers lead to as many numbers as the [`Program`] says, those of scratch to as many as are asked for; a pointer to
+/// no numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
+/// the last input is read. The code keeps no state, so any number of threads may run it at once, each with its own
+/// outputs and scratch. On x86-64, foreign vector code that returned without `vzeroupper` slows it down many times.
+pub type Entry = unsafe extern "C" fn(
+    t: f64,
+    state: *const f64,
+    parameters: *const f64,
+    outputs: *mut f64,
+    scratch: *mut f64,
+);
+
 /// Something that computes the outputs of a [`Program`]; all kernels of a program give the same values.
 pub trait Kernel: Send {
     /// Computes the outputs at (t, state, parameters).
@@ -17,6 +31,12 @@ pub trait Kernel: Send {
 
     /// An independent kernel of the same program, for another thread.
     fn fork(&self) -> Box<dyn Kernel>;
+
+    /// The machine code, if there is any, for callers that manage memory themselves, and how many numbers of scratch it
+    /// needs. Valid as long as this kernel or a fork of it.
+    fn machine_code(&self) -> Option<(Entry, usize)> {
+        None
+    }
 }
 
 /// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.

@@ -66,8 +66,8 @@ pub use function::Function;
 pub use fuse::Cost;
 pub use graph::Graph;
 #[cfg(feature = "jit")]
-pub use jit::{Entry, Jit, JitError, JitOptions};
-pub use kernel::{Interpreter, Kernel, compile};
+pub use jit::{Jit, JitError, JitOptions};
+pub use kernel::{Entry, Interpreter, Kernel, compile};
 pub use number::Number;
 pub use pattern::Pattern;
 pub use print::Style;

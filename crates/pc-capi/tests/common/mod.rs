@@ -104,7 +104,7 @@ impl Model {
 
     pub(crate) fn system(&self, form: pc_form) -> Result<System, Refusal> {
         let mut system = ptr::null_mut();
-        let mut options = pc_system_options { size: 0, form: 0 };
+        let mut options = pc_system_options::default();
         // SAFETY: all pointers are of live objects.
         unsafe {
             pc_system_options_init(&raw mut options, size_of::<pc_system_options>());

@@ -1,6 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Entry, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::columns::Layout;
 use crate::compiled::elimination;
@@ -203,6 +203,18 @@ impl Motion {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
             Form::Staged(staged) => staged.cost().clone(),
+        }
+    }
+
+    /// The machine code of f, for callers that manage memory themselves, and how many numbers of scratch it needs; none
+    /// where f is more than one program of (t, y, p), or M is not regular with these parameters.
+    ///
+    /// It checks nothing: where a rate that it writes is not finite, [`rhs`](VectorField::rhs) fails. Valid as long as
+    /// this motion or a clone of it.
+    pub fn machine_code(&mut self) -> Option<(Entry, usize)> {
+        match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.machine_code(self.names.len(), &self.parameters),
+            Form::Staged(_) => None,
         }
     }
 

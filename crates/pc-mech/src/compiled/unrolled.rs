@@ -1,6 +1,6 @@
 //! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
 
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
+use pc_expr::{Backend, Cost, Entry, Evaluator, Expr, ExprError, Pattern, Program};
 
 use crate::compiled::columns::{Columns, Layout, derivative};
 use crate::compiled::fault::{Fault, blame, check_finite};
@@ -89,6 +89,12 @@ impl Unrolled {
             finite &= rate.is_finite();
         }
         if finite { Ok(()) } else { Err(blame(&self.rates, (t, y, p))) }
+    }
+
+    /// The machine code of ẏ where it writes nothing else, and M is regular with these parameters.
+    pub(crate) fn machine_code(&mut self, dim: usize, p: &[f64]) -> Option<(Entry, usize)> {
+        let alone = self.outputs.len() == dim && self.pivots.check(&vec![0.0; dim], p, &[]).is_ok();
+        if alone { self.rates.machine_code() } else { None }
     }
 
     pub(crate) fn jacobian(

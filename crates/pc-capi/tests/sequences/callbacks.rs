@@ -1,0 +1,126 @@
+//! Functions of the program, which answer, fail or write nothing as they are told.
+
+use std::ffi::{c_int, c_void};
+use std::slice;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use pc::{pc_member, pc_status};
+
+/// What a function does; it is freed with what calls it.
+pub(crate) struct Own {
+    pub(crate) calls: AtomicUsize,
+    /// After how many calls it fails with `code`, or, if that is 0, writes nothing.
+    pub(crate) good: usize,
+    pub(crate) code: c_int,
+}
+
+impl Own {
+    pub(crate) fn boxed(good: usize, code: c_int) -> *mut c_void {
+        Box::into_raw(Box::new(Own { calls: AtomicUsize::new(0), good, code })).cast()
+    }
+
+    fn succeeds(&self) -> bool {
+        self.calls.fetch_add(1, Ordering::Relaxed) < self.good
+    }
+}
+
+pub(crate) extern "C" fn destroy(user: *mut c_void) {
+    // SAFETY: made by `Own::boxed`, and destroyed once.
+    drop(unsafe { Box::from_raw(user.cast::<Own>()) });
+}
+
+pub(crate) extern "C" fn value(
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    value: *mut f64,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: made by `Own::boxed`; the state is as long as said.
+    unsafe {
+        let own = &*user.cast::<Own>();
+        if own.succeeds() {
+            value.write(slice::from_raw_parts(y, y_length).iter().sum::<f64>() + (5.0 * t).sin());
+            return 0;
+        }
+        own.code
+    }
+}
+
+pub(crate) extern "C" fn reset(_t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int {
+    // SAFETY: made by `Own::boxed`; the state is as long as said.
+    unsafe {
+        slice::from_raw_parts_mut(y, y_length).iter_mut().for_each(|y| *y *= -0.9);
+        (*user.cast::<Own>()).code / 2
+    }
+}
+
+/// q_i = cos t − y_i, and its derivatives.
+pub(crate) extern "C" fn force(
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    q: *mut f64,
+    q_length: usize,
+    user: *mut c_void,
+) -> c_int {
+    assert!(q_length > 0 && q_length <= y_length);
+    // SAFETY: made by `Own::boxed`; both arrays are as long as said.
+    unsafe {
+        let own = &*user.cast::<Own>();
+        if !own.succeeds() {
+            return own.code;
+        }
+        for i in 0..q_length {
+            q.add(i).write(t.cos() - *y.add(i));
+        }
+    }
+    0
+}
+
+pub(crate) extern "C" fn force_jacobian(
+    _t: f64,
+    _y: *const f64,
+    y_length: usize,
+    dq: *mut f64,
+    dq_length: usize,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: made by `Own::boxed`; the array is as long as said.
+    unsafe {
+        let own = &*user.cast::<Own>();
+        if !own.succeeds() {
+            return own.code;
+        }
+        let forces = dq_length / y_length;
+        for place in 0..dq_length {
+            dq.add(place).write(if place % forces == place / forces { -1.0 } else { 0.0 });
+        }
+    }
+    0
+}
+
+pub(crate) extern "C" fn observe(_t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int {
+    assert!(!y.is_null() && y_length > 0);
+    c_int::from(!user.is_null())
+}
+
+pub(crate) extern "C" fn observe_event(
+    event: usize,
+    _t: f64,
+    before: *const f64,
+    after: *const f64,
+    y_length: usize,
+    user: *mut c_void,
+) -> c_int {
+    assert!(!before.is_null() && !after.is_null() && y_length > 0);
+    c_int::from(!user.is_null() && event == 1)
+}
+
+pub(crate) extern "C" fn observe_member(member: *const pc_member, user: *mut c_void) -> c_int {
+    // SAFETY: as documented.
+    let member = unsafe { &*member };
+    assert_eq!(member.message.is_null(), matches!(member.status, pc_status::PC_OK | pc_status::PC_EVENT));
+    assert_ne!(member.status, pc_status::PC_INTERNAL);
+    c_int::from(!user.is_null() && member.number == 1)
+}

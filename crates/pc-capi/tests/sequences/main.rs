@@ -1,0 +1,91 @@
+//! Calls in any order, with any text: no crash, every failure with its message, nothing left behind.
+//!
+//! `PC_SEQUENCES=1000000 cargo test --release -p pc-capi --test sequences` plays more of them than the few hundred of
+//! every day, on all cores.
+
+#![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
+
+mod callbacks;
+mod calls;
+#[path = "../common/mod.rs"]
+mod common;
+mod counting;
+mod handles;
+mod models;
+mod solvers;
+mod systems;
+
+use std::cell::Cell;
+use std::thread;
+
+use calls::{Call, calls};
+use handles::Handles;
+use proptest::prelude::any;
+use proptest::prop_assert;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// Makes the calls and frees what is left; how many succeeded, and what of their allocations was not freed.
+fn play(calls: &[Call], quiet: bool) -> (usize, isize) {
+    let before = counting::live();
+    let mut handles = Handles::none(quiet);
+    let succeeded = calls.iter().filter(|call| handles.make(call).is_ok()).count();
+    drop(handles);
+    (succeeded, counting::live() - before)
+}
+
+/// Plays so many sequences; how many of their calls succeeded.
+fn play_all(cases: u32, seed: u8) -> usize {
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]);
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let succeeded = Cell::new(0);
+    let outcome = TestRunner::new_with_rng(config, rng).run(&(calls(), any::<bool>()), |(calls, quiet)| {
+        let (count, mut left) = play(&calls, quiet);
+        // What the threads of an ensemble allocate and free is not counted here.
+        let threads = calls.iter().any(|call| matches!(call, Call::Ensemble { .. }));
+        if left != 0 && !threads {
+            // What is made once, such as the table of the host's functions, is not made again.
+            left = play(&calls, quiet).1;
+        }
+        prop_assert!(threads || left == 0, "{} allocations left behind", left);
+        succeeded.set(succeeded.get() + count);
+        Ok(())
+    });
+    outcome.unwrap();
+    succeeded.get()
+}
+
+#[test]
+fn any_sequence_of_calls_is_survived_and_leaves_nothing_behind() {
+    let cases: u32 = std::env::var("PC_SEQUENCES").map_or(300, |number| number.parse().unwrap());
+    let workers =
+        if cases < 10_000 { 1 } else { thread::available_parallelism().map_or(1, |n| n.get() as u32) };
+    let share = |worker: u32| cases / workers + u32::from(worker < cases % workers);
+    let succeeded: usize = thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers)
+            .map(|worker| scope.spawn(move || play_all(share(worker), 7 + worker as u8)))
+            .collect();
+        workers.into_iter().map(|worker| worker.join().unwrap()).sum()
+    });
+    println!("{cases} sequences, {succeeded} calls succeeded");
+    assert!(3 * succeeded > 10 * cases as usize, "only {succeeded} calls did something");
+}
+
+#[test]
+fn every_function_of_the_header_is_among_the_calls() {
+    let sources = [
+        include_str!("models.rs"),
+        include_str!("systems.rs"),
+        include_str!("solvers.rs"),
+        include_str!("handles.rs"),
+    ]
+    .concat();
+    let words: Vec<&str> = sources.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+    let interface = include_str!("../../abi/interface.txt");
+    let functions = interface
+        .lines()
+        .filter(|line| !line.starts_with("callback"))
+        .filter_map(|line| line.split_once('(')?.0.rsplit([' ', '*']).next());
+    let (called, missing): (Vec<&str>, Vec<&str>) = functions.partition(|name| words.contains(name));
+    assert!(called.len() > 100);
+    assert_eq!(missing, [""; 0]);
+}

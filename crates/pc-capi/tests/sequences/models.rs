@@ -1,0 +1,150 @@
+//! Calls of models.
+
+use std::ffi::{CString, c_char, c_int};
+use std::ptr;
+
+use pc::*;
+
+use crate::calls::ModelCall;
+use crate::common::c;
+use crate::handles::{Handles, Outcome, free_text};
+
+impl Handles {
+    /// The outcome of a call that makes a model, which takes the place of the one before.
+    fn made(&mut self, make: impl FnOnce(*mut *mut pc_model, *mut *mut pc_error) -> pc_status) -> Outcome {
+        let mut made = ptr::dangling_mut();
+        let outcome = self.call(|error| make(&raw mut made, error));
+        assert_eq!(made.is_null(), outcome.is_err());
+        if !made.is_null() {
+            // SAFETY: ours, and forgotten.
+            unsafe { pc_model_free(std::mem::replace(&mut self.model, made)) };
+        }
+        outcome
+    }
+
+    pub(crate) fn of_model(&mut self, call: &ModelCall) -> Outcome {
+        let model = self.model;
+        // SAFETY: the handle is null or live, all texts are, and places for results.
+        unsafe {
+            match call {
+                ModelCall::New(name) => {
+                    let name = c(name);
+                    self.made(|place, error| pc_model_new(name.as_ptr(), place, error))
+                }
+                ModelCall::Parse(text) => {
+                    let (data, len) = (text.as_ptr().cast(), text.len());
+                    self.made(|place, error| pc_model_parse(data, len, ptr::null(), place, error))
+                }
+                ModelCall::Builtin(index) => {
+                    // Short ones, and one with events.
+                    let name = pc_builtin_name(usize::from(*index) % 12);
+                    let used = if index % 3 == 0 { c"bouncing-ball".as_ptr() } else { name };
+                    self.made(|place, error| pc_model_builtin(used, place, error))
+                }
+                ModelCall::File(path) => {
+                    let path = CString::new(path.as_slice()).unwrap();
+                    self.made(|place, error| pc_model_from_file(path.as_ptr(), place, error))
+                }
+                ModelCall::Clone => self.made(|place, error| pc_model_clone(model, place, error)),
+                ModelCall::Say(function, [a, b, z], x) => {
+                    let (a, b, z) = (c(a), c(b), c(z));
+                    let texts = [a.as_ptr(), b.as_ptr(), z.as_ptr()];
+                    self.call(|error| say(model, *function, texts, *x, error))
+                }
+                ModelCall::Bytes(function, text) => {
+                    let text = CString::new(text.as_slice()).unwrap();
+                    let (text, name) = (text.as_ptr(), c"x".as_ptr());
+                    self.call(|error| match function % 6 {
+                        0 => pc_model_add_definition(model, text, name, error),
+                        1 => pc_model_set_potential(model, text, error),
+                        2 => pc_model_add_event(model, name, text, 0, 0, error),
+                        3 => pc_model_set_kinetic(model, text, error),
+                        4 => pc_model_set(model, text, 1.0, error),
+                        _ => pc_model_keep(model, text, error),
+                    })
+                }
+                ModelCall::Event(function, text, direction) => {
+                    let (text, when, direction) = (c(text), c"x'*cos(3*t) - 1/10", c_int::from(*direction));
+                    let (name, text, terminal) =
+                        (c"hit".as_ptr(), text.as_ptr(), c_int::from(function % 8 == 1));
+                    self.call(|error| match function % 4 {
+                        0 => pc_model_add_event(model, text, text, direction, terminal, error),
+                        1 => pc_model_add_event(model, name, when.as_ptr(), direction, terminal, error),
+                        2 => pc_model_add_event_reset(model, name, c"x'".as_ptr(), c"-x'/2".as_ptr(), error),
+                        _ => pc_model_add_event_reset(model, name, text, text, error),
+                    })
+                }
+                ModelCall::Text => {
+                    let mut text = ptr::null_mut();
+                    let outcome = self.call(|error| pc_model_text(model, &raw mut text, error));
+                    free_text(text);
+                    outcome
+                }
+                ModelCall::Check => self.call(|error| pc_model_check(model, error)),
+                ModelCall::Free => {
+                    pc_model_free(std::mem::replace(&mut self.model, ptr::null_mut()));
+                    Ok(())
+                }
+            }
+        }
+    }
+}
+
+/// One of the functions that say something of a model. Those that make a model at all come often.
+///
+/// # Safety
+/// The model is null or live, the texts are.
+unsafe fn say(
+    model: *mut pc_model,
+    function: u8,
+    [a, b, z]: [*const c_char; 3],
+    x: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let (yes, entries, count) = (c_int::from(x > 0.0), [a, b, z], x.clamp(0.0, 3.0) as usize);
+    let entries = entries.as_ptr();
+    // SAFETY: as promised.
+    unsafe {
+        match function % 48 {
+            0..4 => pc_model_add_coordinate(model, a, x, error),
+            4..8 => pc_model_set_kinetic(model, b, error),
+            8 => pc_model_add_quasi_velocity(model, a, b, x, error),
+            9 => pc_model_add_quasi_velocity(model, a, ptr::null(), x, error),
+            10 => pc_model_set_kinematics(model, a, b, error),
+            11 => pc_model_set_algebra(model, a, error),
+            12 => pc_model_set_bracket(model, a, b, z, error),
+            13 => pc_model_add_constraint(model, a, b, error),
+            14 => pc_model_set_constraint_kind(model, a, b, error),
+            15 => pc_model_set_constraint_kind(model, a, c"nonlinear".as_ptr(), error),
+            16 => pc_model_set_lagrangian(model, b, error),
+            17 => pc_model_set_potential(model, b, error),
+            18 => pc_model_set_dissipation(model, b, error),
+            19 => pc_model_add_force(model, a, b, error),
+            20 | 21 => pc_model_add_external_force(model, a, error),
+            22 => pc_model_add_integral(model, a, b, error),
+            23 => pc_model_add_output(model, a, b, error),
+            24 => pc_model_add_definition(model, a, b, error),
+            25 | 26 => pc_model_add_parameter(model, a, x, error),
+            27 | 28 => pc_model_add_body(model, a, c"2".as_ptr(), b, z, c"0".as_ptr(), error),
+            29 => pc_model_set_body_force(model, a, b, z, b, error),
+            30 => pc_model_set_body_torque(model, a, b, z, z, error),
+            31 => pc_model_set_body_angular_velocity(model, a, z, b, z, error),
+            32 => pc_model_set_body_inertia(model, a, entries, count, error),
+            33 => pc_model_set_body_rotation(model, a, entries, count, error),
+            34 => pc_model_set_description(model, z, error),
+            35 => pc_model_set_reference(model, z, error),
+            36 => pc_model_set_start(model, a, x, error),
+            37 => pc_model_set_start_expression(model, a, b, error),
+            38 => pc_model_set_start_time(model, x, error),
+            39 => pc_model_set_end_time(model, x, error),
+            40 => pc_model_set_samples(model, count, error),
+            41 => pc_model_set_tolerances(model, x, x / 2.0, error),
+            42 => pc_model_set_method(model, if yes == 1 { c"bdf".as_ptr() } else { a }, error),
+            43 => pc_model_set_form(model, if yes == 1 { c"canonical".as_ptr() } else { a }, error),
+            44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
+            45 => pc_model_project_start(model, yes, error),
+            46 => pc_model_observe_reactions(model, yes, error),
+            _ => pc_model_set(model, a, x, error),
+        }
+    }
+}

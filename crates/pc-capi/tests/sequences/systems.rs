@@ -1,0 +1,203 @@
+//! Calls of systems and of their kernels.
+
+use std::ffi::{c_char, c_int};
+use std::ptr;
+
+use pc::*;
+
+use crate::callbacks::{Own, destroy, force, force_jacobian};
+use crate::calls::SystemCall;
+use crate::common::{At, c};
+use crate::handles::{Array, Handles, Outcome, free_text};
+
+impl Handles {
+    fn made_system(
+        &mut self,
+        make: impl FnOnce(*mut *mut pc_system, *mut *mut pc_error) -> pc_status,
+    ) -> Outcome {
+        let mut made = ptr::dangling_mut();
+        let outcome = self.call(|error| make(&raw mut made, error));
+        assert_eq!(made.is_null(), outcome.is_err());
+        if !made.is_null() {
+            // SAFETY: ours, and forgotten.
+            unsafe { pc_system_free(std::mem::replace(&mut self.system, made)) };
+        }
+        outcome
+    }
+
+    pub(crate) fn of_system(&mut self, call: &SystemCall) -> Outcome {
+        let (model, system) = (self.model, self.system);
+        // SAFETY: the handles are null or live, arrays as long as said, texts are.
+        unsafe {
+            match call {
+                SystemCall::New(form) => {
+                    let options = pc_system_options { form: c_int::from(*form), ..Default::default() };
+                    self.made_system(|place, error| pc_system_new(model, &raw const options, place, error))
+                }
+                SystemCall::Clone => self.made_system(|place, error| pc_system_clone(system, place, error)),
+                SystemCall::Free => {
+                    pc_system_free(std::mem::replace(&mut self.system, ptr::null_mut()));
+                    Ok(())
+                }
+                SystemCall::At { function, room, t, y } => self.at(*function, *room, *t, y),
+                SystemCall::With { function, room, t, y, index } => {
+                    self.with(*function, *room, *t, y, usize::from(index % 8))
+                }
+                SystemCall::Parameters { function, index, value } => {
+                    let mut values = Array::of(*index, pc_system_parameter_count(system));
+                    let (data, len) = (values.data(), values.len());
+                    self.call(|error| match function % 3 {
+                        0 => pc_system_set_parameter(system, usize::from(index % 8), *value, error),
+                        1 => pc_system_parameters(system, data, len, error),
+                        _ => pc_system_set_parameters(system, data, len, error),
+                    })
+                }
+                SystemCall::Bracket([f, g], y) => {
+                    let (f, g, mut y, mut value) =
+                        (c(f), c(g), Array::state(3, pc_system_dim(system), y), 0.0);
+                    let (data, len, place) = (y.data(), y.len(), &raw mut value);
+                    let (f, g) = (f.as_ptr(), g.as_ptr());
+                    self.call(|error| pc_system_bracket(system, f, g, 0.5, data, len, place, error))
+                }
+                SystemCall::Print(format) => {
+                    let mut text = ptr::null_mut();
+                    let outcome = self
+                        .call(|error| pc_system_print(system, c_int::from(*format), &raw mut text, error));
+                    free_text(text);
+                    outcome
+                }
+                SystemCall::Emit(name, t_end) => {
+                    let name = if name.len() > 3 { c("motion") } else { c(name) };
+                    let (mut header, mut source) = (ptr::null_mut(), ptr::null_mut());
+                    let (place, other) = (&raw mut header, &raw mut source);
+                    let outcome = self
+                        .call(|error| pc_system_emit_c(system, name.as_ptr(), *t_end, place, other, error));
+                    free_text(header);
+                    free_text(source);
+                    outcome
+                }
+                SystemCall::Inventory(index) => self.inventory(usize::from(*index % 16)),
+                SystemCall::Force { function, good } => {
+                    let user = Own::boxed(usize::from(*good) * 8, c_int::from(function % 3) - 1);
+                    let forces: pc_force_function = if function % 32 == 31 { None } else { Some(force) };
+                    let jacobian: pc_force_jacobian =
+                        if function % 2 == 0 { None } else { Some(force_jacobian) };
+                    self.call(|error| {
+                        pc_system_set_force(system, forces, jacobian, user, Some(destroy), error)
+                    })
+                }
+                SystemCall::Kernel { y, value } => self.kernel(y, *value),
+            }
+        }
+    }
+
+    /// A function of (t, y) that writes numbers.
+    fn at(&self, function: u8, room: u8, t: f64, y: &[f64]) -> Outcome {
+        let system = self.system;
+        // SAFETY: the handle is null or live, arrays are as long as said.
+        unsafe {
+            let dim = pc_system_dim(system);
+            let velocities = dim - pc_system_coordinate_count(system);
+            let (mut operators, mut entries) = (0, 0);
+            let _ = self.call(|error| pc_system_operator_count(system, &raw mut operators, error));
+            let _ = self.call(|error| {
+                pc_system_jacobian_pattern(system, &raw mut entries, ptr::null_mut(), ptr::null_mut(), error)
+            });
+            let functions: [(At, usize); 12] = [
+                (pc_system_events, pc_system_event_count(system)),
+                (pc_system_rhs, dim),
+                (pc_system_jacobian, dim * dim),
+                (pc_system_sparse_jacobian, entries),
+                (pc_system_observe, pc_system_observable_count(system)),
+                (pc_system_integrals, pc_system_conserved_count(system)),
+                (pc_system_reactions, pc_system_reaction_count(system)),
+                (pc_system_constraint_residuals, pc_system_constraint_count(system)),
+                (pc_system_mass_matrix, velocities * velocities),
+                (pc_system_structure_coefficients, (operators + 1) * (operators + 1) * operators),
+                (pc_system_to_momenta, dim),
+                (pc_system_to_quasi_velocities, dim),
+            ];
+            let (function, length) = functions[usize::from(function) % functions.len()];
+            let (mut y, mut values) = (Array::state(room, dim, y), Array::of(room, length));
+            let (y, y_length, out) = (y.data(), y.len(), values.data());
+            self.call(|error| function(system, t, y, y_length, out, values.len(), error))
+        }
+    }
+
+    /// A function of (t, y) and what else it takes.
+    fn with(&self, function: u8, room: u8, t: f64, y: &[f64], index: usize) -> Outcome {
+        let system = self.system;
+        // SAFETY: the handle is null or live, arrays are as long as said.
+        unsafe {
+            let dim = pc_system_dim(system);
+            let [mut y, mut v, mut result] =
+                [Array::state(room, dim, y), Array::state(room / 2, dim, y), Array::of(room, dim)];
+            let (y, y_length, v, v_length) = (y.data(), y.len(), v.data(), v.len());
+            let (out, length) = (result.data(), result.len());
+            let mut number = 0.0;
+            self.call(|error| match function % 7 {
+                0 => pc_system_project(system, t, y, y_length, error),
+                1 => pc_system_keep_from(system, t, y, y_length, error),
+                2 => pc_system_event_reset(system, index, t, y, y_length, error),
+                3 => pc_system_energy(system, t, y, y_length, &raw mut number, error),
+                4 => pc_system_jvp(system, t, y, y_length, v, v_length, out, length, error),
+                // In the place of its own input, which is refused.
+                5 => pc_system_jvp(system, t, y, y_length, v, v_length, v, v_length, error),
+                _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
+            })
+        }
+    }
+
+    /// Names up to the last and none beyond.
+    fn inventory(&self, index: usize) -> Outcome {
+        type Count = unsafe extern "C" fn(*const pc_system) -> usize;
+        type Name = unsafe extern "C" fn(*const pc_system, usize) -> *const c_char;
+        let system = self.system;
+        let lists: [(Count, Name); 7] = [
+            (pc_system_dim, pc_system_name),
+            (pc_system_parameter_count, pc_system_parameter_name),
+            (pc_system_observable_count, pc_system_observable_name),
+            (pc_system_constraint_count, pc_system_constraint_name),
+            (pc_system_reaction_count, pc_system_reaction_name),
+            (pc_system_force_count, pc_system_force_name),
+            (pc_system_event_count, pc_system_event_name),
+        ];
+        // SAFETY: the handle is null or live, the array as long as said.
+        unsafe {
+            for (count, name) in lists {
+                assert_eq!(name(system, index).is_null(), index >= count(system));
+            }
+            assert!(pc_system_conserved_count(system) <= pc_system_observable_count(system));
+            assert!((-1..2).contains(&pc_system_event_direction(system, index)));
+            assert!((0..2).contains(&pc_system_event_is_terminal(system, index)));
+            assert!((0..2).contains(&pc_system_event_resets(system, index)));
+            let (mut t, mut y) = (0.0, vec![0.0; if index == 15 { 3 } else { pc_system_dim(system) }]);
+            let (data, len) = (y.as_mut_ptr(), y.len());
+            self.call(|error| pc_system_start(system, &raw mut t, data, len, error))
+        }
+    }
+
+    fn kernel(&self, y: &[f64], value: f64) -> Outcome {
+        let (system, mut kernel) = (self.system, ptr::null_mut());
+        // SAFETY: the handles are null or live, arrays are as long as said.
+        unsafe {
+            let outcome = self.call(|error| pc_kernel_new(system, &raw mut kernel, error));
+            assert_eq!(kernel.is_null(), outcome.is_err());
+            let dim = pc_kernel_dim(kernel);
+            let (mut y, mut room) = (Array::state(3, dim, y), vec![0.0; dim * dim]);
+            let answers = [
+                pc_kernel_rhs(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
+                pc_kernel_jacobian(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
+                // In its own place, which is refused.
+                pc_kernel_rhs(0.0, y.data(), y.data(), kernel.cast()),
+            ];
+            assert!(answers.iter().all(|answer| (-1..2).contains(answer)));
+            assert!(answers[2] == -1 && (outcome.is_ok() || answers == [-1; 3]));
+            let values = vec![value; pc_system_parameter_count(system)];
+            let (data, len) = (values.as_ptr(), values.len());
+            let set = self.call(|error| pc_kernel_set_parameters(kernel, data, len, error));
+            pc_kernel_free(kernel);
+            outcome.and(set)
+        }
+    }
+}
