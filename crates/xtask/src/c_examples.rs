@@ -58,6 +58,7 @@ pub(crate) fn run() -> Result<(), Error> {
             c_numbers::check(&mut library.check(compiler, flags, &build), &pc)?;
             c_numbers::check_source(&place.join(build), &pc)?;
         }
+        library.sequences(compiler.1, SANITIZED)?;
     }
     if machine.has_program("valgrind") {
         announce_and_run(library.check(("cc", "c++"), "-O1 -g", "valgrind").arg(format!("UNDER={MEMORY}")))?;
@@ -117,7 +118,8 @@ pub(crate) fn quick() -> Result<(), Error> {
         println!("skipped: the sanitizers, which do not run here");
         return Ok(());
     }
-    announce_and_run(&mut library.check(compiler, SANITIZED, "sanitized"))
+    announce_and_run(&mut library.check(compiler, SANITIZED, "sanitized"))?;
+    library.sequences(compiler.1, SANITIZED)
 }
 
 /// How the examples are linked, and where they are built.
@@ -130,6 +132,21 @@ impl Library {
     fn shared(libraries: &Path, place: &Path) -> Library {
         let lib = libraries.display();
         Library { flags: format!("-L{lib} -lpc -Wl,-rpath,{lib}"), place: place.to_owned() }
+    }
+
+    /// Calls at random through the C++ wrapper, whose functions throw.
+    fn sequences(&self, compiler: &str, flags: &str) -> Result<(), Error> {
+        let root = workspace_root();
+        let program = self.place.join("sequences");
+        let mut compile = Command::new(compiler);
+        compile
+            .args(["-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Werror"])
+            .args(flags.split_whitespace());
+        compile.arg("-I").arg(root.join("include")).arg(root.join("crates/pc-capi/tests/cpp/sequences.cpp"));
+        announce_and_run(
+            compile.arg("-o").arg(&program).args(self.flags.split_whitespace()).arg("-lpthread"),
+        )?;
+        announce_and_run(&mut Command::new(program))
     }
 
     /// `make check` of the examples, everything built anew.
