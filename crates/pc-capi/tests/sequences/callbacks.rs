@@ -1,10 +1,10 @@
 //! Functions of the program, which answer, fail or write nothing as they are told.
 
 use std::ffi::{c_int, c_void};
-use std::slice;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{ptr, slice};
 
-use pc::{pc_member, pc_status};
+use pc::*;
 
 /// What a function does; it is freed with what calls it.
 pub(crate) struct Own {
@@ -100,9 +100,26 @@ pub(crate) extern "C" fn force_jacobian(
     0
 }
 
+/// Who watches a run.
+pub(crate) struct Watch {
+    pub(crate) solver: *mut pc_solver,
+    pub(crate) stop: bool,
+}
+
+/// Calls back into the solver that calls it, which is busy.
 pub(crate) extern "C" fn observe(_t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int {
     assert!(!y.is_null() && y_length > 0);
-    c_int::from(!user.is_null())
+    // SAFETY: a watch, whose solver is live and in use.
+    unsafe {
+        let watch = &*user.cast::<Watch>();
+        let (mut t, mut error) = (0.0, ptr::null_mut());
+        assert_eq!(pc_solver_time(watch.solver, &raw mut t, &raw mut error), pc_status::PC_BUSY);
+        assert_eq!(pc_error_status(error), pc_status::PC_BUSY);
+        pc_error_free(error);
+        pc_solver_free(watch.solver);
+        assert!(pc_solver_event_name(watch.solver, pc_solver_event_count(watch.solver)).is_null());
+        watch.stop.into()
+    }
 }
 
 pub(crate) extern "C" fn observe_event(

@@ -71,7 +71,7 @@ pub(crate) enum SystemCall {
 
 #[derive(Clone, Debug)]
 pub(crate) enum SolverCall {
-    New { method: i8, t: f64, y: Vec<f64>, size: u8 },
+    New { method: i8, t: f64, y: Vec<f64>, change: u8 },
     Advance(f64, u8),
     Run(Vec<f64>, bool),
     Step(f64, u8),
@@ -152,7 +152,7 @@ fn of_solver() -> impl Strategy<Value = SolverCall> {
     use SolverCall::*;
     prop_oneof![
         2 => (-1i8..3, numbers(), state(), any::<u8>())
-            .prop_map(|(method, t, y, size)| New { method, t, y, size }),
+            .prop_map(|(method, t, y, change)| New { method, t, y, change }),
         3 => (numbers(), 0u8..8).prop_map(|(t, n)| Advance(t, n)),
         2 => (prop::collection::vec(numbers(), 0..4), any::<bool>()).prop_map(|(t, s)| Run(t, s)),
         2 => (numbers(), 0u8..8).prop_map(|(t, n)| Step(t, n)),
@@ -184,7 +184,7 @@ pub(crate) fn calls() -> impl Strategy<Value = Vec<Call>> {
         let all = [
             Call::Model(ModelCall::Builtin(model)),
             Call::System(SystemCall::New(form)),
-            Call::Solver(SolverCall::New { method, t: 0.0, y: vec![], size: 0 }),
+            Call::Solver(SolverCall::New { method, t: 0.0, y: vec![], change: 31 }),
         ];
         all[..usize::from(length)].to_vec()
     });

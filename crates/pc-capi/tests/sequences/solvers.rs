@@ -6,7 +6,7 @@ use std::slice;
 
 use pc::*;
 
-use crate::callbacks::{Own, destroy, observe, observe_event, reset, value};
+use crate::callbacks::{Own, Watch, destroy, observe, observe_event, reset, value};
 use crate::calls::SolverCall;
 use crate::common::c;
 use crate::handles::{Array, Handles, Outcome, flag, free_text};
@@ -31,15 +31,8 @@ impl Handles {
         // SAFETY: the handles are null or live, arrays as long as said, texts are.
         unsafe {
             match call {
-                SolverCall::New { method, t, y, size } => {
-                    let mut options = pc_solver_options {
-                        method: c_int::from(*method),
-                        max_steps: 200,
-                        ..Default::default()
-                    };
-                    if size % 16 == 15 {
-                        options.size = usize::from(*size);
-                    }
+                SolverCall::New { method, t, y, change } => {
+                    let options = options(*method, *change, y);
                     let data = if y.is_empty() { ptr::null() } else { y.as_ptr() };
                     self.made_solver(|place, error| {
                         pc_solver_new(system, &raw const options, *t, data, y.len(), place, error)
@@ -51,7 +44,8 @@ impl Handles {
                     self.call(|error| pc_solver_advance(solver, *t, data, len, error))
                 }
                 SolverCall::Run(times, stop) => {
-                    let (data, len, user) = (times.as_ptr(), times.len(), flag(*stop));
+                    let (data, len, mut watch) = (times.as_ptr(), times.len(), Watch { solver, stop: *stop });
+                    let user = (&raw mut watch).cast();
                     self.call(|error| pc_solver_run(solver, data, len, Some(observe), user, error))
                 }
                 SolverCall::Step(towards, length) => {
@@ -163,4 +157,26 @@ impl Handles {
             outcome
         }
     }
+}
+
+/// Options of which one may be changed, to what is right or wrong. The tolerances live as long as `y`.
+fn options(method: i8, change: u8, y: &[f64]) -> pc_solver_options {
+    let mut options = pc_solver_options { method: c_int::from(method), max_steps: 200, ..Default::default() };
+    let number = y.first().copied().unwrap_or(0.5);
+    match change % 32 {
+        0 => options.size = usize::from(change),
+        1 => options.iteration = c_int::from(change / 32) - 1,
+        2 => options.linear_solver = c_int::from(change / 32) - 1,
+        3 => options.max_order = c_int::from(change / 32) - 1,
+        4 => options.relative_tolerance = number,
+        5 => options.absolute_tolerance = number,
+        6 => (options.absolute_tolerances, options.absolute_tolerances_length) = (y.as_ptr(), y.len()),
+        7 => options.initial_step = number,
+        8 => options.min_step = number,
+        9 => options.max_step = number,
+        10 => options.stop_time = number,
+        11 => options.max_steps = u64::from(change / 32),
+        _ => {}
+    }
+    options
 }

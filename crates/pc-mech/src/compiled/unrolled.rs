@@ -82,13 +82,15 @@ impl Unrolled {
         self.rates.eval(t, y, p, &mut self.outputs);
         let (rates, moving) = self.outputs.split_at(y.len());
         self.pivots.check(y, p, moving)?;
-        // One pass, number by number: a copy in wider pieces would wait for the numbers just written.
-        let mut finite = true;
+        // One pass with an early end, which keeps it number by number: a copy in wider pieces would wait for the numbers just
+        // written.
         for (ydot, &rate) in ydot.iter_mut().zip(rates) {
             *ydot = rate;
-            finite &= rate.is_finite();
+            if !rate.is_finite() {
+                return Err(blame(&self.rates, (t, y, p)));
+            }
         }
-        if finite { Ok(()) } else { Err(blame(&self.rates, (t, y, p))) }
+        Ok(())
     }
 
     /// The machine code of ẏ where it writes nothing else, and M is regular with these parameters.
