@@ -25,7 +25,10 @@ impl Engine {
         events: Followed,
     ) -> Result<Engine, SolveError> {
         use pc_expr::VectorField;
-        field.restart(from.time(), from.state());
+        // One of another length is refused below.
+        if from.state().len() == field.dim() {
+            field.restart(from.time(), from.state());
+        }
         Ok(if events.is_empty() {
             Engine::Smooth(Box::new(Cvode::resume(field, from, options)?))
         } else {

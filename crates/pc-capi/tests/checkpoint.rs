@@ -240,3 +240,17 @@ fn wrong_calls_are_refused() {
         assert!((*made).is_null() && (*text).is_null() && (*data).is_null() && (*dense).is_null());
     }
 }
+
+/// Also where what is to be kept would be looked up at its start.
+#[test]
+fn a_checkpoint_of_a_longer_state_is_refused() {
+    let top = Solver::of(&System::of("heavy-top-quaternion"), &sharp());
+    let bytes = checkpoint(&top, ptr::null()).unwrap();
+    let refusal = Solver::restored(&System::of("rod"), &sharp(), &bytes).err().unwrap();
+    assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
+    assert_eq!(refusal.message, "the start: 7 numbers for 6 components");
+    let rod = Solver::of(&System::of("rod"), &sharp());
+    let bytes = checkpoint(&rod, ptr::null()).unwrap();
+    let refusal = Solver::restored(&System::of("heavy-top-quaternion"), &sharp(), &bytes).err().unwrap();
+    assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
+}
