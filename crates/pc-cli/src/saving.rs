@@ -169,7 +169,8 @@ impl Saving {
                 (took, written) = (start.elapsed(), Instant::now());
             }
         };
-        // The equations as they were compiled, without memory of what they were evaluated at.
+        // The equations as they were compiled, without memory of what they were evaluated at; that what they keep is another
+        // after a reset is in the checkpoint.
         let parts = || (flow.motion.clone(), flow.events.clone());
         let (times, options) = (plan.times(), plan.options());
         let solved = solve_with_events_checkpointed(parts, from, &times, &options, self.every, save, step);

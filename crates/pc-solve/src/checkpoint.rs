@@ -18,20 +18,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //! With events it keeps, beside the state, what is known of them: on which side of zero each function is, when they
-//! occurred last, and which are due.
+//! occurred last, and which are due. What a field keeps by projection, such as the energy, is what it kept when made, but
+//! after a [restart](crate::Cvode::restart), by a reset say, what it is in the state of the checkpoint.
 
 mod encoding;
 mod legs;
 
-use pc_expr::VectorField;
-
 pub use self::encoding::CheckpointError;
 pub use self::legs::{solve_checkpointed, solve_with_events_checkpointed};
 
-use crate::cvode::Cvode;
-use crate::error::SolveError;
 use crate::events::{History, Occurrence};
-use crate::options::Options;
 use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
@@ -48,6 +44,9 @@ pub struct Checkpoint {
     pub(crate) statistics: Statistics,
     /// Steps since the last output or occurrence, which are limited.
     pub(crate) steps_since_output: u64,
+    /// Whether the motion has been started anew from a state that it did not come to by itself, as after a reset: what the
+    /// field keeps by projection has the values then that it has here.
+    pub(crate) jumped: bool,
     /// Of a motion with events that has begun.
     pub(crate) past: Option<Past>,
 }
@@ -85,6 +84,7 @@ impl Checkpoint {
             occurrences: Vec::new(),
             statistics: Statistics::default(),
             steps_since_output: 0,
+            jumped: false,
             past: None,
         }
     }
@@ -112,22 +112,5 @@ impl Checkpoint {
     /// The work up to that time.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
-    }
-}
-
-impl<F: VectorField> Cvode<F> {
-    /// Time, state and work where the integration stands, to be gone on from by [`resume`](Cvode::resume).
-    pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint { statistics: self.statistics(), ..Checkpoint::start(self.time(), self.state()) }
-    }
-
-    /// Begins anew at a checkpoint. Both the motion that was interrupted there and the one that was not go on from here
-    /// with the same numbers, if `field` and `options` are the same; a field that remembers earlier evaluations must be
-    /// as it was when made.
-    ///
-    /// # Errors
-    /// As for [`new`](Cvode::new).
-    pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
-        Cvode::new(field, checkpoint.time, &checkpoint.state, options)
     }
 }

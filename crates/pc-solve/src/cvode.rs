@@ -1,7 +1,9 @@
 //! The integrator.
 
+mod checkpoint;
 mod dense;
 mod hybrid;
+mod interpolation;
 mod quadrature;
 mod restart;
 mod sensitivity;
@@ -67,6 +69,8 @@ pub struct Cvode<F> {
     /// The work before the last restart, and whether there has been no step since.
     earlier: Statistics,
     restarted: bool,
+    /// Whether there has been a restart.
+    jumped: bool,
 }
 
 /// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
@@ -166,25 +170,6 @@ impl<F: VectorField> Cvode<F> {
             }
         }
         Ok(Ending::Completed)
-    }
-
-    /// The derivative of y of the given order at `t` in the last internal step, by the polynomial of the method.
-    ///
-    /// Order 0 is y itself. The polynomial has the degree of the method's current order.
-    ///
-    /// # Errors
-    /// [`InputError::NoStep`] before the first step; [`SolveError::Integration`] with [`Code::BadTime`] outside the last
-    /// step and [`Code::BadOrder`] above the degree.
-    pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
-        finite("the time", t)?;
-        if self.direction.is_none() {
-            return Err(InputError::NoStep.into());
-        }
-        let stands_at = self.time;
-        let outcome = self.interpolate_to_work(t, order);
-        self.time = stands_at; // which a failed projection moves
-        outcome?;
-        Ok(self.work.as_slice())
     }
 
     /// Where the integration stands: the time last advanced or stepped to.
@@ -409,17 +394,6 @@ impl<F: VectorField> Cvode<F> {
         self.idle_steps = 0;
         let failure = self.idle_failure.take();
         Err(self.failed(Reason::Stalled, failure))
-    }
-
-    fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
-        let order = i32::try_from(order).unwrap_or(i32::MAX);
-        // SAFETY: memory and vector are live and of one context; a step has been taken.
-        let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, order, self.work.raw()) };
-        if code != sys::CV_SUCCESS {
-            let reason = Reason::Cvode { code: code.into(), message: self.context.take_messages() };
-            return Err(self.error(reason, None));
-        }
-        if order == 0 { self.project(t, false) } else { Ok(()) }
     }
 
     /// Makes a state of what CVODES has written for time `t`, at the end of a step or within it.

@@ -48,7 +48,7 @@ impl Segment {
         self.dim
     }
 
-    /// Writes y(t) to `state`, of length [`dim`](Segment::dim); outside the span the polynomial goes on.
+    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the polynomial goes on.
     pub fn evaluate(&self, t: f64, state: &mut [f64]) {
         let s = (t - self.end) / (self.end - self.start);
         state.fill(0.0);
@@ -75,7 +75,12 @@ impl Segment {
 /// A motion as a function of time: [`Segment`]s, each from where the one before ends.
 ///
 /// It is continuous but for resets at events, where it is continuous from the right in the direction of integration. At
-/// its very end it is the limit from before. States inside steps are not projected.
+/// its very end it is the limit from before.
+///
+/// It is made of the polynomials alone and knows no vector field: where that [projects](pc_expr::VectorField::project) its
+/// states, those inside steps are off the constraints, and off the values of the integrals that are kept, by the error of
+/// a step. Outputs and what [`Cvode::interpolate`](crate::Cvode::interpolate) gives are on them; who needs such states
+/// asks for them on the way, or projects what is evaluated here.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DenseOutput {
     segments: Vec<Segment>,
@@ -92,7 +97,7 @@ impl DenseOutput {
         Some((self.segments.first()?.start, self.segments.last()?.end))
     }
 
-    /// y(t).
+    /// y(t), which is not projected.
     ///
     /// # Errors
     /// [`InputError::OutsideSpan`]

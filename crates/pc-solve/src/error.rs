@@ -505,6 +505,28 @@ pub enum InputError {
         end: f64,
     },
 
+    /// A time outside the last internal step, or beyond the event up to which that is known.
+    #[error("t = {requested} lies outside the last step, which goes from t = {start} to {end}")]
+    OutsideStep {
+        /// The time asked for.
+        requested: f64,
+        /// Where the step begins.
+        start: f64,
+        /// Where it ends.
+        end: f64,
+    },
+
+    /// A derivative beyond the degree of the polynomial of the last step.
+    #[error(
+        "the derivative of order {order} is asked for, but the last step has derivatives up to order {highest}"
+    )]
+    DerivativeOrder {
+        /// The order asked for.
+        order: u32,
+        /// The highest there is.
+        highest: u32,
+    },
+
     /// Derivatives by parameters are asked for of a vector field that has none.
     #[error("the vector field has no derivative by its parameters")]
     NoParameterJacobian,

@@ -381,13 +381,13 @@ fn what_is_not_of_this_motion_is_refused() {
         assert!(Checkpoint::from_bytes(&flipped).is_err(), "bit {bit}");
     }
     // The version is seen before the rest is read.
-    for (version, found) in [("1", 1), ("3", 3), ("17", 17)] {
+    for (version, found) in [("1", 1), ("2", 2), ("17", 17)] {
         let other = [format!("pc checkpoint {version}\n").as_bytes(), &bytes[16..]].concat();
         let error = Checkpoint::from_bytes(&other).unwrap_err();
         assert_eq!(error, CheckpointError::Version { found });
         assert_eq!(
             error.to_string(),
-            format!("it is a checkpoint of version {version} of the format, not 2")
+            format!("it is a checkpoint of version {version} of the format, not 3")
         );
     }
 }

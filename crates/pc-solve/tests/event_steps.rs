@@ -80,7 +80,18 @@ fn steps_end_at_events_and_know_their_inside() {
                 let found = hybrid.interpolate(middle, order).expect("inside")[0];
                 assert!((found - exact[order as usize]).abs() < 1e-9, "{found} {exact:?}");
             }
-            assert!(hybrid.interpolate(end + 1e-9, 0).is_err(), "beyond what is known");
+            for (t, order) in [(end + 1e-9, 0), (-1.0, 1)] {
+                let Err(SolveError::Input(InputError::OutsideStep { requested, start, end: known })) =
+                    hybrid.interpolate(t, order)
+                else {
+                    panic!("{t} lies beyond what is known")
+                };
+                assert!(requested == t && start < end && known == end);
+            }
+            assert!(matches!(
+                hybrid.interpolate(end, 13),
+                Err(SolveError::Input(InputError::DerivativeOrder { order: 13, highest: 1..=12 }))
+            ));
             assert_eq!(hybrid.time(), end);
         }
         t = end;
@@ -114,6 +125,58 @@ fn an_observer_stops_a_step_and_the_next_goes_on() {
         other.step(10.0, |_| Continue(())).expect("a step");
     }
     assert_eq!((other.time(), other.state()), (end, hybrid.state()));
+}
+
+/// Of events that occur together one stops the observer and another is terminal.
+#[test]
+fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
+    let clock = || {
+        from_fn(1, |_, _: &[f64], ydot: &mut [f64]| {
+            ydot[0] = 1.0;
+            Ok(())
+        })
+    };
+    let names = ["first", "end", "last", "other end"];
+    for stopping in 0..names.len() {
+        let start = || {
+            let events = names.into_iter().fold(FnEvents::new(), |events, name| {
+                events.with(Event::new(name).terminal(name.ends_with("end")), |_, y| Ok(y[0] - 0.5))
+            });
+            let cvode = Cvode::new(clock(), 0.0, &[0.0], &Options::default()).expect("a start");
+            cvode.with_events(events).expect("events")
+        };
+        let told = std::cell::RefCell::new(Vec::new());
+        let stop = |occurrence: &Occurrence| {
+            told.borrow_mut().push(occurrence.event);
+            if occurrence.event == stopping { Break(()) } else { Continue(()) }
+        };
+        let ended = |ending: Result<Ending, SolveError>| {
+            assert_eq!(ending.expect("an ending"), Ending::Event { event: 1 }, "stopped at {stopping}");
+            assert_eq!(told.take(), [0, 1, 2, 3], "all is told");
+        };
+        ended(start().advance_to(1.0, stop));
+        let mut outputs = Vec::new();
+        let output = |t: f64, _: &[f64]| {
+            outputs.push(t);
+            Continue(())
+        };
+        ended(start().run(&[0.25, 1.0], output, stop));
+        assert!(outputs.len() == 2 && (outputs[1] - 0.5).abs() < 1e-15, "it is the last output: {outputs:?}");
+        let mut segments = 0;
+        let segment = |_| {
+            segments += 1;
+            Continue(())
+        };
+        ended(start().run_dense(1.0, segment, stop));
+        assert!(segments > 0);
+        let mut hybrid = start();
+        loop {
+            match hybrid.step(1.0, stop) {
+                Ok(Ending::Completed) => assert!(hybrid.time() < 0.5),
+                ending => break ended(ending),
+            }
+        }
+    }
 }
 
 /// Of several functions the one that failed is named.

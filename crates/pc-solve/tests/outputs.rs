@@ -4,7 +4,8 @@ use std::cell::Cell;
 use std::ops::ControlFlow::{self, Break, Continue};
 
 use pc_solve::{
-    Cvode, Ending, Failure, Method, NonlinearSolver, Options, VectorField, from_fn, solve, solve_observed,
+    Cvode, Ending, Failure, InputError, Method, NonlinearSolver, Options, SolveError, VectorField, from_fn,
+    solve, solve_observed,
 };
 
 fn pendulum(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -94,13 +95,43 @@ fn steps_and_interpolation() {
     assert_eq!(end, cvode.statistics().current_time);
     assert_eq!(cvode.statistics().steps, steps);
     assert_eq!((end, end - cvode.statistics().last_step), (to, from));
+}
 
-    let error = cvode.interpolate(0.0, 0).unwrap_err().to_string();
-    assert!(error.starts_with("CV_BAD_T (-25) after reaching t = 5."), "{error}");
-    assert!(error.contains(": Illegal value for t.t = 0 is not between tcur - hu = "), "{error}");
-    let error = cvode.interpolate(end, 13).unwrap_err().to_string();
-    assert!(error.starts_with("CV_BAD_K (-24) after reaching t = 5."), "{error}");
-    assert!(error.ends_with(": Illegal value for k."), "{error}");
+/// What lies outside the last step, or beyond the degree of its polynomial, is refused before CVODES is asked.
+#[test]
+fn what_cannot_be_interpolated_is_told() {
+    for end in [5.0, -5.0] {
+        let mut cvode = pendulum_at(0.0, &Options::default());
+        cvode.advance_to(end).unwrap();
+        let statistics = cvode.statistics();
+        let (to, length, order) = (statistics.current_time, statistics.last_step, statistics.last_order);
+        assert!((to - end) * end > 0.0 && length * end > 0.0 && order > 1, "the step goes on beyond {end}");
+        // The ends belong to it, and their roundings.
+        for t in [to, to - length, to + 1e-15 * end, to - length - 1e-15 * end] {
+            assert!(cvode.interpolate(t, 0).is_ok() && cvode.interpolate(t, order).is_ok(), "{t}");
+        }
+        for t in [0.0, to - 1.001 * length, to + 1e-3 * length] {
+            let error = cvode.interpolate(t, 0).unwrap_err();
+            let from = to - length;
+            assert_eq!(
+                error.to_string(),
+                format!("t = {t} lies outside the last step, which goes from t = {from} to {to}")
+            );
+            assert!(matches!(error, SolveError::Input(InputError::OutsideStep { .. })));
+        }
+        for beyond in [order + 1, 13, u32::MAX] {
+            let error = cvode.interpolate(to, beyond).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!(
+                    "the derivative of order {beyond} is asked for, but the last step has derivatives up to \
+                     order {order}"
+                )
+            );
+            assert!(matches!(error, SolveError::Input(InputError::DerivativeOrder { .. })));
+        }
+        assert_eq!(cvode.time(), end);
+    }
 }
 
 #[test]

@@ -38,8 +38,8 @@ pub(crate) fn run() -> Result<(), Error> {
     announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
     let place = target_directory()?.join("c-examples");
     let (built, installed) = (target_directory()?.join("debug"), place.join("installed"));
-    let pc = built.join("pc");
-    install::place(&built, &installed)?;
+    let (pc, places) = (built.join("pc"), install::Places::below(&installed)?);
+    install::place(&built, &places)?;
     let library = Library::shared(&installed.join("lib"), &place);
 
     let machine = Machine::this();
@@ -78,7 +78,7 @@ pub(crate) fn run() -> Result<(), Error> {
     c_numbers::check(&mut archive.check(("cc", "c++"), "-O2", "static"), &pc)?;
     with_cmake(&installed, &place.join("cmake"))?;
     c_fresh::run(&installed)?;
-    install::uninstall(&installed)?;
+    install::uninstall(&places)?;
     match &install::left(&installed)?[..] {
         [] => Ok(()),
         left => Err(Error::Installed { wrong: format!("not removed: {left:?}") }),

@@ -31,6 +31,8 @@ pub(crate) enum Error {
     Installed { wrong: String },
     /// An example does not give the numbers of the program `pc`.
     Numbers { example: String, wrong: String },
+    /// Installing on a system that has other names and tools for it.
+    NotLinux { system: String },
     /// Every test binary was empty, or none was run.
     NoTests,
 }
@@ -65,6 +67,11 @@ impl fmt::Display for Error {
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
+            Error::NotLinux { system } => write!(
+                f,
+                "installing is made for Linux; on {system} take the library from target/release and the headers from \
+                 include"
+            ),
             Error::NoTests => f.write_str("no test was run"),
         }
     }

@@ -1,24 +1,29 @@
 //! `cargo xtask install --prefix DIR` and `uninstall`: the libraries, the headers, and what finds them.
 
-use std::fs;
+mod places;
+mod texts;
+#[cfg(test)]
+mod trial;
+
+use std::collections::BTreeSet;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fs, io, process};
 
 use crate::command::{announce_and_run, cargo, run, target_directory, workspace_root};
 use crate::error::Error;
 use crate::header::{abi_version, functions_of_header, headers, macro_of_header};
 use crate::setup;
 
+pub(crate) use places::Places;
+
 /// What a program linked with the archive needs beside it, and what compilers add by themselves.
 pub(crate) const STATIC_LIBS: &str = "-lm -lpthread -ldl -lrt -lutil";
 
-/// Directories of ours alone.
-const OWN: [&str; 2] = ["lib/cmake/pc", "include/pc"];
-
-/// A file of the installation, below the prefix.
+/// A file of the installation.
 struct Installed {
-    path: String,
+    path: PathBuf,
     contents: Contents,
 }
 
@@ -29,63 +34,79 @@ enum Contents {
     Archive(PathBuf),
     /// A link to a file beside it.
     Link(String),
-    /// A text written for this prefix.
+    /// A text written for these places.
     Text(String),
 }
 
 /// Builds the library and installs it.
 ///
 /// # Errors
-/// [`Error::File`], or the failure of the build.
-pub(crate) fn install(prefix: &Path) -> Result<(), Error> {
+/// [`Error::File`], or the failure of the build; [`Error::NotLinux`].
+pub(crate) fn install(places: &Places) -> Result<(), Error> {
+    known(env::consts::OS)?;
     setup::native_tools()?;
     announce_and_run(&mut cargo(&["build", "--release", "--package", "pc-capi", "--lib"]))?;
-    place(&target_directory()?.join("release"), prefix)
+    place(&target_directory()?.join("release"), places)
 }
 
 /// Installs what was built in a directory.
 ///
 /// # Errors
-/// [`Error::File`], or the failure of a tool.
-pub(crate) fn place(built: &Path, prefix: &Path) -> Result<(), Error> {
-    let prefix = std::path::absolute(prefix).map_err(|source| file(prefix, source))?;
-    for Installed { path, contents } in files(built, &prefix)? {
-        let path = prefix.join(path);
-        let directory = path.parent().unwrap_or(&prefix);
-        fs::create_dir_all(directory).map_err(|source| file(directory, source))?;
-        match contents {
-            Contents::Copy(from) => {
-                fs::copy(from, &path).map_err(|source| file(&path, source))?;
-            }
-            Contents::Link(to) => {
-                let _ = fs::remove_file(&path); // one that is there would be in the way
-                symlink(to, &path).map_err(|source| file(&path, source))?;
-            }
-            Contents::Text(text) => fs::write(&path, text).map_err(|source| file(&path, source))?,
-            Contents::Archive(from) => archive(&from, &path)?,
-        }
+/// [`Error::File`], or the failure of a tool; [`Error::NotLinux`].
+pub(crate) fn place(built: &Path, places: &Places) -> Result<(), Error> {
+    known(env::consts::OS)?;
+    for Installed { path, contents } in files(built, places)? {
+        let path = places.staged(&path);
+        put(&path, contents)?;
         println!("{}", path.display());
     }
     Ok(())
 }
 
-/// Removes what [`install`] has written, and no more.
+/// Removes what [`install`] has written there, libraries of earlier numbers too, and no more.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be removed; one that is not there is none.
-pub(crate) fn uninstall(prefix: &Path) -> Result<(), Error> {
-    let prefix = std::path::absolute(prefix).map_err(|source| file(prefix, source))?;
-    for Installed { path, .. } in files(Path::new(""), &prefix)? {
-        let path = prefix.join(path);
-        match fs::remove_file(&path) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => return Err(file(&path, source)),
+/// [`Error::File`] where a file cannot be removed; one that is not there is none. [`Error::NotLinux`].
+pub(crate) fn uninstall(places: &Places) -> Result<(), Error> {
+    known(env::consts::OS)?;
+    let files = files(Path::new(""), places)?;
+    let mut paths: Vec<PathBuf> = files.iter().map(|file| places.staged(&file.path)).collect();
+    paths.extend(numbered(&places.staged(&places.libdir)));
+    for path in &paths {
+        match fs::remove_file(path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => return Err(file(path, source)),
             _ => {}
         }
     }
-    for directory in OWN {
-        let _ = fs::remove_dir(prefix.join(directory)); // only if nothing else is in it
+    let shared = [&places.libdir.join("cmake"), &places.libdir.join("pkgconfig")];
+    let above = |directory: &Path| {
+        places.libdir.starts_with(directory)
+            || places.includedir.starts_with(directory)
+            || shared.iter().any(|shared| directory == *shared)
+    };
+    let own: BTreeSet<&Path> = files
+        .iter()
+        .flat_map(|file| file.path.ancestors().skip(1).take_while(|directory| !above(directory)))
+        .collect();
+    for directory in own.into_iter().rev() {
+        let _ = fs::remove_dir(places.staged(directory)); // only if nothing else is in it
     }
     Ok(())
+}
+
+/// Refuses systems whose names of libraries and whose linkers are others than those below.
+fn known(system: &str) -> Result<(), Error> {
+    match system {
+        "linux" => Ok(()),
+        other => Err(Error::NotLinux { system: other.to_owned() }),
+    }
+}
+
+/// The shared libraries in a directory, of whatever number.
+fn numbered(directory: &Path) -> Vec<PathBuf> {
+    let number = |name: &str| name.strip_prefix("libpc.so.").is_some_and(|rest| rest.parse::<u32>().is_ok());
+    let entries = fs::read_dir(directory).into_iter().flatten().flatten();
+    entries.filter(|entry| entry.file_name().to_str().is_some_and(number)).map(|entry| entry.path()).collect()
 }
 
 /// The files and links below a directory, in order.
@@ -106,24 +127,46 @@ pub(crate) fn left(directory: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(found)
 }
 
-/// The files of the library that was built in a directory.
-fn files(built: &Path, prefix: &Path) -> Result<Vec<Installed>, Error> {
-    let (root, abi) = (workspace_root(), abi_version()?);
+/// The files of the library that was built in a directory: the headers are those of `include`.
+fn files(built: &Path, places: &Places) -> Result<Vec<Installed>, Error> {
+    let (include, abi) = (workspace_root().join("include"), abi_version()?);
     let number = |name| macro_of_header(&format!("PC_VERSION_{name}"));
     let version = format!("{}.{}.{}", number("MAJOR")?, number("MINOR")?, number("PATCH")?);
-    let of = |path: &str, contents| Installed { path: path.to_owned(), contents };
-    let include = root.join("include");
-    let headers = headers(&include)?.into_iter();
-    let headers = headers.map(|name| of(&format!("include/{name}"), Contents::Copy(include.join(name))));
-    let libraries = [
-        of(&format!("lib/libpc.so.{abi}"), Contents::Copy(built.join("libpc.so"))),
-        of("lib/libpc.so", Contents::Link(format!("libpc.so.{abi}"))),
-        of("lib/libpc.a", Contents::Archive(built.join("libpc.a"))),
-        of("lib/pkgconfig/libpc.pc", Contents::Text(pkg_config(prefix, &version))),
-        of("lib/cmake/pc/pcConfig.cmake", Contents::Text(cmake_config(&abi))),
-        of("lib/cmake/pc/pcConfigVersion.cmake", Contents::Text(cmake_version(&version))),
-    ];
-    Ok(headers.chain(libraries).collect())
+    let mut files = Vec::new();
+    for name in headers(&include)? {
+        let contents = Contents::Copy(include.join(&name));
+        files.push(Installed { path: places.includedir.join(name), contents });
+    }
+    let library = format!("libpc.so.{abi}");
+    for (name, contents) in [
+        (library.as_str(), Contents::Copy(built.join("libpc.so"))),
+        ("libpc.so", Contents::Link(library.clone())),
+        ("libpc.a", Contents::Archive(built.join("libpc.a"))),
+        ("pkgconfig/libpc.pc", Contents::Text(texts::pkg_config(places, &version))),
+        ("cmake/pc/pcConfig.cmake", Contents::Text(texts::cmake_config(places, &abi))),
+        ("cmake/pc/pcConfigVersion.cmake", Contents::Text(texts::cmake_version(&version))),
+    ] {
+        files.push(Installed { path: places.libdir.join(name), contents });
+    }
+    Ok(files)
+}
+
+/// Makes a file beside its place and moves it there: who has the one before in use keeps that, and where a link stands,
+/// what it leads to stays as it is.
+fn put(path: &Path, contents: Contents) -> Result<(), Error> {
+    let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else { return Ok(()) };
+    let workshop = directory.join(format!(".pc-install-{}", process::id()));
+    let new = workshop.join(name);
+    fs::create_dir_all(&workshop).map_err(|source| file(&workshop, source))?;
+    let made = match contents {
+        Contents::Copy(from) => fs::copy(&from, &new).map(|_| ()).map_err(|source| file(&from, source)),
+        Contents::Link(to) => symlink(to, &new).map_err(|source| file(&new, source)),
+        Contents::Text(text) => fs::write(&new, text).map_err(|source| file(&new, source)),
+        Contents::Archive(from) => archive(&from, &new),
+    };
+    let moved = made.and_then(|()| fs::rename(&new, path).map_err(|source| file(path, source)));
+    let cleared = fs::remove_dir_all(&workshop).map_err(|source| file(&workshop, source));
+    moved.and(cleared)
 }
 
 /// Links what the functions of the header need to one object, in which nothing else is global: a program may
@@ -140,49 +183,10 @@ fn archive(from: &Path, to: &Path) -> Result<(), Error> {
     let mut hide = Command::new("objcopy");
     hide.args(["--strip-debug", "--remove-section=.llvmbc", "--remove-section=.llvmcmd"]);
     run(hide.args(["--wildcard", "--keep-global-symbol=pc_*"]).arg(&object))?;
-    let _ = fs::remove_file(to); // an archive that is there would be added to
-    run(Command::new("ar").arg("rcs").arg(to).arg(&object))?;
-    fs::remove_file(&object).map_err(|source| file(&object, source))
+    run(Command::new("ar").arg("rcs").arg(to).arg(&object))
 }
 
-fn pkg_config(prefix: &Path, version: &str) -> String {
-    format!(
-        "prefix={}\nincludedir=${{prefix}}/include\nlibdir=${{prefix}}/lib\n\n\
-         Name: pc\nDescription: Poincaré–Chetaev equations of mechanical systems\nVersion: {version}\n\
-         Cflags: -I${{includedir}}\nLibs: -L${{libdir}} -lpc\nLibs.private: {STATIC_LIBS}\n",
-        prefix.display()
-    )
-}
-
-fn cmake_config(abi: &str) -> String {
-    format!(
-        "# Targets pc::pc, the shared library, and pc::static.\n\
-         get_filename_component(_pc_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
-         if(NOT TARGET pc::pc)\n  \
-           add_library(pc::pc SHARED IMPORTED)\n  \
-           set_target_properties(pc::pc PROPERTIES\n    \
-             IMPORTED_LOCATION \"${{_pc_prefix}}/lib/libpc.so.{abi}\"\n    \
-             IMPORTED_SONAME \"libpc.so.{abi}\"\n    \
-             INTERFACE_INCLUDE_DIRECTORIES \"${{_pc_prefix}}/include\")\n  \
-           add_library(pc::static STATIC IMPORTED)\n  \
-           set_target_properties(pc::static PROPERTIES\n    \
-             IMPORTED_LOCATION \"${{_pc_prefix}}/lib/libpc.a\"\n    \
-             INTERFACE_INCLUDE_DIRECTORIES \"${{_pc_prefix}}/include\"\n    \
-             INTERFACE_LINK_LIBRARIES \"{STATIC_LIBS}\")\n\
-         endif()\n"
-    )
-}
-
-fn cmake_version(version: &str) -> String {
-    format!(
-        "set(PACKAGE_VERSION \"{version}\")\n\
-         if(PACKAGE_VERSION VERSION_LESS PACKAGE_FIND_VERSION)\n  set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
-         else()\n  set(PACKAGE_VERSION_COMPATIBLE TRUE)\nendif()\n\
-         if(PACKAGE_VERSION VERSION_EQUAL PACKAGE_FIND_VERSION)\n  set(PACKAGE_VERSION_EXACT TRUE)\nendif()\n"
-    )
-}
-
-fn file(path: &Path, source: std::io::Error) -> Error {
+fn file(path: &Path, source: io::Error) -> Error {
     Error::File { path: path.display().to_string(), source }
 }
 
@@ -191,33 +195,100 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_file_stands_below_the_prefix() {
-        for Installed { path, .. } in files(Path::new("/built"), Path::new("/opt/pc")).unwrap() {
-            assert!(path.starts_with("lib/") || path.starts_with("include/"), "{path}");
+    fn every_file_stands_where_it_should() {
+        let places = Places::below(Path::new("/opt/pc")).unwrap();
+        let files = files(Path::new("/built"), &places).unwrap();
+        for Installed { path, .. } in &files {
+            assert!(path.starts_with("/opt/pc/lib") || path.starts_with("/opt/pc/include"), "{path:?}");
+        }
+        for name in ["include/pc.h", "include/pc.hpp", "include/pc/cvode.h", "lib/libpc.so", "lib/libpc.a"] {
+            let path = Path::new("/opt/pc").join(name);
+            assert_eq!(files.iter().filter(|file| file.path == path).count(), 1, "{name}");
         }
     }
 
     #[test]
     fn all_that_is_installed_is_removed_and_nothing_else() {
-        let prefix = tempfile::tempdir().unwrap();
-        let prefix = std::path::absolute(prefix.path()).unwrap();
-        let own = ["include/other.h", "lib/cmake/pc/other.cmake"].map(|path| prefix.join(path));
-        let files: Vec<_> = files(Path::new("/built"), &prefix).unwrap();
-        for path in files.iter().map(|file| prefix.join(&file.path)).chain(own.clone()) {
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, "").unwrap();
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name).display().to_string();
+        let packed =
+            ["--prefix", &at("usr"), "--libdir", "lib/x", "--destdir", &at("packed")].map(str::to_owned);
+        let plain = ["--prefix", &at("own")].map(str::to_owned);
+        for words in [&packed[..], &plain] {
+            let places = Places::of("install", words).unwrap();
+            let (lib, include) = (places.staged(&places.libdir), places.staged(&places.includedir));
+            let mut own = vec![
+                include.join("other.h"),
+                lib.join("cmake/pc/other.cmake"),
+                lib.join("libpc.so.0.1"),
+                lib.join("libpc.so.none"),
+                lib.join("libpcre.so.3"),
+            ];
+            own.sort();
+            let files: Vec<_> = files(Path::new("/built"), &places).unwrap();
+            let ours = files.iter().map(|file| places.staged(&file.path));
+            let earlier = ["libpc.so.7", "libpc.so.12"].map(|name| lib.join(name));
+            for path in ours.chain(earlier).chain(own.clone()) {
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, "").unwrap();
+            }
+            let top = places.staged(&places.prefix);
+            assert_eq!(left(&top).unwrap().len(), files.len() + 2 + own.len());
+            uninstall(&places).unwrap();
+            assert_eq!(left(&top).unwrap(), own);
+            assert!(!include.join("pc").exists() && lib.join("cmake/pc").exists());
+            uninstall(&places).unwrap(); // there is nothing, which is no failure
+            fs::remove_file(lib.join("cmake/pc/other.cmake")).unwrap();
+            uninstall(&places).unwrap();
+            assert!(!lib.join("cmake/pc").exists() && lib.join("cmake").exists());
         }
-        assert_eq!(left(&prefix).unwrap().len(), files.len() + own.len());
-        uninstall(&prefix).unwrap();
-        assert_eq!(left(&prefix).unwrap(), own);
-        assert!(!prefix.join("include/pc").exists() && prefix.join("lib/cmake/pc").exists());
-        uninstall(&prefix).unwrap(); // there is nothing, which is no failure
+    }
+
+    /// As a program that has it mapped does, this one still sees the old contents; and what a link leads to is not written.
+    #[test]
+    fn what_is_in_use_stays_as_it_is() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let read = |path: &Path| fs::read_to_string(path).unwrap();
+        let new = at("new");
+        fs::write(&new, "new").unwrap();
+        let made: [fn(&Path) -> Contents; 3] = [
+            |new| Contents::Copy(new.to_owned()),
+            |_| Contents::Text("new".to_owned()),
+            |_| Contents::Link("new".to_owned()),
+        ];
+        for make in made {
+            fs::write(at("used"), "old").unwrap();
+            let mut in_use = fs::File::open(at("used")).unwrap();
+            put(&at("used"), make(&new)).unwrap();
+            assert_eq!(io::read_to_string(&mut in_use).unwrap(), "old");
+            assert_eq!(read(&at("used")), "new");
+
+            fs::write(at("other"), "other").unwrap();
+            symlink("other", at("link")).unwrap();
+            put(&at("link"), make(&new)).unwrap();
+            assert_eq!((read(&at("link")), read(&at("other"))), ("new".to_owned(), "other".to_owned()));
+            for name in ["used", "link", "other"] {
+                fs::remove_file(at(name)).unwrap();
+            }
+        }
+        // What fails leaves what was there, and nothing else.
+        fs::write(at("used"), "old").unwrap();
+        let error = put(&at("used"), Contents::Copy(at("missing"))).unwrap_err().to_string();
+        assert!(error.contains("missing"), "{error}");
+        assert_eq!(
+            (read(&at("used")), left(directory.path()).unwrap()),
+            ("old".to_owned(), vec![new, at("used")])
+        );
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2);
     }
 
     #[test]
-    fn what_finds_the_library_names_its_place() {
-        let text = pkg_config(Path::new("/opt/pc"), "0.1.0");
-        assert!(text.starts_with("prefix=/opt/pc\n") && text.contains("\nVersion: 0.1.0\n"));
-        assert!(cmake_config("3").contains("\"${_pc_prefix}/lib/libpc.so.3\""));
+    fn other_systems_are_refused() {
+        assert!(known("linux").is_ok());
+        assert_eq!(
+            known("macos").unwrap_err().to_string(),
+            "installing is made for Linux; on macos take the library from target/release and the headers from include"
+        );
     }
 }

@@ -21,10 +21,10 @@ mod tools;
 mod valgrind;
 
 use std::env;
-use std::path::Path;
 use std::process::ExitCode;
 
 use error::Error;
+use install::Places;
 
 const USAGE: &str = "\
 usage: cargo xtask <command>
@@ -36,7 +36,8 @@ usage: cargo xtask <command>
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind
   valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
-  install --prefix DIR     build the C library and install it with its headers; `uninstall` removes it
+  install --prefix DIR [--libdir DIR] [--includedir DIR] [--destdir DIR]
+                   build the C library and install it with its headers; `uninstall` with the same removes it
   setup            install what the build needs (the commands above do it by themselves)
   help             this text";
 
@@ -81,8 +82,8 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
             no_more(name, rest)?;
             valgrind::run()
         }
-        "install" => install::install(prefix(name, rest)?),
-        "uninstall" => install::uninstall(prefix(name, rest)?),
+        "install" => install::install(&Places::of(name, rest)?),
+        "uninstall" => install::uninstall(&Places::of(name, rest)?),
         "setup" => {
             no_more(name, rest)?;
             setup::everything()
@@ -100,16 +101,6 @@ fn quick(rest: &[String]) -> Result<bool, Error> {
         [] => Ok(false),
         [flag, more @ ..] if flag == "--quick" => no_more("test --quick", more).map(|()| true),
         [other, ..] => Err(Error::Usage { message: format!("`test` does not take `{other}`") }),
-    }
-}
-
-/// The directory of `--prefix DIR`.
-fn prefix<'a>(name: &str, rest: &'a [String]) -> Result<&'a Path, Error> {
-    match rest {
-        [flag, directory, more @ ..] if flag == "--prefix" => {
-            no_more(name, more).map(|()| Path::new(directory))
-        }
-        _ => Err(Error::Usage { message: format!("`{name}` needs `--prefix DIR`") }),
     }
 }
 

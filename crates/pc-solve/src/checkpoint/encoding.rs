@@ -1,11 +1,12 @@
 //! Checkpoints as bytes.
 //!
 //! ```text
-//! pc checkpoint 2\n
+//! pc checkpoint 3\n
 //! length of the label, label
 //! t, dim, y; number of outputs, times, states
 //! number of occurrences, of each: event, t, y⁻, y⁺
 //! the work
+//! 1 if the motion was started anew after a jump, else 0
 //! 0, or 1 and what is known of events: start; number of events, of each: side, noise, how often, number of the last
 //!     times, these; number of those due, of each: event, noise
 //! CRC-32 of all that is before
@@ -18,7 +19,7 @@ use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// Why bytes are not a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -79,6 +80,7 @@ impl Checkpoint {
             put_integer(&mut bytes, count);
         }
         put_numbers(&mut bytes, &[work.first_step, work.last_step, work.current_step, work.current_time]);
+        put_integer(&mut bytes, u64::from(self.jumped));
         put_integer(&mut bytes, u64::from(self.past.is_some()));
         if let Some(past) = &self.past {
             past.put(&mut bytes);
@@ -189,11 +191,8 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         current_time: number(bytes)?,
         ..checkpoint.statistics
     };
-    checkpoint.past = match integer(bytes)? {
-        0 => None,
-        1 => Some(Past::take(bytes)?),
-        _ => return None,
-    };
+    checkpoint.jumped = flag(bytes)?;
+    checkpoint.past = if flag(bytes)? { Some(Past::take(bytes)?) } else { None };
     let events = checkpoint.past.as_ref().map_or(0, |past| past.events.len());
     let known = checkpoint.occurrences.iter().all(|occurrence| occurrence.event < events);
     known.then_some((checkpoint, label))
@@ -209,6 +208,14 @@ fn put_numbers(bytes: &mut Vec<u8>, values: &[f64]) {
 
 fn integer(bytes: &mut &[u8]) -> Option<u64> {
     Some(u64::from_le_bytes(bytes.split_off(..8)?.try_into().ok()?))
+}
+
+fn flag(bytes: &mut &[u8]) -> Option<bool> {
+    match integer(bytes)? {
+        0 => Some(false),
+        1 => Some(true),
+        _ => None,
+    }
 }
 
 fn index(bytes: &mut &[u8]) -> Option<usize> {

@@ -48,7 +48,8 @@ pub fn solve_checkpointed<F: VectorField>(
 
 /// As [`solve_with_events_observed`](crate::solve_with_events_observed), with checkpoints as in [`solve_checkpointed`].
 ///
-/// The vector field and the events are those that `parts` makes for each leg of the motion. A part of a step that an event
+/// The vector field and the events are those that `parts` makes for each leg of the motion; a field that keeps an integral
+/// is told, in the legs after a reset, to [keep](VectorField::restart) what the motion has then. A part of a step that an event
 /// has ended counts as a step; a checkpoint at its end comes after all that occurs there. So a motion that goes on from any
 /// of its checkpoints gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was never
 /// interrupted.
@@ -112,8 +113,8 @@ pub fn solve_with_events_checkpointed<F: VectorField, E: Events>(
         let result = plan.leg(&mut hybrid, &mut stand, &mut step);
         stand.statistics = work.followed_by(&hybrid.statistics());
         let Some(ending) = result.transpose() else {
-            let Checkpoint { time, state, past, .. } = hybrid.checkpoint();
-            stand = Checkpoint { time, state, past, ..stand };
+            let Checkpoint { time, state, jumped, past, .. } = hybrid.checkpoint();
+            stand = Checkpoint { time, state, jumped, past, ..stand };
             continue;
         };
         let arrived = ending.as_ref().ok().copied();

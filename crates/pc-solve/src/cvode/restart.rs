@@ -43,6 +43,7 @@ impl<F: VectorField> Cvode<F> {
         self.earlier = before;
         self.earlier.current_time = t;
         self.restarted = true;
+        self.jumped = true;
         // CVODES forgets a stop time that it has reached.
         self.set_stop_time(self.stop_time)
     }

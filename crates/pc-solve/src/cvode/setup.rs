@@ -84,6 +84,7 @@ impl<F: VectorField> Cvode<F> {
             idle_failure: None,
             earlier: Statistics::default(),
             restarted: false,
+            jumped: false,
         };
         cvode.set_stop_time(options.stop_time)?;
         Ok(cvode)

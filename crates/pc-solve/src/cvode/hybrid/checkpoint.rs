@@ -29,14 +29,15 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             due: due.iter().map(|&event| (event, self.noise[event])).collect(),
         };
         let start = Checkpoint::start(self.time(), self.state());
-        Checkpoint { statistics: self.statistics(), past: Some(past), ..start }
+        Checkpoint { statistics: self.statistics(), jumped: self.engine.jumped, past: Some(past), ..start }
     }
 
     /// Begins anew at a checkpoint, which may be the start of a motion.
     ///
     /// Both the motion that was interrupted there and the one that was not go on from here with the same numbers, if
     /// `field`, `events`, `options` and a limit of [accumulation](Hybrid::accumulation) are the same; fields and events that
-    /// remember earlier evaluations must be as they were when made.
+    /// remember earlier evaluations must be as they were when made. After a reset the field goes on to keep what it has in
+    /// the state of the checkpoint, as in [`Cvode::resume`].
     ///
     /// # Errors
     /// As for [`Cvode::new`] and [`Cvode::with_events`]; [`InputError::EventCount`] if the checkpoint is of a motion with another

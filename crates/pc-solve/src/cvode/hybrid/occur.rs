@@ -10,7 +10,8 @@ use crate::events::Occurrence;
 use crate::inequality;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
-    /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does.
+    /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does:
+    /// by the first terminal event, else where `occurred` stops it.
     pub(super) fn occur(
         &mut self,
         occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
@@ -39,15 +40,16 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         }
         self.due.clear();
 
-        let mut ending = None;
+        let (mut terminal, mut stopped) = (None, None);
         for occurrence in &occurrences {
             if self.events.events()[occurrence.event].is_terminal() {
-                ending = ending.or(Some(Ending::Event { event: occurrence.event }));
+                terminal = terminal.or(Some(Ending::Event { event: occurrence.event }));
             }
             if occurred(occurrence).is_break() {
-                ending = ending.or(Some(Ending::Stopped));
+                stopped = Some(Ending::Stopped);
             }
         }
+        let ending = terminal.or(stopped);
         for occurrence in &occurrences {
             let event = occurrence.event;
             let accumulates = self.histories[event].note(t, self.start, self.accumulation);

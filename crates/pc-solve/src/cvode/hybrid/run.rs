@@ -12,7 +12,8 @@ use crate::events::Occurrence;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Integrates to `t`, or to a terminal event before, and tells what occurs, events at `t` included, to `occurred`,
-    /// which may stop it.
+    /// which may stop it. All that occurs together is told; if one of these events is terminal, it ends the integration, also
+    /// where `occurred` stops it.
     ///
     /// # Errors
     /// As for [`Cvode::advance_to`](crate::Cvode::advance_to), and [`Reason::Event`], [`Reason::Reset`],

@@ -5,8 +5,7 @@ use std::ops::ControlFlow;
 use pc_expr::{Events, VectorField};
 
 use super::{Ending, Hybrid};
-use crate::code::Code;
-use crate::error::{InputError, Reason, SolveError};
+use crate::error::{InputError, SolveError};
 use crate::events::Occurrence;
 use crate::options::finite;
 
@@ -41,16 +40,14 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// [`Cvode::interpolate`](crate::Cvode::interpolate) gives it, up to where it is known what occurs.
     ///
     /// # Errors
-    /// As there; [`InputError::NoStep`] also after a reset, which makes a new start.
+    /// As there; [`InputError::NoStep`] also after a reset, which makes a new start, and [`InputError::OutsideStep`] also
+    /// beyond the next event.
     pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
         finite("the time", t)?;
-        let Some(direction) = self.direction.filter(|_| !self.engine.restarted) else {
+        if self.direction.is_none() || self.engine.restarted {
             return Err(InputError::NoStep.into());
-        };
-        if (t - self.front.t) * direction > 0.0 {
-            let message = format!("{t} lies beyond {}, up to where events are known.", self.front.t);
-            return Err(self.engine.error(Reason::Cvode { code: Code::BadTime, message }, None));
         }
+        self.engine.check_inside(t, order, self.front.t)?;
         let time = self.engine.time;
         let interpolated = self.engine.interpolate_to_work(t, order);
         self.engine.time = time;
