@@ -871,7 +871,7 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are the next four; a
+ * Sets the time to which the program `pc` runs the model. It is written to the text, as are the next five; a
  * solver is told by its own options.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
@@ -885,6 +885,14 @@ pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error
  * Sets the tolerances with which the program `pc` runs the model, both positive.
  */
 pc_status pc_model_set_tolerances(pc_model *model, double relative, double absolute, pc_error **error);
+
+/**
+ * Sets the largest length of a step, positive, with which the program `pc` runs the model: an event whose function has
+ * passed through zero and back within a step is not seen.
+ */
+pc_status pc_model_set_max_step(pc_model *model,
+                                double length,
+                                pc_error **error);
 
 /**
  * Sets the method by which the program `pc` runs the model: "adams", "bdf".

@@ -163,6 +163,7 @@ public:
     {
         return say(pc_model_set_tolerances, relative, absolute);
     }
+    model &max_step(double length) { return say(pc_model_set_max_step, length); }
     model &method(const std::string &method) { return say(pc_model_set_method, method.c_str()); }
     model &form(const std::string &form) { return say(pc_model_set_form, form.c_str()); }
 

@@ -10,8 +10,6 @@ use crate::matrix::Matrix;
 use crate::sample::Neighbourhood;
 use crate::structure::StructureCoefficients;
 
-/// Residuals below this, relative to the commutator, are rounding: a wrong bracket is off by order one.
-pub(crate) const ROUNDING: f64 = 1e-9;
 /// Points at which an identity that the graph cannot decide is tried numerically.
 pub(crate) const TRIALS: usize = 8;
 
@@ -41,7 +39,8 @@ impl<'g> Frame<'g> {
         }
         let mut left_inverse = None;
         StructureCoefficients::from_pairs(k, |r, s| {
-            let commutator = self.commutator(r, s);
+            let terms = self.commutator_terms(r, s);
+            let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
             if commutator.iter().all(|x| x.is_zero()) {
                 return Ok(vec![Expr::ZERO; k]);
             }
@@ -49,8 +48,10 @@ impl<'g> Frame<'g> {
             let c: Vec<Expr<'g>> = (0..k)
                 .map(|m| self.graph().dot(solve.row(m).iter().copied(), commutator.iter().copied()))
                 .collect();
-            match self.residual(&commutator, &c, near) {
-                residual if residual > ROUNDING => Err(AlgebraError::NotClosed { pair: (r, s), residual }),
+            match self.residual(&terms, &c, near) {
+                residual if residual > Neighbourhood::ROUNDING => {
+                    Err(AlgebraError::NotClosed { pair: (r, s), residual })
+                }
                 _ => Ok(self.graph().shorten(&c, &[])),
             }
         })
@@ -71,27 +72,28 @@ impl<'g> Frame<'g> {
         }
         for (r, s) in pairs(k) {
             let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
-            let residual = self.residual(&self.commutator(r, s), &c, near);
-            if residual > ROUNDING {
+            let residual = self.residual(&self.commutator_terms(r, s), &c, near);
+            if residual > Neighbourhood::ROUNDING {
                 return Err(AlgebraError::Contradiction { pair: (r, s), residual });
             }
         }
         Ok(())
     }
 
-    /// The largest residual of [X_r, X_s] = c_rs^m X_m relative to 1 + |[X_r, X_s]|, over all pairs.
+    /// The largest residual of [X_r, X_s] = c_rs^m X_m relative to its terms, as
+    /// [`Neighbourhood::residual`] measures it, over all pairs.
     pub fn closure_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
         let k = self.operators();
         pairs(k)
             .map(|(r, s)| {
                 let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
-                self.residual(&self.commutator(r, s), &c, near)
+                self.residual(&self.commutator_terms(r, s), &c, near)
             })
             .fold(0.0, f64::max)
     }
 
     /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators
-    /// 0..k, with the triple it belongs to.
+    /// 0..k, relative to its terms, as [`Neighbourhood::residual`] measures it.
     pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
         if structure.nonzero().next().is_none() {
             return 0.0;
@@ -102,18 +104,17 @@ impl<'g> Frame<'g> {
             for s in r + 1..=k {
                 for u in s + 1..=k {
                     let cycles = [(r, s, u), (s, u, r), (u, r, s)];
-                    let defects: Vec<Expr<'g>> = (1..=k)
-                        .map(|m| {
-                            self.graph().sum(cycles.iter().map(|&(r, s, u)| {
-                                let transport = self.apply(u, &[structure.get(r, s, m)])[0];
-                                let nested = self
-                                    .graph()
-                                    .sum((1..=k).map(|p| structure.get(r, s, p) * structure.get(p, u, m)));
-                                nested - transport
-                            }))
-                        })
-                        .collect();
-                    worst = worst.max(near.largest(self.graph(), &defects));
+                    let defect = |m: usize| -> Vec<Expr<'g>> {
+                        let terms = cycles.iter().flat_map(|&(r, s, u)| {
+                            let transport = self.apply(u, &[structure.get(r, s, m)])[0];
+                            let nested =
+                                (1..=k).map(move |p| structure.get(r, s, p) * structure.get(p, u, m));
+                            nested.chain([-transport])
+                        });
+                        terms.filter(|term| !term.is_zero()).collect()
+                    };
+                    let defects: Vec<Vec<Expr<'g>>> = (1..=k).map(defect).collect();
+                    worst = worst.max(near.residual(self.graph(), &defects));
                 }
             }
         }
@@ -138,25 +139,18 @@ impl<'g> Frame<'g> {
         })
     }
 
-    /// Largest |Y − c^m X_m| relative to 1 + |Y|, for an operator Y such as [X_r, X_s].
-    pub(crate) fn residual(&self, commutator: &[Expr<'g>], c: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
-        let graph = self.graph();
-        let differences: Vec<Expr<'g>> = commutator
-            .iter()
-            .enumerate()
-            .map(|(i, &x)| x - graph.dot(self.b().row(i).iter().copied(), c.iter().copied()))
-            .collect();
-        if differences.iter().all(|x| x.is_zero()) {
-            return 0.0;
-        }
-        let both: Vec<Expr<'g>> = differences.iter().chain(commutator).copied().collect();
-        let size = |values: &[f64]| values.iter().fold(0.0f64, |size, v| size.max(v.abs()));
-        let samples = near.samples(graph, &both, TRIALS);
-        if samples.is_empty() {
-            return f64::INFINITY;
-        }
-        let n = commutator.len();
-        samples.iter().map(|values| size(&values[..n]) / (1.0 + size(&values[n..]))).fold(0.0, f64::max)
+    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose components are sums.
+    pub(crate) fn residual<const N: usize>(
+        &self,
+        y: &[[Expr<'g>; N]],
+        c: &[Expr<'g>],
+        near: &Neighbourhood<'g>,
+    ) -> f64 {
+        let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
+            let combination = self.b().row(i).iter().zip(c).map(|(&b, &c)| -(b * c));
+            terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
+        };
+        near.residual(self.graph(), &y.iter().enumerate().map(difference).collect::<Vec<_>>())
     }
 
     /// Constant c with b c_rs = [X_r, X_s]: one linear system over many points, rounded to rationals and then
@@ -168,13 +162,14 @@ impl<'g> Frame<'g> {
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
         let k = self.operators();
         StructureCoefficients::from_pairs(k, |r, s| {
-            let commutator = self.commutator(r, s);
+            let terms = self.commutator_terms(r, s);
+            let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
             let refusal = AlgebraError::RankDeficient { rank, operators: k, pair: (r, s) };
             if commutator.iter().all(|x| x.is_zero()) {
                 return Ok(vec![Expr::ZERO; k]);
             }
             let c = self.fit_constants(&commutator, near).ok_or_else(|| refusal.clone())?;
-            if self.residual(&commutator, &c, near) > ROUNDING { Err(refusal) } else { Ok(c) }
+            if self.residual(&terms, &c, near) > Neighbourhood::ROUNDING { Err(refusal) } else { Ok(c) }
         })
     }
 

@@ -2,6 +2,7 @@
 
 use pc_expr::{Expr, Graph};
 
+use crate::affine::affine;
 use crate::error::AlgebraError;
 use crate::inverse::inverse;
 use crate::matrix::Matrix;
@@ -173,9 +174,14 @@ impl<'g> Frame<'g> {
 
     /// The components [X_r, X_s]^i = X_r(b_is) − X_s(b_ir), i = 1..n, with r, s = 0..k and b_i0 the drift.
     pub fn commutator(&self, r: usize, s: usize) -> Vec<Expr<'g>> {
+        self.commutator_terms(r, s).into_iter().map(|[forth, back]| forth + back).collect()
+    }
+
+    /// The terms X_r(b_is) and −X_s(b_ir) of the components.
+    pub(crate) fn commutator_terms(&self, r: usize, s: usize) -> Vec<[Expr<'g>; 2]> {
         let forth = self.apply(r, &self.operator(s));
         let back = self.apply(s, &self.operator(r));
-        forth.into_iter().zip(back).map(|(f, b)| f - b).collect()
+        forth.into_iter().zip(back).map(|(forth, back)| [forth, -back]).collect()
     }
 
     /// The components b_is of X_s, the drift for s = 0.
@@ -223,18 +229,12 @@ fn affine_parts<'g>(
     symbols: &[Expr<'g>],
     expressions: &[Expr<'g>],
 ) -> Result<(Matrix<Expr<'g>>, Vec<Expr<'g>>), usize> {
-    let rows: Vec<Vec<Expr<'g>>> = expressions.iter().map(|&e| graph.gradient(e, symbols)).collect();
-    for (row, coefficients) in rows.iter().enumerate() {
-        if coefficients.iter().any(|&c| symbols.iter().any(|&s| c.depends_on(s))) {
-            return Err(row);
-        }
+    let mut rows = Vec::with_capacity(expressions.len());
+    let mut constants = Vec::with_capacity(expressions.len());
+    for (row, &expression) in expressions.iter().enumerate() {
+        let (coefficients, constant) = affine(graph, expression, symbols).ok_or(row)?;
+        rows.push(coefficients);
+        constants.push(constant);
     }
-    let zero: Vec<_> = symbols.iter().map(|&s| (s, Expr::ZERO)).collect();
-    // A coefficient written with a quotient of the symbols may hide its independence of them only at zero.
-    let constants = graph.substitute(expressions, &zero);
-    let flat: Vec<Expr<'g>> = rows.concat();
-    let flat = graph.substitute(&flat, &zero);
-    let columns = symbols.len();
-    let matrix = Matrix::from_fn(rows.len(), columns, |i, j| flat[i * columns + j]);
-    Ok((matrix, constants))
+    Ok((Matrix::from_fn(rows.len(), symbols.len(), |i, j| rows[i][j]), constants))
 }

@@ -2,7 +2,6 @@
 
 use pc_expr::Expr;
 
-use crate::closure::ROUNDING;
 use crate::error::AlgebraError;
 use crate::frame::{Frame, shape};
 use crate::inverse::inverse;
@@ -64,12 +63,12 @@ impl<'g> Frame<'g> {
         };
         let columns: Vec<Vec<Expr<'g>>> = (0..=k)
             .map(|s| {
-                let operator: Vec<Expr<'g>> = match s {
-                    0 => self.b0().iter().zip(other.b0()).map(|(&own, &others)| own - others).collect(),
-                    _ => self.operator(s),
+                let operator: Vec<[Expr<'g>; 2]> = match s {
+                    0 => self.b0().iter().zip(other.b0()).map(|(&own, &others)| [own, -others]).collect(),
+                    _ => self.operator(s).into_iter().map(|entry| [entry, Expr::ZERO]).collect(),
                 };
-                let column = project(&operator);
-                match other.residual(&operator, &column, near) > ROUNDING {
+                let column = project(&operator.iter().map(|&[own, others]| own + others).collect::<Vec<_>>());
+                match other.residual(&operator, &column, near) > Neighbourhood::ROUNDING {
                     true => Err(AlgebraError::DifferentVelocities { operator: s }),
                     false => Ok(column),
                 }
@@ -166,7 +165,7 @@ impl<'g> FrameChange<'g> {
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
         let (graph, k) = (self.to.graph(), self.drift.len());
         shape("the list of operators of the structure coefficients", c.operators(), k)?;
-        let b: Vec<Vec<Expr<'g>>> = (0..=k).map(|s| self.back_column(s)).collect();
+        let b: Vec<Vec<Expr<'g>>> = (0..=k).map(|s| self.old_components(s)).collect();
         StructureCoefficients::from_pairs(k, |r, s| {
             let forth = self.to.apply(r, &b[s]);
             let back = self.to.apply(s, &b[r]);
@@ -185,8 +184,11 @@ impl<'g> FrameChange<'g> {
         })
     }
 
-    /// B_ps for p = 0..k: the components of X'_s along X_0..X_k.
-    fn back_column(&self, s: usize) -> Vec<Expr<'g>> {
+    /// B_ps for p = 0..k: the components of X'_s along X_0..X_k, s = 0..k.
+    ///
+    /// # Panics
+    /// If s is out of range.
+    pub fn old_components(&self, s: usize) -> Vec<Expr<'g>> {
         match s {
             0 => [&[Expr::ONE], self.back.1.as_slice()].concat(),
             _ => std::iter::once(Expr::ZERO).chain(self.back.0.column(s - 1)).collect(),

@@ -3,9 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use pc_expr::Expr;
 
-use crate::closure::{ROUNDING, TRIALS, pairs};
+use crate::closure::{TRIALS, pairs};
 use crate::frame::Frame;
 use crate::sample::Neighbourhood;
+use crate::weighed::Weighed;
 
 /// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,8 @@ pub enum Integrability {
     NotIntegrable {
         /// The first such pair r < s.
         pair: (usize, usize),
-        /// Its largest distance from the span, relative to 1 + |[X_r, X_s]|.
+        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], each coordinate and each operator in
+        /// units of its own.
         residual: f64,
     },
 }
@@ -55,7 +57,8 @@ impl<'g> Frame<'g> {
         let columns = self.b().transpose().to_rows();
         let rank = self.graph().generic_rank(&columns);
         for pair in pairs(self.operators()) {
-            let commutator = self.commutator(pair.0, pair.1);
+            let terms = self.commutator_terms(pair.0, pair.1);
+            let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
             if commutator.iter().all(|x| x.is_zero()) {
                 continue;
             }
@@ -63,34 +66,63 @@ impl<'g> Frame<'g> {
             if self.graph().generic_rank(&extended) == rank {
                 continue;
             }
-            let residual = self.distance_from_span(&commutator, near);
-            if residual > ROUNDING {
+            let residual = self.distance_from_span(&terms, near);
+            if residual > Neighbourhood::ROUNDING {
                 return Integrability::NotIntegrable { pair, residual };
             }
         }
         Integrability::Integrable { dimension: rank }
     }
 
-    /// Largest distance of the operator Y from the span of X_1..X_k, relative to 1 + |Y|.
-    fn distance_from_span(&self, y: &[Expr<'g>], near: &Neighbourhood<'g>) -> f64 {
+    /// Largest distance from the span of X_1..X_k of an operator whose components are sums of two terms, relative to these.
+    fn distance_from_span(&self, y: &[[Expr<'g>; 2]], near: &Neighbourhood<'g>) -> f64 {
         let (n, k) = (self.b().rows(), self.operators());
-        let entries: Vec<Expr<'g>> = self.b().entries().iter().chain(y).copied().collect();
-        let samples = near.samples(self.graph(), &entries, TRIALS);
+        let outputs: Vec<Expr<'g>> = self.b().entries().iter().chain(y.as_flattened()).copied().collect();
+        let samples = near.weighed(self.graph(), &outputs, TRIALS);
         if samples.is_empty() {
             return f64::INFINITY;
         }
-        let distance = |values: &Vec<f64>| {
-            let y = DVector::from_column_slice(&values[n * k..]);
-            let outside = if k == 0 {
-                y.clone()
-            } else {
-                let svd = DMatrix::from_row_slice(n, k, &values[..n * k]).svd(true, false);
-                let kept = svd.singular_values.iter().map(|s| *s > 1e-10 * svd.singular_values.max());
-                let u = svd.u.iter().flat_map(|u| u.column_iter());
-                u.zip(kept).filter(|(_, kept)| *kept).fold(y.clone(), |rest, (u, _)| &rest - u * u.dot(&y))
-            };
-            outside.amax() / (1.0 + y.amax())
+        let distance = |values: &Vec<Weighed>| {
+            let b = DMatrix::from_fn(n, k, |i, s| values[i * k + s].value);
+            let y = DVector::from_fn(n, |i, _| {
+                let sum = values[n * k + 2 * i] + values[n * k + 2 * i + 1];
+                (sum.value, sum.size())
+            });
+            scaled_distance(b, &y.map(|(value, _)| value), &y.map(|(_, size)| size))
         };
         samples.iter().map(distance).fold(0.0, f64::max)
     }
+}
+
+/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and then rows are
+/// brought to size one before, so that it depends on no unit.
+fn scaled_distance(mut b: DMatrix<f64>, y: &DVector<f64>, size: &DVector<f64>) -> f64 {
+    let largest = size.amax();
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let (mut y, mut size) = (y / largest, size / largest);
+    for mut column in b.column_iter_mut().filter(|column| column.amax() > 0.0) {
+        column /= column.amax();
+    }
+    for (i, mut row) in b.row_iter_mut().enumerate() {
+        let unit = row.iter().fold(size[i], |unit, entry| unit.max(entry.abs()));
+        if unit > 0.0 {
+            row /= unit;
+            y[i] /= unit;
+            size[i] /= unit;
+        }
+    }
+    for mut column in b.column_iter_mut().filter(|column| column.amax() > 0.0) {
+        column /= column.norm();
+    }
+    let mut outside = y.clone();
+    if b.ncols() > 0 {
+        let svd = b.svd(true, false);
+        let kept = svd.singular_values.iter().map(|s| *s > 1e-10 * svd.singular_values.max());
+        for (u, _) in svd.u.iter().flat_map(|u| u.column_iter()).zip(kept).filter(|(_, kept)| *kept) {
+            outside -= u * u.dot(&y);
+        }
+    }
+    outside.amax() / size.amax()
 }

@@ -1,17 +1,25 @@
 //! Inverses of matrices of expressions that are singular only where the matrix is.
 
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, Number};
 
 use crate::matrix::Matrix;
+use crate::sample::Neighbourhood;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;
+/// A pivot by which rounding errors grow tenfold is taken as readily as the best one.
+const READILY: f64 = 0.1;
+/// Constants smaller than this against their row are no pivots: rounding errors would grow a thousandfold.
+const TINY: f64 = 1e-3;
+/// Rounded constants smaller than this against the two that they are the difference of are zero: some hundred roundings.
+const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Constant pivots are eliminated first, the block that is left is inverted as cofactors over its
-/// determinant: the entries are regular wherever the matrix is. (Only a block of more than four rows without
-/// constant pivots is eliminated with pivots that depend on the state and may vanish on their own.)
+/// Constant pivots that are not small against their row are eliminated first, the block that is left is inverted as
+/// cofactors over its determinant: the entries are regular wherever the matrix is. (Only a block of more than four rows
+/// without constant pivots is eliminated with pivots that depend on the state and may vanish on their own.) Constants that
+/// cancel but for rounding are zero.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let n = matrix.rows();
     let mut work = Elimination::new(graph, matrix);
@@ -75,12 +83,44 @@ impl<'g> Elimination<'g> {
         self.open_rows.iter().flat_map(|&i| self.open_columns.iter().map(move |&j| (i, j)))
     }
 
+    /// The first constant that is about as large as any against its row.
     fn constant_pivot(&self) -> Option<(usize, usize)> {
-        self.open().find(|&at| self.left[at].constant().is_some_and(|c| !c.is_zero()))
+        let is_constant = |&at: &(usize, usize)| self.left[at].constant().is_some_and(|c| !c.is_zero());
+        let constants: Vec<(usize, usize)> = self.open().filter(is_constant).collect();
+        if constants.is_empty() {
+            return None;
+        }
+        let shares = self.shares();
+        let best = constants.iter().map(|&at| shares[at]).fold(0.0, f64::max);
+        constants.into_iter().find(|&at| best > TINY && shares[at] >= READILY * best)
     }
 
+    /// The entry that is cheapest to divide by, a tiny constant only if there is nothing else.
     fn cheapest_pivot(&self) -> Option<(usize, usize)> {
-        self.open().filter(|&at| !self.left[at].is_zero()).min_by_key(|&at| self.left[at].tree_cost())
+        let shares = self.shares();
+        let is_tiny = |at: (usize, usize)| self.left[at].constant().is_some() && shares[at] <= TINY;
+        let entries = self.open().filter(|&at| !self.left[at].is_zero());
+        entries.min_by_key(|&at| (is_tiny(at), self.left[at].tree_cost()))
+    }
+
+    /// The size of each entry, relative to the largest that is open in its row. That of an expression is tried at one point,
+    /// and counts as one where it has no value there.
+    fn shares(&self) -> Matrix<f64> {
+        let open: Vec<(usize, usize)> = self.open().collect();
+        let entries: Vec<Expr<'g>> = open.iter().map(|&at| self.left[at]).collect();
+        let sample = Neighbourhood::default().sample::<f64>(self.graph, &entries, 1);
+        let sizes = sample.unwrap_or_default().into_iter().map(f64::abs);
+        let mut shares = self.left.map(|_| 0.0);
+        for (&at, size) in open.iter().zip(sizes) {
+            shares[at] = if size.is_finite() { size } else { 1.0 };
+        }
+        for &i in &self.open_rows {
+            let largest = shares.row(i).iter().copied().fold(0.0, f64::max);
+            for &j in self.open_columns.iter().filter(|_| largest > 0.0) {
+                shares[(i, j)] /= largest;
+            }
+        }
+        shares
     }
 
     fn eliminate(&mut self, (row, column): (usize, usize)) {
@@ -96,14 +136,24 @@ impl<'g> Elimination<'g> {
                 continue;
             }
             for j in 0..n {
-                self.left[(i, j)] = self.graph.sum([self.left[(i, j)], -(factor * self.left[(row, j)])]);
-                self.right[(i, j)] = self.graph.sum([self.right[(i, j)], -(factor * self.right[(row, j)])]);
+                self.left[(i, j)] = difference(self.graph, self.left[(i, j)], factor * self.left[(row, j)]);
+                self.right[(i, j)] =
+                    difference(self.graph, self.right[(i, j)], factor * self.right[(row, j)]);
             }
         }
         self.open_rows.retain(|&i| i != row);
         self.open_columns.retain(|&j| j != column);
         self.done.push((row, column));
     }
+}
+
+/// x − y, and 0 for constants that differ by rounding only.
+fn difference<'g>(graph: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
+    let difference = graph.sum([x, -y]);
+    let (Some(Number::Real(rest)), Some(x)) = (difference.constant(), x.constant()) else {
+        return difference;
+    };
+    if rest.abs() < ROUNDING * x.to_f64().abs() { Expr::ZERO } else { difference }
 }
 
 /// adj A / det A
@@ -168,6 +218,54 @@ mod tests {
                 assert_eq!(entry, if i == j { Expr::ONE } else { Expr::ZERO }, "entry {i}, {j}");
             }
         }
+    }
+
+    /// x' = w − u whatever the rounding error of cos(π/2) is.
+    #[test]
+    fn a_rounding_error_is_no_pivot() {
+        let graph = Graph::new();
+        let noise = Expr::from((std::f64::consts::PI / 2.0).cos());
+        let x = graph.symbol("x");
+        let (one, zero) = (Expr::ONE, Expr::ZERO);
+        for rows in [
+            [[noise, one, zero], [one, one, zero], [zero, zero, one]],
+            [[noise, x.exp(), zero], [one, x.exp(), zero], [zero, zero, x]],
+            [[noise, x.exp(), zero], [x, x.sin(), zero], [zero, zero, x]],
+        ] {
+            let a = Matrix::from_fn(3, 3, |i, j| rows[i][j]);
+            let b = inverse(&graph, &a).unwrap();
+            for (index, &entry) in b.entries().iter().enumerate() {
+                let column = |i: usize| b[(i, index % 3)];
+                let product = graph.dot(a.row(index / 3).iter().copied(), (0..3).map(column));
+                let values = graph.evaluate(&[product, entry], &[(x, 0.7)]).unwrap();
+                let expected = if index.is_multiple_of(4) { 1.0 } else { 0.0 };
+                // some operations with entries of order one
+                assert!(
+                    (values[0] - expected).abs() < 1e-14 && values[1].abs() < 10.0,
+                    "{index}: {values:?}"
+                );
+            }
+        }
+    }
+
+    /// Small constants are as good as others where the row has nothing larger: the unit of a quasi-velocity.
+    #[test]
+    fn a_small_unit_is_no_rounding_error() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        let rows = [[Expr::from(1e-10), Expr::ZERO], [y, x]];
+        let b = inverse(&graph, &Matrix::from_fn(2, 2, |i, j| rows[i][j])).unwrap();
+        assert_eq!(b.to_rows(), [[Expr::from(1e10), Expr::ZERO], [-1e10 * y / x, x.powi(-1)]]);
+    }
+
+    /// √2·√2 − 2 is 0, though not in floating point.
+    #[test]
+    fn constants_that_cancel_but_for_rounding_are_singular() {
+        let graph = Graph::new();
+        let root = Expr::from(2f64.sqrt());
+        let rows = [[root, Expr::ONE], [Expr::from(2.0), root]];
+        assert!(!(root * root - 2.0).is_zero());
+        assert!(inverse(&graph, &Matrix::from_fn(2, 2, |i, j| rows[i][j])).is_none());
     }
 
     #[test]

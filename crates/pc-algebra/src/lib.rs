@@ -80,6 +80,7 @@
 //! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
 //! [`LieGroup::compose`], [`LieGroup::project`].
 
+mod affine;
 mod bianchi;
 mod catalogue;
 mod closure;
@@ -106,7 +107,9 @@ mod sample;
 mod series;
 mod structure;
 mod subspace;
+mod weighed;
 
+pub use affine::affine;
 pub use catalogue::{CATALOGUE, Entry};
 pub use error::AlgebraError;
 pub use frame::Frame;

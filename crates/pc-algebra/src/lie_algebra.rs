@@ -1,9 +1,12 @@
 //! Lie algebras given by structure constants.
 
-use pc_expr::Number;
+use std::ops::RangeInclusive;
+
+use pc_expr::{Number, Scalar};
 
 use crate::error::AlgebraError;
 use crate::matrix::Matrix;
+use crate::weighed::Weighed;
 
 /// A Lie algebra with basis X_1..X_k and exact structure constants: [X_r, X_s] = c_rs^m X_m (5).
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +24,7 @@ impl LieAlgebra {
     pub fn new(dim: usize, c: impl Fn(usize, usize, usize) -> Number) -> Result<LieAlgebra, AlgebraError> {
         let algebra = LieAlgebra::from_constants(dim, c);
         algebra.check_antisymmetry()?;
-        algebra.check_jacobi()?;
+        check_jacobi(1..=dim, |r, s, m| algebra.constant(r - 1, s - 1, m - 1))?;
         Ok(algebra)
     }
 
@@ -111,30 +114,42 @@ impl LieAlgebra {
         }
         Ok(())
     }
+}
 
-    /// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0
-    fn check_jacobi(&self) -> Result<(), AlgebraError> {
-        let k = self.dim;
-        let c = |r, s, m| self.constant(r, s, m);
-        for (r, s, u) in indices(k).filter(|&(r, s, u)| r < s && s < u) {
-            for m in 0..k {
-                let defect = (0..k).fold(Number::ZERO, |sum, p| {
-                    sum + c(r, s, p) * c(p, u, m) + c(s, u, p) * c(p, r, m) + c(u, r, p) * c(p, s, m)
-                });
-                let size = (0..k).fold(1.0f64, |size, p| size.max(c(r, s, p).to_f64().abs()));
-                // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
-                if defect.to_f64().abs() > 1e-12 * size * size {
-                    let defect = defect.to_string();
-                    return Err(AlgebraError::Jacobi {
-                        triple: (r + 1, s + 1, u + 1),
-                        component: m + 1,
-                        defect,
-                    });
+/// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0 for r < s < u among the `operators`, which begin with 1, or with 0 for
+/// time; `c`(r, s, m) = c_rs^m, where m is from 1.
+///
+/// # Errors
+/// [`AlgebraError::Jacobi`].
+pub(crate) fn check_jacobi(
+    operators: RangeInclusive<usize>,
+    c: impl Fn(usize, usize, usize) -> Number,
+) -> Result<(), AlgebraError> {
+    let k = *operators.end();
+    let triples =
+        operators.clone().flat_map(|r| (r + 1..=k).flat_map(move |s| (s + 1..=k).map(move |u| (r, s, u))));
+    for (r, s, u) in triples {
+        for component in 1..=k {
+            let (mut defect, mut size) = (Number::ZERO, Weighed::from_f64(0.0));
+            for (r, s, u) in [(r, s, u), (s, u, r), (u, r, s)] {
+                for p in (1..=k).filter(|&p| !c(r, s, p).is_zero()) {
+                    let (first, second) = (c(r, s, p), c(p, u, component));
+                    defect = defect + first * second;
+                    size = size + Weighed::constant(first) * Weighed::constant(second);
                 }
             }
+            // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
+            let vanishes = defect.to_f64().abs() <= 1e-12 * size.size();
+            if !vanishes {
+                return Err(AlgebraError::Jacobi {
+                    triple: (r, s, u),
+                    component,
+                    defect: defect.to_string(),
+                });
+            }
         }
-        Ok(())
     }
+    Ok(())
 }
 
 fn indices(k: usize) -> impl Iterator<Item = (usize, usize, usize)> + use<> {

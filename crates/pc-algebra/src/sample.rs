@@ -1,8 +1,9 @@
 //! Numerical values of expressions at pseudo-random points, for tests that the graph cannot decide exactly.
 
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, Scalar};
 
 use crate::closure::TRIALS;
+use crate::weighed::Weighed;
 
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
 #[derive(Clone, Debug, Default)]
@@ -12,22 +13,29 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre); `None` where one of
-    /// them is not finite.
-    pub(crate) fn sample(&self, graph: &'g Graph, outputs: &[Expr<'g>], index: u64) -> Option<Vec<f64>> {
+    /// Parts of the terms of a sum below this are no more than rounding, also of constants that are written with ten
+    /// digits: a sum that does not vanish is of the order of its terms.
+    pub const ROUNDING: f64 = 1e-9;
+
+    /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre).
+    pub(crate) fn sample<S: Scalar>(
+        &self,
+        graph: &'g Graph,
+        outputs: &[Expr<'g>],
+        index: u64,
+    ) -> Option<Vec<S>> {
         let symbols = graph.symbols_of(outputs);
         let mut random = Random(index);
-        let values: Vec<(Expr<'g>, f64)> = symbols
+        let values: Vec<(Expr<'g>, S)> = symbols
             .into_iter()
             .map(|symbol| {
                 let centre =
                     self.centre.iter().find(|(known, _)| *known == symbol).map_or(1.0, |&(_, value)| value);
                 let reach = 0.1 + 0.2 * centre.abs();
-                (symbol, if index == 0 { centre } else { centre + reach * random.next() })
+                (symbol, S::from_f64(if index == 0 { centre } else { centre + reach * random.next() }))
             })
             .collect();
-        let values = graph.evaluate(outputs, &values).ok()?;
-        values.iter().all(|v| v.is_finite()).then_some(values)
+        graph.evaluate(outputs, &values).ok()
     }
 
     /// The largest absolute value of the expressions at the centre and points near it where all are finite; infinity if
@@ -41,9 +49,66 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() { f64::INFINITY } else { largest }
     }
 
+    /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about 10⁻¹⁶ where
+    /// f vanishes identically and not even the graph knows, and never more than 1; infinity if there are no such points.
+    /// In Σ|terms| are also the terms that have cancelled in a term.
+    ///
+    /// It depends on no unit: 10⁻¹⁰ x is no zero.
+    ///
+    /// ```
+    /// # use pc_algebra::Neighbourhood;
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// let near = Neighbourhood::default();
+    /// assert_eq!(near.residual(&graph, &[vec![1e-10 * x]]), 1.0);
+    /// // log(xy) = log x + log y is nothing that the graph knows.
+    /// let zero = [(x * y).log(), -x.log(), -y.log()];
+    /// assert!(near.residual(&graph, &[zero.to_vec()]) < 1e-15);
+    /// ```
+    pub fn residual(&self, graph: &'g Graph, sums: &[Vec<Expr<'g>>]) -> f64 {
+        let open = |terms: &&Vec<Expr<'g>>| !graph.sum(terms.iter().copied()).is_zero();
+        let sums: Vec<&Vec<Expr<'g>>> = sums.iter().filter(open).collect();
+        if sums.is_empty() {
+            return 0.0;
+        }
+        let terms: Vec<Expr<'g>> = sums.iter().flat_map(|terms| terms.iter().copied()).collect();
+        let samples = self.weighed(graph, &terms, TRIALS);
+        if samples.is_empty() {
+            return f64::INFINITY;
+        }
+        let mut worst = 0.0f64;
+        for sample in &samples {
+            let mut values = sample.iter().copied();
+            for terms in &sums {
+                let zero = Weighed::from_f64(0.0);
+                worst =
+                    worst.max(values.by_ref().take(terms.len()).fold(zero, |sum, term| sum + term).rest());
+            }
+        }
+        worst
+    }
+
     /// Values at up to `count` points where all outputs are finite.
     pub(crate) fn samples(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<f64>> {
-        (0..4 * count as u64).filter_map(|index| self.sample(graph, outputs, index)).take(count).collect()
+        self.finite(graph, outputs, count, |x: &f64| x.is_finite())
+    }
+
+    /// The same with their weights.
+    pub(crate) fn weighed(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
+        self.finite(graph, outputs, count, |x: &Weighed| x.is_finite())
+    }
+
+    fn finite<S: Scalar>(
+        &self,
+        graph: &'g Graph,
+        outputs: &[Expr<'g>],
+        count: usize,
+        is_finite: impl Fn(&S) -> bool,
+    ) -> Vec<Vec<S>> {
+        let all_finite = |values: &Vec<S>| values.iter().all(&is_finite);
+        let points = 0..4 * count as u64;
+        points.filter_map(|index| self.sample(graph, outputs, index)).filter(all_finite).take(count).collect()
     }
 }
 

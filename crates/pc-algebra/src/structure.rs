@@ -4,7 +4,8 @@ use std::convert::Infallible;
 
 use pc_expr::{Expr, Graph, Number};
 
-use crate::lie_algebra::LieAlgebra;
+use crate::error::AlgebraError;
+use crate::lie_algebra::{LieAlgebra, check_jacobi};
 
 /// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 =
 /// 0.
@@ -144,11 +145,38 @@ impl<'g> StructureCoefficients<'g> {
 impl LieAlgebra {
     /// The structure coefficients of a stationary frame with this algebra (all c_0s = 0).
     pub fn structure_coefficients<'g>(&self) -> StructureCoefficients<'g> {
-        self.with_time(|_, _| Number::ZERO)
+        self.and_drift(|_, _| Number::ZERO)
     }
 
     /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
-    pub fn with_time<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
+    ///
+    /// # Errors
+    /// [`AlgebraError::Jacobi`], with index 0 for time, where \[X_0, ·\] is no derivation of the algebra:
+    /// \[X_0, \[X_r, X_s\]\] = \[\[X_0, X_r\], X_s\] + \[X_r, \[X_0, X_s\]\].
+    ///
+    /// ```
+    /// # use pc_algebra::{AlgebraError, LieAlgebra};
+    /// // [X_1, X_2] = X_2: X_0 may stretch X_2 but not X_1.
+    /// let algebra = LieAlgebra::from_brackets(2, &[(0, 1, 1, 1.into())])?;
+    /// let stretch = |which: usize| algebra.with_time(move |s, m| i32::from((s, m) == (which, which)).into());
+    /// assert_eq!(stretch(1)?.get(0, 2, 2), 1.into());
+    /// assert!(matches!(stretch(0), Err(AlgebraError::Jacobi { triple: (0, 1, 2), .. })));
+    /// # Ok::<(), AlgebraError>(())
+    /// ```
+    pub fn with_time<'g>(
+        &self,
+        drift: impl Fn(usize, usize) -> Number,
+    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        check_jacobi(0..=self.dim(), |r, s, m| match (r, s) {
+            (0, 0) => Number::ZERO,
+            (0, s) => drift(s - 1, m - 1),
+            (r, 0) => -drift(r - 1, m - 1),
+            (r, s) => self.constant(r - 1, s - 1, m - 1),
+        })?;
+        Ok(self.and_drift(drift))
+    }
+
+    fn and_drift<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
         let k = self.dim();
         let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
             Ok((0..k)

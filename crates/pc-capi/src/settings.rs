@@ -101,7 +101,7 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the next four; a
+/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the next five; a
 /// solver is told by its own options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
@@ -139,6 +139,18 @@ pub unsafe extern "C" fn pc_model_set_tolerances(
     let values = [("rtol", relative), ("atol", absolute)];
     // SAFETY: as the preamble demands.
     unsafe { set_number(model, error, "pc_model_set_tolerances", &values) }
+}
+
+/// Sets the largest length of a step, positive, with which the program `pc` runs the model: an event whose function has
+/// passed through zero and back within a step is not seen.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_max_step(
+    model: *mut pc_model,
+    length: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { set_number(model, error, "pc_model_set_max_step", &[("max_step", length)]) }
 }
 
 /// Sets the method by which the program `pc` runs the model: "adams", "bdf".

@@ -71,6 +71,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         samples,
         rtol: 1e-12,
         atol: 1e-14,
+        max_step: None,
         method: Method::Adams,
     };
     let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pc_model::Variables;
+use pc_model::document::MOST_SAMPLES;
 
 use crate::saving::SavingArguments;
 use crate::sweep::arguments::SweepArguments;
@@ -109,6 +110,9 @@ pub struct RunArguments {
     /// Absolute tolerance; else that of the file, else 1e-12
     #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = positive)]
     pub atol: Option<f64>,
+    /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
+    pub max_step: Option<f64>,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
@@ -309,9 +313,6 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
         _ => Err("it must be positive".to_owned()),
     }
 }
-
-/// More rows than this are a slip of the pen: each is held in memory.
-const MOST_SAMPLES: usize = 10_000_000;
 
 pub(crate) fn samples(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {

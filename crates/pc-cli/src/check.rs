@@ -138,10 +138,6 @@ impl<'g> Report<'g> {
             (false, true) => "brackets from the frame",
             (false, false) => "constant brackets found",
         };
-        let residual = |value: f64| match value {
-            0.0 => "holds identically".to_owned(),
-            value => format!("holds to {}", small(value)),
-        };
         let names = self.coordinates.iter().chain(&self.quasi_velocities).map(String::as_str);
         let start = assignments(names.zip(self.start.iter().copied()), WIDTH);
         let rank = [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(self.frame.constraints());
@@ -150,8 +146,8 @@ impl<'g> Report<'g> {
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
             ("rank of the frame", rank.collect()),
             ("holonomic", self.frame.holonomic(WIDTH)),
-            ("closure", vec![residual(self.closure_residual)]),
-            ("Jacobi identity", vec![residual(self.jacobi_residual)]),
+            ("closure", vec![held(self.closure_residual)]),
+            ("Jacobi identity", vec![held(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
             ("constraints", self.constraint_lines()),
             ("mass matrix", self.mass_matrix_lines()),
@@ -225,6 +221,15 @@ impl<'g> Report<'g> {
     }
 }
 
+/// Whether an identity holds of which numbers leave a residual, relative to its terms.
+fn held(residual: f64) -> String {
+    match residual {
+        0.0 => "holds identically".to_owned(),
+        residual if residual <= Neighbourhood::ROUNDING => format!("holds to {}", small(residual)),
+        residual => format!("is violated: {} of the terms is left", small(residual)),
+    }
+}
+
 /// The energy of all velocities, which is that of a run, in the independent ones of the equations.
 fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
     let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
@@ -293,4 +298,17 @@ fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
     let constraints = multipliers.constraints().iter();
     let both = constraints.flat_map(|c| [c.expression(), c.velocity(&assembly.system)]);
     both.map(|x| value(x).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_hold_is_not_said_to_hold() {
+        assert_eq!(held(0.0), "holds identically");
+        assert_eq!(held(2.5e-16), "holds to 2.5e-16");
+        assert_eq!(held(2e-9), "is violated: 2.0e-9 of the terms is left");
+        assert!(held(f64::NAN).starts_with("is violated") && held(f64::INFINITY).starts_with("is violated"));
+    }
 }

@@ -22,6 +22,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         entry("--t-end", plan.t_end.to_string()),
         entry("--rtol", format!("{:e}", plan.rtol)),
         entry("--atol", format!("{:e}", plan.atol)),
+        entry("--max-step", plan.max_step.map_or("none".to_owned(), |length| format!("{length:e}"))),
         entry("--method", plan.method.to_string().to_lowercase()),
         entry("--form", format!("{form:?}").to_lowercase()),
         entry("text of the model", format!("{}\n", model.document().source.text())),

@@ -10,7 +10,7 @@ use crate::error::CliError;
 /// Rows of a table if nobody says how many.
 const SAMPLES: usize = 201;
 
-/// Time span, rows, method and tolerances of a run.
+/// Time span, rows, method, tolerances and limit of the steps of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Start time.
@@ -23,6 +23,8 @@ pub struct Plan {
     pub rtol: f64,
     /// Absolute tolerance.
     pub atol: f64,
+    /// Largest length of a step, if it is limited.
+    pub max_step: Option<f64>,
     /// Method.
     pub method: Method,
 }
@@ -59,6 +61,7 @@ impl Plan {
             samples: arguments.samples.or(simulation.samples.as_ref().map(|n| n.value)).unwrap_or(SAMPLES),
             rtol: arguments.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
             atol: arguments.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
+            max_step: arguments.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
             method,
         })
     }
@@ -71,8 +74,18 @@ impl Plan {
         inner.chain([self.t_end]).collect()
     }
 
-    /// Method and tolerances for the integrator.
+    /// Method, tolerances and the limit of steps for the integrator.
     pub fn options(&self) -> Options {
-        Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol)
+        let options = Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol);
+        match self.max_step {
+            Some(length) => options.max_step(length),
+            None => options,
+        }
+    }
+
+    /// Method, tolerances and the limit of steps in words.
+    pub fn in_words(&self) -> String {
+        let limit = self.max_step.map_or_else(String::new, |length| format!(", steps to {length:e}"));
+        format!("{}, rtol {:e}, atol {:e}{limit}", self.method, self.rtol, self.atol)
     }
 }

@@ -15,7 +15,7 @@ pub fn text(run: &Run) -> String {
     let mut text = format!("{}\n", run.title);
     let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
 
-    line("method", &[format!("{}, rtol {:e}, atol {:e}", plan.method, plan.rtol, plan.atol)]);
+    line("method", &[plan.in_words()]);
     let rows = run.table.len();
     let reached = match &run.ending {
         Ending::Completed => format!("{rows} rows"),
@@ -135,6 +135,7 @@ pub fn json(run: &Run) -> Value {
         "method": plan.method.to_string().to_lowercase(),
         "rtol": plan.rtol,
         "atol": plan.atol,
+        "max_step": plan.max_step,
         "t_start": plan.t_start,
         "t_end": plan.t_end,
         "t_reached": reached_time(run),

@@ -152,7 +152,7 @@ fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm)
 fn summary(title: &str, plan: &Plan, tally: &journal::Tally, before: u64, elapsed: f64) -> String {
     let mut text = format!("{title}\n");
     let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
-    line("method", format!("{}, rtol {:e}, atol {:e}", plan.method, plan.rtol, plan.atol));
+    line("method", plan.in_words());
     line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));
     let others = tally.done - tally.completed - tally.by_event;
     let mut members = format!("{}, {} completed", tally.done, tally.completed);

@@ -73,6 +73,32 @@ fn the_ball_bounces() {
     });
 }
 
+/// sin 1000 t passes through zero 3183 times in ten units of time, far faster than the state moves.
+#[test]
+fn events_faster_than_the_motion_are_found_with_short_steps() {
+    let model = |simulation: &str| {
+        format!(
+            "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2\"\n\
+             [events.beat]\nwhen = \"sin(1000*t)\"\n[simulation]\nt_end = 10.0\nsamples = 2\n{simulation}"
+        )
+    };
+    let expected: Vec<f64> = (1..=3183).map(|n| f64::from(n) * TAU / 2000.0).collect();
+    for run in [
+        kept(&model("max_step = 1e-3\n"), "-", &[]),
+        kept(&model(""), "-", &["--max-step", "1e-3"]),
+        kept(&model("max_step = 5.0\n"), "-", &["--max-step", "1e-3"]),
+    ] {
+        assert_close(&times(&run, "beat"), &expected);
+        assert_eq!(run["summary"]["max_step"], 1e-3);
+    }
+    let free = kept(&model(""), "-", &[]);
+    assert!(times(&free, "beat").len() < expected.len(), "or the limit is of no use");
+    assert_eq!(free["summary"]["max_step"], Value::Null);
+    let refused = pc(&model(""), &["run", "-", "--max-step", "0"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("it must be positive"));
+}
+
 /// A slip takes (2π − 2 arctan q)/ω, q = 1, ω = 1; a stop 2 (F_s − F_k)/(k V) = 2.
 #[test]
 fn the_block_sticks_and_slips() {

@@ -16,6 +16,8 @@ use crate::number::Number;
 const MAX_DEGREE: usize = 4;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
+/// A number at which no divisor is likely to vanish.
+const ODD: Number = Number::Rational { num: 355, den: 452 };
 
 /// A polynomial Σ c·z_1^e_1 z_2^e_2 ….
 #[derive(Clone, Debug)]
@@ -125,9 +127,39 @@ impl Graph {
         short
     }
 
-    /// e with sin z and cos z at the first point of the circle that does not change its value, and with z a number too if
-    /// `whole`; e itself if there is none.
+    /// e with sin z and cos z at a point of the circle that does not change its value, and with z a number too if
+    /// `whole`; e itself if there is none. The first point is taken at which no new divisor comes in, else the first.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool) -> Expr<'g> {
+        let mut forms = self.forms_without(e, z, whole).peekable();
+        let first = forms.peek().copied();
+        forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
+    }
+
+    /// e, which does not depend on the symbol z, written without it: so that no new divisor comes in, or else one
+    /// that only vanishes at odd places.
+    pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+        let mut odd = None;
+        for form in self.forms_without(e, z, true).filter(is_without) {
+            if self.is_as_regular(form, e) {
+                return form;
+            }
+            odd = Some(form);
+        }
+        // Where constants are rounded, every form has a value a little different.
+        let rounded = || {
+            [ODD, Number::ONE, Number::ZERO].into_iter().map(|value| self.at(e, z, value)).find(is_without)
+        };
+        odd.or_else(rounded).unwrap_or(e)
+    }
+
+    /// e at those points of z, from simple to odd ones, that do not change its value.
+    fn forms_without<'g>(
+        &'g self,
+        e: Expr<'g>,
+        z: Expr<'g>,
+        whole: bool,
+    ) -> impl Iterator<Item = Expr<'g>> + 'g {
         // A form with a vanishing denominator or another value is not taken: try the next point.
         let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
         [
@@ -135,11 +167,11 @@ impl Graph {
             (Number::ZERO, [Number::ONE, Number::ZERO]),
             (Number::ZERO, oblique),
             (Number::ONE, oblique),
+            (ODD, [Number::ratio(696, 985), Number::ratio(697, 985)]),
         ]
         .into_iter()
-        .map(|(value, circle)| self.at_point(e, z, whole.then_some(value), circle))
-        .find(|&candidate| self.is_same_value(candidate, e))
-        .unwrap_or(e)
+        .map(move |(value, circle)| self.at_point(e, z, whole.then_some(value), circle))
+        .filter(move |&form| self.is_same_value(form, e))
     }
 
     /// The angles that are no symbols, of which e contains both sine and cosine: Ω t in sin Ω t and cos Ω t.
@@ -194,20 +226,37 @@ impl Graph {
         value: Option<Number>,
         [sin, cos]: [Number; 2],
     ) -> Expr<'g> {
-        let (Atom::Node(angle), output) = (z.atom_in(self), e.atom_in(self)) else { return e };
+        let Atom::Node(angle) = z.atom_in(self) else { return e };
+        let mut replacements: Vec<(NodeId, Atom)> =
+            value.map(|value| (angle, Atom::Constant(value))).into_iter().collect();
+        for (function, value) in [(Function::Sin, sin), (Function::Cos, cos)] {
+            if let Some(node) = self.with(|dag| call_node(dag, function, angle)) {
+                replacements.push((node, Atom::Constant(value)));
+            }
+        }
+        self.trial(e, &replacements)
+    }
+
+    /// e at a value of the symbol z.
+    fn at<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, value: Number) -> Expr<'g> {
+        self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
+    }
+
+    /// e with nodes replaced; a division by zero that it leads to is forgotten.
+    fn trial<'g>(&'g self, e: Expr<'g>, replacements: &[(NodeId, Atom)]) -> Expr<'g> {
+        let output = e.atom_in(self);
         self.build(|dag| {
             let divisions = dag.zero_divisions().len();
-            let mut replacements: Vec<(NodeId, Atom)> =
-                value.map(|value| (angle, Atom::Constant(value))).into_iter().collect();
-            for (function, value) in [(Function::Sin, sin), (Function::Cos, cos)] {
-                if let Some(node) = call_node(dag, function, angle) {
-                    replacements.push((node, Atom::Constant(value)));
-                }
-            }
-            let value = dag.substitute(&[output], &replacements)[0];
+            let value = dag.substitute(&[output], replacements)[0];
             dag.forget_zero_divisions(divisions);
             value
         })
+    }
+
+    /// Whether the first expression has a value wherever the second has one, as far as is seen.
+    fn is_as_regular<'g>(&'g self, some: Expr<'g>, other: Expr<'g>) -> bool {
+        let (some, other) = (some.atom_in(self), other.atom_in(self));
+        self.with(|dag| dag.is_as_regular(some, other))
     }
 
     /// Whether two expressions have the same fingerprint.

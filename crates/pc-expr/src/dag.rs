@@ -14,6 +14,9 @@ use crate::function::Function;
 use crate::number::Number;
 
 mod calls;
+mod divisors;
+
+use divisors::{DivisorSets, Divisors};
 
 /// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
 /// `s = s + x` of n terms from costing n² memory.
@@ -110,9 +113,14 @@ pub(crate) struct Dag {
     folding: Folding,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
-    /// Operations of the node written out as a tree, saturating: decides which of two equal nodes is kept.
+    /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
-    /// The node that stands for this one, if a cheaper one of the same value (up to sign) was found later.
+    /// A bit for each symbol that the node is written with, the same bit for every sixty-fourth.
+    symbols: Vec<u64>,
+    /// What the node divides by.
+    divisors: Vec<Divisors>,
+    divisor_sets: DivisorSets,
+    /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
     successor: Vec<Option<(NodeId, Number)>>,
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
@@ -311,11 +319,12 @@ impl Dag {
         (node, q)
     }
 
-    /// Whether two expressions are the same node, up to the choice among nodes of equal value.
+    /// Whether two expressions are the same node; by value too where that is switched on.
     pub(crate) fn same(&self, a: Atom, b: Atom) -> bool {
         match (a, b) {
             (Atom::Node(a), Atom::Node(b)) => {
-                self.split_coefficient(a, Number::ONE) == self.split_coefficient(b, Number::ONE)
+                let equal = self.folding == Folding::ByValue && self.fingerprint(a) == self.fingerprint(b);
+                equal || self.split_coefficient(a, Number::ONE) == self.split_coefficient(b, Number::ONE)
             }
             _ => a == b,
         }
@@ -333,7 +342,7 @@ impl Dag {
         if coefficient.is_zero() {
             return Atom::ZERO;
         }
-        let square_parts = self.collect_exponents(&mut gathered);
+        let square_parts = self.collect_exponents(&mut gathered, &mut coefficient);
         if square_parts {
             let flat = gathered.clone(); // a radicand may be a product or scaled: gather once more
             return self.product(coefficient, &flat);
@@ -387,9 +396,9 @@ impl Dag {
         }
     }
 
-    /// Adds exponents of equal factors and takes (√e)² to e, e/√e to √e and |e|² to e²; answers whether the
-    /// factors may be gathered once more.
-    fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>) -> bool {
+    /// Adds exponents of equal factors and takes (√e)² to e, e/√e to √e and |e|² to e², signs to `coefficient`;
+    /// answers whether the factors may be gathered once more.
+    fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {
             let sum = kept.1.checked_add(next.1).filter(|_| next.0 == kept.0);
@@ -408,11 +417,13 @@ impl Dag {
                     took = true;
                 }
                 Function::Sqrt => {
-                    let (radicand, _) = self.representative(args[0]);
+                    // √E^e (±E)^r = ±√E^−e (±E)^{r+e} for e = ±1
+                    let (radicand, sign) = self.representative(args[0]);
                     let other = factors.iter_mut().find(|(node, r)| *node == radicand && r.signum() == -e);
                     if let Some((_, r)) = other {
                         *r += e;
                         factors[i].1 = -e;
+                        *coefficient = *coefficient * sign;
                     }
                 }
                 Function::Abs if e % 2 == 0 => {
@@ -478,7 +489,7 @@ impl Dag {
         self.product_of(Number::ONE, &[x, reciprocal])
     }
 
-    /// The cheapest node known to have this node's value up to the sign that is returned with it.
+    /// The best node known to have this node's value up to the sign that is returned with it.
     fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
         let mut sign = Number::ONE;
         while let Some((next, s)) = self.successor[node.index()] {
@@ -487,8 +498,12 @@ impl Dag {
         (node, sign)
     }
 
-    /// Interns a candidate; by value too where that is switched on: constants are recognised and the cheapest of
-    /// the nodes of equal value up to sign is answered.
+    /// Interns a candidate; by value too where that is switched on: constants are recognised, and a node of equal
+    /// value up to sign is answered if it is at least as good.
+    ///
+    /// Of two forms of one function the better is the one that divides by less, as (x² − 1)/(x − 1) has no value at
+    /// x = 1 and x + 1 has; where both have the same divisors, the shorter. A form that divides by what the other does
+    /// not, and conversely, stays a node of its own.
     fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         if self.folding == Folding::Structural {
             return self.intern(candidate);
@@ -509,13 +524,17 @@ impl Dag {
             return Atom::Node(id);
         };
         let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
-        if self.cost_of(candidate) >= self.cost(equal) {
+        let (ours, theirs) = (self.divisors_of(candidate), self.divisors[equal.index()]);
+        let (regular, replaceable) = (self.are_within(theirs, ours), self.are_within(ours, theirs));
+        if regular && !(replaceable && self.is_shorter(candidate, equal)) {
             return self.signed(equal, sign);
         }
         let id = self.push(candidate, fingerprint);
-        self.successor[equal.index()] = Some((id, sign));
-        if let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
-            *slot = id;
+        if replaceable {
+            self.successor[equal.index()] = Some((id, sign));
+            if let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
+                *slot = id;
+            }
         }
         Atom::Node(id)
     }
@@ -565,7 +584,8 @@ impl Dag {
     }
 
     fn push(&mut self, candidate: &Candidate<'_>, fingerprint: Fingerprint) -> NodeId {
-        let cost = self.cost_of(candidate);
+        let (cost, symbols) = (self.cost_of(candidate), self.symbols_of(candidate));
+        let divisors = self.divisors_of(candidate);
         let node = match *candidate {
             Candidate::Constant(c) => Node::Constant(c),
             Candidate::Symbol(name) => {
@@ -588,6 +608,8 @@ impl Dag {
         self.nodes.push(node);
         self.fingerprints.push(fingerprint);
         self.costs.push(cost);
+        self.symbols.push(symbols);
+        self.divisors.push(divisors);
         self.successor.push(None);
         let hash = candidate.hash();
         let Dag { by_structure, nodes, names, terms: term_pool, factors: factor_pool, .. } = self;
@@ -602,6 +624,27 @@ impl Dag {
             .hash()
         });
         id
+    }
+
+    /// Whether a candidate costs less than a node, or as much without some of its symbols.
+    fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
+        let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
+        let without = ours & theirs == ours && ours != theirs;
+        let (cost, known) = (self.cost_of(candidate), self.cost(node));
+        cost < known || cost == known && without
+    }
+
+    fn symbols_of(&self, candidate: &Candidate<'_>) -> u64 {
+        let with = |bits: u64, node: NodeId| bits | self.symbols[node.index()];
+        match *candidate {
+            Candidate::Constant(_) => 0,
+            Candidate::Symbol(_) => 1 << (self.names.len() % 64),
+            Candidate::Sum(_, terms) => terms.iter().fold(0, |bits, &(node, _)| with(bits, node)),
+            Candidate::Product(factors) => factors.iter().fold(0, |bits, &(node, _)| with(bits, node)),
+            Candidate::Call(function, args) => {
+                Dag::args(function, &args).iter().fold(0, |bits, &node| with(bits, node))
+            }
+        }
     }
 
     /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands, and

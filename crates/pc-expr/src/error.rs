@@ -18,6 +18,12 @@ pub enum ExprError {
         /// Its name.
         symbol: String,
     },
+    /// Values to evaluate at that are not finite numbers: no expression is at fault.
+    #[error("the values given are not finite: {}", listed(given))]
+    GivenNotFinite {
+        /// Names and values of the inputs, time, state and parameters, that are not finite.
+        given: Vec<(String, f64)>,
+    },
     /// An expression whose value is not a finite number.
     #[error("`{expression}` is {value}{}", at(*t, state))]
     NotFinite {
@@ -33,9 +39,14 @@ pub enum ExprError {
 }
 
 fn at(t: f64, state: &[(String, f64)]) -> String {
-    let state: String =
-        state.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect();
-    format!(" at t = {}{state}", readable(t))
+    let separator = if state.is_empty() { "" } else { ", " };
+    format!(" at t = {}{separator}{}", readable(t), listed(state))
+}
+
+fn listed(values: &[(String, f64)]) -> String {
+    let values: Vec<String> =
+        values.iter().map(|(name, value)| format!("{name} = {}", readable(*value))).collect();
+    values.join(", ")
 }
 
 /// A number of a message: with an exponent where it would be long without.

@@ -70,7 +70,7 @@ impl Evaluator {
         self.kernel().machine_code()
     }
 
-    /// The innermost expression whose value is not finite at (t, state, parameters), if there is one.
+    /// What is not finite at (t, state, parameters), if anything is; see [`Interpreter::diagnose`].
     pub fn diagnose(&self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
     }

@@ -84,7 +84,7 @@ impl Fingerprint {
         Fingerprint(self.0 - other.0, self.1 - other.1)
     }
 
-    fn times(self, other: Fingerprint) -> Fingerprint {
+    pub(crate) fn times(self, other: Fingerprint) -> Fingerprint {
         Fingerprint(self.0 * other.0, self.1 * other.1)
     }
 
@@ -92,7 +92,7 @@ impl Fingerprint {
         Fingerprint(-self.0, -self.1)
     }
 
-    fn powi(self, exponent: i32) -> Fingerprint {
+    pub(crate) fn powi(self, exponent: i32) -> Fingerprint {
         Fingerprint(self.0.powi(exponent), self.1.powi(exponent))
     }
 }

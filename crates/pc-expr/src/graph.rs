@@ -137,6 +137,8 @@ impl Graph {
 
     /// `outputs` with each symbol of `replacements` replaced by the expression beside it, all at once.
     ///
+    /// A symbol that was replaced is in the results only where it is in the expressions put in.
+    ///
     /// # Panics
     /// If the first of a pair is not a symbol.
     pub fn substitute<'g>(
@@ -149,7 +151,29 @@ impl Graph {
             .map(|(symbol, value)| (symbol.symbol_in(self), value.atom_in(self)))
             .collect();
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
-        self.build_all(|dag| dag.substitute(&outputs, &pairs))
+        let mut results = self.build_all(|dag| dag.substitute(&outputs, &pairs));
+        if self.folding() == Folding::ByValue {
+            self.drop_returned(&mut results, replacements);
+        }
+        results
+    }
+
+    /// Writes results of a substitution without the symbols that it replaced.
+    ///
+    /// Such a symbol comes back where it cancels: the result then has the value of an older and cheaper expression
+    /// that is written with it.
+    fn drop_returned<'g>(&'g self, results: &mut [Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) {
+        let mut returned = self.symbols_of(results);
+        returned.retain(|symbol| replacements.iter().any(|(replaced, _)| replaced == symbol));
+        if returned.is_empty() {
+            return;
+        }
+        let put_in = self.symbols_of(&replacements.iter().map(|&(_, value)| value).collect::<Vec<_>>());
+        for symbol in returned.into_iter().filter(|symbol| !put_in.contains(symbol)) {
+            for result in results.iter_mut().filter(|result| self.symbols_of(&[**result]).contains(&symbol)) {
+                *result = self.without_symbol(*result, symbol);
+            }
+        }
     }
 
     /// The names of the symbols that `outputs` contain, in order of their making.

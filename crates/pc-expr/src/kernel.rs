@@ -71,20 +71,25 @@ impl Interpreter {
         &self.program
     }
 
-    /// Runs the program and answers the innermost expression whose value is not finite, if there is one.
+    /// Runs the program and answers what is not finite: inputs, or else the innermost expression, if there is one.
     ///
     /// The slices have the lengths that the program says.
     pub fn diagnose(&mut self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         let program = &self.program;
+        let names = || program.input_names().iter().cloned();
+        let mut given: Vec<(String, f64)> = names().zip([&[t], state, parameters].concat()).collect();
+        given.retain(|(_, value)| !value.is_finite());
+        if !given.is_empty() {
+            return Some(ExprError::GivenNotFinite { given });
+        }
         let mut registers = vec![0.0; program.registers_len()];
         walk(program, &mut registers, t, state, parameters);
         let culprit = registers.iter().position(|value| !value.is_finite())?;
-        let names = program.input_names()[1..].iter().cloned();
         Some(ExprError::NotFinite {
             expression: program.describe(Register(culprit as u32)),
             value: registers[culprit],
             t,
-            state: names.zip(state.iter().copied()).collect(),
+            state: names().skip(1).zip(state.iter().copied()).collect(),
         })
     }
 }

@@ -150,3 +150,33 @@ fn expressions_as_a_book_sets_them() {
         assert_eq!(expr.display(Style::Book), text);
     }
 }
+
+#[test]
+fn latex_says_what_is_meant() {
+    let graph = Graph::new();
+    let [a, b, e, x, y, theta] = graph.symbols(["a", "b", "e", "x", "y", "θ"]);
+    for (expr, text) in [
+        (x.sin(), "\\sin x"),
+        (y.log().square(), "\\log^{2} y"),
+        (y.square().log(), "\\log y^{2}"),
+        ((x + y).log().powi(3), "\\log^{3}\\left(x + y\\right)"),
+        (x.log() / x, "\\frac{\\log x}{x}"),
+        (
+            b.square() * x.sin() * (a + y.exp()),
+            "b^{2} \\sin\\left(x\\right) \\left(a + \\mathrm{e}^{y}\\right)",
+        ),
+        (x.cosh() * (2.0 * y).exp(), "\\cosh\\left(x\\right) \\mathrm{e}^{2 y}"),
+        (x.cos() * x.sin(), "\\sin x \\cos x"),
+        (theta.cos().square() * y.sqrt(), "\\cos^{2}\\left(\\theta\\right) \\sqrt{y}"),
+        (theta.cos().pow(e) * (y + 1.0).sqrt(), "\\cos^{e}\\left(\\theta\\right) \\sqrt{y + 1}"),
+        (y.tanh() * x.abs(), "\\tanh\\left(y\\right) \\left|x\\right|"),
+        (x.sin() * (a - b) / y, "\\frac{\\sin\\left(x\\right) \\left(a - b\\right)}{y}"),
+        (x.sin() + y, "y + \\sin x"),
+        ((a * x).sin() * b.exp(), "\\sin\\left(a x\\right) \\mathrm{e}^{b}"),
+        (e * y.exp(), "e \\mathrm{e}^{y}"),
+        (y.exp().square() * x, "x \\mathrm{e}^{2 y}"),
+        (x.sin().atan(), "\\arctan\\left(\\sin x\\right)"),
+    ] {
+        assert_eq!(expr.display(Style::Latex), text);
+    }
+}

@@ -99,6 +99,29 @@ fn the_innermost_expression_that_is_not_finite_is_named() {
 }
 
 #[test]
+fn no_expression_is_at_fault_where_the_values_given_are_not_finite() {
+    let graph = Graph::new();
+    let [t, x, y, k] = graph.symbols(["t", "x", "y", "k"]);
+    let inputs = Inputs { time: Some(t), state: vec![x, y], parameters: vec![k] };
+    let program = Program::new(&graph, &inputs, &[(k * x).log(), y]).unwrap();
+    let mut kernel = Interpreter::new(Arc::new(program));
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    for (t, state, parameter, which) in [
+        (nan, [nan, nan], 1.0, "t = NaN, x = NaN, y = NaN"),
+        (0.0, [-1.0, inf], 1.0, "y = inf"),
+        (0.0, [1.0, 2.0], -inf, "k = -inf"),
+    ] {
+        let error = kernel.diagnose(t, &state, &[parameter]).unwrap();
+        assert_eq!(error.to_string(), format!("the values given are not finite: {which}"));
+        assert!(
+            matches!(error, ExprError::GivenNotFinite { given } if given.len() == which.split(',').count())
+        );
+    }
+    let error = kernel.diagnose(0.0, &[-1.0, 0.0], &[1.0]).unwrap();
+    assert_eq!(error.to_string(), "`log(x*k)` is NaN at t = 0, x = -1, y = 0");
+}
+
+#[test]
 fn a_symbol_without_a_value_is_named() {
     let graph = Graph::new();
     let [x, y, z] = graph.symbols(["x", "y", "z"]);

@@ -74,7 +74,7 @@ fn walk(graph: &Graph, deep: Expr<'_>, x: Expr<'_>) {
     kernel.eval(0.0, &[0.25], &[], &mut out);
     assert!((out[0] - values[0]).abs() <= 1e-12 * values[0].abs());
     let error = kernel.diagnose(0.0, &[f64::NAN], &[]).unwrap().to_string();
-    assert_eq!(error, "`x` is NaN at t = 0, x = NaN");
+    assert_eq!(error, "the values given are not finite: x = NaN");
 }
 
 #[test]

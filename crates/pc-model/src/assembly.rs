@@ -284,13 +284,19 @@ impl<'g> Assembler<'g, '_> {
         x_dot: &[(Expr<'g>, Expr<'g>)],
         state: &[Expr<'g>],
     ) -> Result<(), ModelError> {
-        for written in &self.scope.written {
-            let value = self.graph.substitute(&[written.value], x_dot);
-            // What contains accelerations has no value yet: it is checked when the motion is computed.
-            let Ok(value) = self.graph.evaluate(&value, values) else { continue };
-            if value[0].is_finite() {
+        let all: Vec<Expr<'g>> = self.scope.written.iter().map(|written| written.value).collect();
+        let all = self.graph.substitute(&all, x_dot);
+        // What contains accelerations has no value yet: it is checked when the motion is computed.
+        let is_unknown = |symbol: &Expr<'g>| !values.iter().any(|(known, _)| known == symbol);
+        let unknown = self.graph.symbols_of(&all).into_iter().filter(is_unknown);
+        let at: Vec<(Expr<'g>, f64)> =
+            unknown.map(|symbol| (symbol, f64::NAN)).chain(values.iter().copied()).collect();
+        let Ok(found) = self.graph.evaluate(&all, &at) else { return Ok(()) }; // every symbol has a value
+        for ((written, &value), found) in self.scope.written.iter().zip(&all).zip(found) {
+            if found.is_finite() {
                 continue;
             }
+            let Ok(value) = self.graph.evaluate(&[value], values) else { continue };
             let shown = values.iter().filter(|(symbol, _)| state.contains(symbol));
             let state = shown.map(|(symbol, value)| (symbol.to_string(), *value)).collect();
             let fault = Fault::NotFinite { text: written.text.clone(), value: value[0], state };

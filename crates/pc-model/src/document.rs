@@ -24,6 +24,7 @@ mod simulation;
 mod syntax;
 mod text_map;
 
+pub use simulation::{MOST_SAMPLES, Simulation};
 pub use text_map::TextMap;
 
 /// A value and where it stands in the file.
@@ -285,29 +286,6 @@ pub struct Event {
     pub terminal: Option<Located<bool>>,
     /// New values; a velocity keeps its prime in the name.
     pub reset: Vec<NamedExpression>,
-}
-
-/// How the motion is computed; what is left out is left to the program.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Simulation {
-    /// The section's header.
-    pub place: Option<Place>,
-    /// Start time.
-    pub t_start: Option<Located<f64>>,
-    /// End time.
-    pub t_end: Option<Located<f64>>,
-    /// Number of rows, from 2 (start and end).
-    pub samples: Option<Located<usize>>,
-    /// Relative tolerance, positive.
-    pub rtol: Option<Located<f64>>,
-    /// Absolute tolerance, positive.
-    pub atol: Option<Located<f64>>,
-    /// Integration method.
-    pub method: Option<Located<Method>>,
-    /// Form of the equations.
-    pub form: Option<Located<Form>>,
-    /// Integrals, or `energy`, to whose values at the start the motion is projected.
-    pub project: Vec<Located<String>>,
 }
 
 /// Integration methods.

@@ -1,5 +1,9 @@
 //! Names and expressions of a model, resolved to expressions of a graph.
 
+mod definitions;
+
+use std::collections::{BTreeMap, HashMap};
+
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
@@ -10,7 +14,7 @@ use crate::resultant::{force_names, torque_names};
 use crate::source::{Place, Source};
 
 /// What an expression may contain, by the place where it stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
     /// A start value: parameters, and definitions made of them.
     Start,
@@ -75,8 +79,12 @@ pub(crate) struct Scope<'g, 'd> {
     /// Where the expressions stand.
     source: &'d Source,
     time: Expr<'g>,
+    /// The places of the definitions in their section.
+    places: HashMap<&'d str, usize>,
     /// Definitions that were used already: each is resolved once for a stage.
-    definitions: Vec<(usize, Stage, Expr<'g>)>,
+    definitions: BTreeMap<(Stage, usize), Expr<'g>>,
+    /// The place of the definition that is being resolved.
+    within: Option<usize>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
     /// Forces and torques of reactions that were named, each with a place.
@@ -93,12 +101,15 @@ impl<'g, 'd> Scope<'g, 'd> {
             graph.symbol(name);
         }
         let time = graph.symbol("t");
+        let places = document.definitions.iter().enumerate().map(|(place, d)| (d.name.text.as_str(), place));
         Scope {
             graph,
             document,
             source: &document.source,
             time,
-            definitions: Vec::new(),
+            places: places.collect(),
+            definitions: BTreeMap::new(),
+            within: None,
             written: Vec::new(),
             resultants: Vec::new(),
         }
@@ -232,12 +243,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         if document.parameters.iter().any(|p| p.name.text == name) {
             return Ok(self.graph.symbol(name));
         }
-        if let Some(index) = document.definitions.iter().position(|d| d.name.text == name) {
-            if !self.is_defined_before(expression, index) {
+        if let Some(&place) = self.places.get(name) {
+            if self.within.is_some_and(|own| own <= place) {
                 let fault = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
                 return Err(self.error(expression, span, fault));
             }
-            return self.definition(index, stage);
+            return self.definition(place, stage);
         }
         let is_coordinate = document.coordinates.iter().any(|c| c.name.text == name);
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
@@ -274,23 +285,6 @@ impl<'g, 'd> Scope<'g, 'd> {
         };
         let constraints = &self.document.constraints;
         constraints.iter().any(|c| self.document.bodies.iter().any(|body| of_body(&c.name.text, body)))
-    }
-
-    fn definition(&mut self, index: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
-        if let Some(&(.., value)) = self.definitions.iter().find(|known| (known.0, known.1) == (index, stage))
-        {
-            return Ok(value);
-        }
-        let value = self.resolve(&self.document.definitions[index].expression, stage)?;
-        self.definitions.push((index, stage, value));
-        Ok(value)
-    }
-
-    /// Whether definition number `index` stands before `expression`, which may itself be a definition.
-    fn is_defined_before(&self, expression: &Expression, index: usize) -> bool {
-        let position =
-            self.document.definitions.iter().position(|d| std::ptr::eq(&raw const d.expression, expression));
-        position.is_none_or(|own| index < own)
     }
 
     fn known(&self) -> Vec<String> {

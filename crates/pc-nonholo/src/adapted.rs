@@ -32,12 +32,7 @@ impl<'g> Adapted<'g> {
         let system = multipliers.equations().system();
         let eta = system.quasi_velocities();
         affine(multipliers, "adapted frames")?;
-        let dependent = match vanishing(eta, multipliers.velocities()) {
-            Some(places) => places,
-            None => multipliers.dependent_at(at)?,
-        };
-        let independent = (0..eta.len()).filter(|s| !dependent.contains(s)).map(|s| eta[s]);
-        let independent: Vec<Expr<'g>> = independent.collect();
+        let independent: Vec<Expr<'g>> = independent(multipliers, at)?.into_iter().map(|s| eta[s]).collect();
         let names = independent.iter().map(Expr::to_string);
         let names = names.chain(multipliers.constraints().iter().map(|c| unused(system, c)));
         let definitions: Vec<Expr<'g>> =
@@ -88,6 +83,22 @@ pub(crate) fn affine(multipliers: &Multipliers<'_>, form: &'static str) -> Resul
         None => Ok(()),
         Some(constraint) => Err(NonholoError::Nonlinear { form, constraint: constraint.name().to_owned() }),
     }
+}
+
+/// The indices of the quasi-velocities that the constraints leave independent, as [`Adapted::new`] chooses them.
+///
+/// # Errors
+/// Those of [`Multipliers::dependent_at`].
+pub(crate) fn independent<'g>(
+    multipliers: &Multipliers<'g>,
+    at: &[(Expr<'g>, f64)],
+) -> Result<Vec<usize>, NonholoError> {
+    let eta = multipliers.equations().system().quasi_velocities();
+    let dependent = match vanishing(eta, multipliers.velocities()) {
+        Some(places) => places,
+        None => multipliers.dependent_at(at)?,
+    };
+    Ok((0..eta.len()).filter(|s| !dependent.contains(s)).collect())
 }
 
 /// The indices of the quasi-velocities that the constraints say vanish, if that is all they say.

@@ -2,53 +2,63 @@
 
 use pc_mech::{Expr, Neighbourhood, System};
 
-/// Components of commutators below this are rounding: one that does not vanish is of order one.
-pub(crate) const ROUNDING: f64 = 1e-9;
-
 /// A field U = U^p X_p, p = 0..k; X_0 is that of time.
 pub(crate) type Field<'g> = Vec<Expr<'g>>;
 
-/// Fields that, with X_0..X_l, span at almost every point all commutators of X_0..X_l, those of commutators included
-/// [Frobenius; Chow, Math. Ann. 117 (1939) 98].
+/// The terms of which the components C_αm U^m of a field along constraints are the sums.
+pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
+
+/// Components along the constraints of fields that, with those `allowed`, span at almost every point all commutators of
+/// these, those of commutators included [Frobenius; Chow, Math. Ann. 117 (1939) 98].
+///
+/// The fields allowed are X'_0, with the component 1 along X_0, and others without such a component, with C_αm X'^m = 0;
+/// `rows` are the C_α.
 pub(crate) fn involutive_closure<'g>(
     system: &System<'g>,
-    l: usize,
+    allowed: &[Field<'g>],
+    rows: &[Vec<Expr<'g>>],
     near: &Neighbourhood<'g>,
-) -> Vec<Field<'g>> {
+) -> Vec<Along<'g>> {
     let (graph, k) = (system.graph(), system.quasi_velocities().len());
-    let generator =
-        |p: usize| (0..=k).map(|q| if p == q { Expr::ONE } else { Expr::ZERO }).collect::<Field<'g>>();
-    let generators: Vec<Field<'g>> = (0..=l).map(generator).collect();
-    let mut fields = generators.clone();
+    let (mut fields, mut reached) = (allowed.to_vec(), Vec::new());
     let mut next = 0;
     while next < fields.len() && fields.len() <= k {
-        for generator in &generators {
+        for generator in allowed {
             let bracket = commutator(system, generator, &fields[next]);
+            let along: Along<'g> = rows.iter().map(|row| component(row, &bracket)).collect();
             // What the graph cannot tell from zero is tried in numbers.
-            if near.largest(graph, &bracket[l + 1..]) <= ROUNDING {
+            if near.residual(graph, &along) <= Neighbourhood::ROUNDING {
                 continue;
             }
-            fields.push(bracket);
+            let sums: Vec<Expr<'g>> = bracket.into_iter().map(|terms| graph.sum(terms)).collect();
+            fields.push(graph.shorten(&sums, &[]));
             if graph.generic_rank(&fields) < fields.len() {
                 fields.pop();
+            } else {
+                reached.push(along);
             }
         }
         next += 1;
     }
-    fields.split_off(l + 1)
+    reached
 }
 
-/// [U, V]^m = U(V^m) − V(U^m) + c_pq^m U^p V^q, p, q = 0..k.
-fn commutator<'g>(system: &System<'g>, u: &Field<'g>, v: &Field<'g>) -> Field<'g> {
-    let (graph, structure) = (system.graph(), system.structure());
+/// The terms of C_m U^m, m = 1..k, of a field whose components are given by their terms.
+fn component<'g>(row: &[Expr<'g>], field: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+    let products = row.iter().zip(&field[1..]).flat_map(|(&c, terms)| terms.iter().map(move |&u| c * u));
+    products.filter(|term| !term.is_zero()).collect()
+}
+
+/// The terms of [U, V]^m = U(V^m) − V(U^m) + c_pq^m U^p V^q, p, q = 0..k.
+fn commutator<'g>(system: &System<'g>, u: &Field<'g>, v: &Field<'g>) -> Vec<Vec<Expr<'g>>> {
+    let structure = system.structure();
     let forth = along(system, u, v);
     let back = along(system, v, u);
     let mut brackets: Vec<Vec<Expr<'g>>> = forth.iter().zip(back).map(|(&f, b)| vec![f, -b]).collect();
     for (p, q, m, c) in structure.nonzero() {
-        brackets[m].push(c * (u[p] * v[q] - u[q] * v[p]));
+        brackets[m].extend([c * u[p] * v[q], -(c * u[q] * v[p])]);
     }
-    let sums: Vec<Expr<'g>> = brackets.into_iter().map(|terms| graph.sum(terms)).collect();
-    graph.shorten(&sums, &[])
+    brackets
 }
 
 /// U f = U^p X_p f for each f.

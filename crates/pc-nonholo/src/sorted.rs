@@ -1,10 +1,10 @@
 //! Constraints sorted by what they do.
 
-use pc_mech::{Constraint, Expr, Graph, Multipliers, Neighbourhood, System};
+use pc_mech::{Constraint, Expr, Graph, Matrix, MechError, Multipliers, Neighbourhood, System};
 
-use crate::adapted::Adapted;
+use crate::adapted::independent;
 use crate::error::NonholoError;
-use crate::involutive::{ROUNDING, involutive_closure};
+use crate::involutive::{Field, involutive_closure};
 
 /// What a constraint does, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,21 +136,50 @@ fn kinds_of_affine<'g>(
     if (0..m).all(|a| multipliers.is_holonomic(a)) {
         return Ok(vec![Kind::Position; m]);
     }
-    let adapted = Adapted::new(multipliers, at)?;
-    let (system, l) = (adapted.system(), adapted.free());
+    let system = multipliers.equations().system();
+    let rows = multipliers.constraints().iter().map(|constraint| constraint.coefficients(system));
+    let (rows, rests): (Vec<Vec<Expr<'g>>>, Vec<Expr<'g>>) =
+        rows.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    let allowed = allowed(system, &independent(multipliers, at)?, &rows, &rests)?;
     let mut near = Neighbourhood { centre: at.to_vec() };
     near.centre.extend(system.parameters().iter().copied());
-    let reached = involutive_closure(system, l, &near);
+    let reached = involutive_closure(system, &allowed, &rows, &near);
+    let graph = system.graph();
     Ok((0..m)
         .map(|a| {
             if multipliers.is_holonomic(a) {
                 return Kind::Position;
             }
-            let components: Vec<Expr<'g>> = reached.iter().map(|field| field[l + a + 1]).collect();
-            let residual = near.largest(system.graph(), &components);
-            if residual <= ROUNDING { Kind::Integrable } else { Kind::Nonholonomic { residual } }
+            let components: Vec<Vec<Expr<'g>>> = reached.iter().map(|along| along[a].clone()).collect();
+            if near.residual(graph, &components) <= Neighbourhood::ROUNDING {
+                return Kind::Integrable;
+            }
+            let sums: Vec<Expr<'g>> = components.into_iter().map(|terms| graph.sum(terms)).collect();
+            Kind::Nonholonomic { residual: near.largest(graph, &graph.shorten(&sums, &[])) }
         })
         .collect())
+}
+
+/// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k: the l quasi-velocities
+/// `independent` are theirs.
+///
+/// # Errors
+/// [`MechError::Algebra`] of constraints that are dependent everywhere.
+fn allowed<'g>(
+    system: &System<'g>,
+    independent: &[usize],
+    rows: &[Vec<Expr<'g>>],
+    rests: &[Expr<'g>],
+) -> Result<Vec<Field<'g>>, NonholoError> {
+    let l = independent.len();
+    let a = Matrix::from_fn(l + rows.len(), system.quasi_velocities().len(), |u, s| match u.checked_sub(l) {
+        Some(alpha) => rows[alpha][s],
+        None if independent[u] == s => Expr::ONE,
+        None => Expr::ZERO,
+    });
+    let drift: Vec<Expr<'g>> = independent.iter().map(|_| Expr::ZERO).chain(rests.iter().copied()).collect();
+    let change = system.frame().changed_by(&a, &drift).map_err(MechError::from)?;
+    Ok((0..=l).map(|s| change.old_components(s)).collect())
 }
 
 /// Constraints so far: C_α and c_α0.

@@ -92,6 +92,45 @@ fn constraints_are_sorted_by_frobenius_test() {
     assert_eq!(sort(&system, &[Constraint::new("empty", vx - vx)], &at).redundant().len(), 1);
 }
 
+/// A disk that rolls, of whatever radius: what a constraint does is no matter of units.
+#[test]
+fn what_a_constraint_does_depends_on_no_unit() {
+    for radius in [1.0, 1e-6, 1e-10, 1e-14, 1e10] {
+        let graph = Graph::new();
+        let [vx, vy, phi, vphi, vtheta] = graph.symbols(["x'", "y'", "φ", "φ'", "θ'"]);
+        let system = System::builder(&graph)
+            .coordinates(["x", "y", "φ", "θ"])
+            .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+            .build()
+            .unwrap();
+        let at = state(&graph, &system);
+        let along = Constraint::new("along", vx - radius * vtheta * phi.cos());
+        let across = Constraint::new("across", vy - radius * vtheta * phi.sin());
+        let sorted = sort(&system, &[along.clone(), across.clone()], &at);
+        let nonholonomic = |kind: &Kind| matches!(kind, Kind::Nonholonomic { residual } if *residual > 0.0);
+        assert!(sorted.kinds().iter().all(nonholonomic), "{radius}: {:?}", sorted.kinds());
+        // Where it cannot turn, all three can be integrated.
+        let straight = Constraint::new("straight", radius * vphi);
+        let sorted = sort(&system, &[along, across, straight], &at);
+        assert_eq!(sorted.kinds(), [Kind::Integrable; 3], "{radius}");
+    }
+}
+
+/// log(xy) − log x − log y is zero, though nothing that the graph knows.
+#[test]
+fn what_vanishes_up_to_rounding_is_integrable() {
+    let graph = Graph::new();
+    let [x, y, vx, vz] = graph.symbols(["x", "y", "x'", "z'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+        .build()
+        .unwrap();
+    let zero = (x * y).log() - x.log() - y.log();
+    let plane = Constraint::new("plane", vz - (x + zero) * vx);
+    assert_eq!(sort(&system, &[plane], &state(&graph, &system)).kinds(), [Kind::Integrable]);
+}
+
 /// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is what it is in independent velocities.
 #[test]
 fn an_orthonormal_frame_tells_the_same_motion() {

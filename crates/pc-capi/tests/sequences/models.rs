@@ -105,7 +105,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 48 {
+        match function % 49 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -144,6 +144,7 @@ unsafe fn say(
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),
+            47 => pc_model_set_max_step(model, x, error),
             _ => pc_model_set(model, a, x, error),
         }
     }

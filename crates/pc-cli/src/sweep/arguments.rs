@@ -54,6 +54,9 @@ pub struct SweepArguments {
     /// Absolute tolerance; else that of the file, else 1e-12
     #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = args::positive)]
     pub atol: Option<f64>,
+    /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = args::positive)]
+    pub max_step: Option<f64>,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = args::method)]
     pub method: Option<Method>,
@@ -77,6 +80,7 @@ impl SweepArguments {
             samples: self.rows,
             rtol: self.rtol,
             atol: self.atol,
+            max_step: self.max_step,
             method: self.method,
             form: self.form,
             project: self.project.clone(),

@@ -110,7 +110,10 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
     let text = match function {
         Function::Sqrt => format!("\\sqrt{{{listed}}}"),
         Function::Abs => format!("\\left|{listed}\\right|"),
-        Function::Exp => return Piece { text: format!("e^{{{listed}}}"), binding: Binding::Power },
+        Function::Exp => {
+            // upright, as no symbol of one letter is
+            return Piece { text: format!("\\mathrm{{e}}^{{{listed}}}"), binding: Binding::Power };
+        }
         Function::Step => format!("\\operatorname{{step}}\\left({listed}\\right)"),
         Function::Sign => format!("\\operatorname{{sgn}}\\left({listed}\\right)"),
         Function::Atan2 => format!("\\operatorname{{atan2}}\\left({listed}\\right)"),
@@ -123,6 +126,9 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
     Piece::atom(text)
 }
 
+/// Functions whose argument may stand without brackets.
+const BARE: [&str; 6] = ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh", "\\log"];
+
 /// A single symbol needs no brackets behind \sin.
 fn is_simple(argument: &str) -> bool {
     !argument.contains([' ', '+', '-', '(']) && !argument.contains("\\frac")
@@ -130,7 +136,7 @@ fn is_simple(argument: &str) -> bool {
 
 pub(super) fn power(base: &Piece, exponent: &str) -> String {
     // (\sin x)^2 is written \sin^2 x
-    for function in ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh"] {
+    for function in BARE {
         if base.binding == Binding::Atom
             && let Some(rest) = base.text.strip_prefix(function)
             && (rest.starts_with(' ') || rest.starts_with("\\left"))
@@ -144,10 +150,45 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
     }
 }
 
-/// Factors side by side, two numbers kept apart by a dot.
+/// The argument in brackets behind a function that another factor follows: \sin x y would be sin(x y).
+fn closed(factor: &str) -> String {
+    let bare = BARE.iter().find_map(|function| {
+        let rest = factor.strip_prefix(function)?;
+        let power =
+            rest.strip_prefix("^{").map_or(Some(0), |exponent| end_of_group(exponent).map(|end| end + 2))?;
+        rest[power..].strip_prefix(' ')
+    });
+    match bare {
+        Some(argument) => {
+            let head = &factor[..factor.len() - argument.len() - 1];
+            format!("{head}\\left({argument}\\right)")
+        }
+        None => factor.to_owned(),
+    }
+}
+
+/// Where the text goes on behind the brace that closes what was opened before it.
+fn end_of_group(text: &str) -> Option<usize> {
+    let mut depth = 1;
+    for (i, c) in text.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(i + 1);
+        }
+    }
+    None
+}
+
+/// Factors side by side, two numbers kept apart by a dot. As usual the argument of \sin x \cos y ends before the next
+/// function.
 pub(super) fn juxtaposed(factors: &[String]) -> String {
     let mut text = String::new();
-    for factor in factors {
+    let ends_argument = |factor: &String| BARE.iter().any(|function| factor.starts_with(function));
+    for (i, factor) in factors.iter().enumerate() {
         let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
         if digit(text.chars().last()) && digit(factor.chars().next()) {
             text.push_str(" \\cdot ");
@@ -157,6 +198,9 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
         let bracketed = factor.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
         match bracketed {
             Some(inner) => text.push_str(&format!("\\left({inner}\\right)")),
+            None if factors.get(i + 1).is_some_and(|next| !ends_argument(next)) => {
+                text.push_str(&closed(factor));
+            }
             None => text.push_str(factor),
         }
     }

@@ -1,5 +1,6 @@
 //! The bodies of a model: their expressions, resolved and checked where they stand.
 
+use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
 
 use super::Assembler;
@@ -98,8 +99,7 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<[Expr<'g>; 3], ModelError> {
         let omega = self.all_dynamic(components, x_dot)?;
         for (component, value) in components.iter().zip(omega) {
-            let slopes = self.graph.gradient(value, eta);
-            if slopes.iter().any(|slope| eta.iter().any(|&eta| slope.depends_on(eta))) {
+            if affine(self.graph, value, eta).is_none() {
                 let fault = |text| Fault::NotAffine { text, variables: "velocities" };
                 return Err(self.scope.error(component, component.ast.span, fault));
             }

@@ -1,5 +1,6 @@
 //! The structure coefficients that a model gives.
 
+use pc_algebra::affine;
 use pc_mech::{AlgebraError, Expr, LieAlgebra, Number, StructureCoefficients};
 
 use super::Assembler;
@@ -57,11 +58,10 @@ impl<'g> Assembler<'g, '_> {
         for bracket in brackets {
             let pair = (index(&bracket.left)?, index(&bracket.right)?);
             let value = self.scope.resolve(&bracket.value, Stage::Kinematics)?;
-            let coefficients = self.graph.gradient(value, eta);
-            let constants: Option<Vec<Number>> = coefficients.iter().map(|c| c.constant()).collect();
-            let zero: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-            let remainder = self.graph.substitute(&[value], &zero)[0];
-            let Some(constants) = constants.filter(|_| remainder.is_zero()) else {
+            let linear = affine(self.graph, value, eta).filter(|(_, rest)| rest.is_zero());
+            let constants: Option<Vec<Number>> =
+                linear.and_then(|(coefficients, _)| coefficients.iter().map(|c| c.constant()).collect());
+            let Some(constants) = constants else {
                 let fault = |text| Fault::BracketNotLinear { text };
                 return Err(self.scope.error(&bracket.value, bracket.value.ast.span, fault));
             };
@@ -78,7 +78,7 @@ impl<'g> Assembler<'g, '_> {
             direct.or_else(reverse).unwrap_or(Number::ZERO)
         };
         let algebra = LieAlgebra::new(k, |r, s, m| constant(r + 1, s + 1, m));
-        let algebra = algebra.map_err(|error| self.model.algebra_error(error))?;
-        Ok(algebra.with_time(|s, m| constant(0, s + 1, m)))
+        let structure = algebra.and_then(|algebra| algebra.with_time(|s, m| constant(0, s + 1, m)));
+        structure.map_err(|error| self.model.algebra_error(error))
     }
 }

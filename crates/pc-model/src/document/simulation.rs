@@ -3,11 +3,36 @@
 use super::reader::{Item, Table};
 use pc_expr::Direction;
 
-use super::{Event, Form, Located, Method, NamedExpression, Simulation};
+use super::{Event, Form, Located, Method, NamedExpression, Place};
 use crate::error::{ErrorKind, ModelError};
 
-/// More rows than any file should hold.
-const MOST_SAMPLES: i64 = 1_000_000_000;
+/// The most rows of a table: each is held in memory.
+pub const MOST_SAMPLES: usize = 10_000_000;
+
+/// How the motion is computed; what is left out is left to the program.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Simulation {
+    /// The section's header.
+    pub place: Option<Place>,
+    /// Start time.
+    pub t_start: Option<Located<f64>>,
+    /// End time.
+    pub t_end: Option<Located<f64>>,
+    /// Number of rows, from 2 (start and end).
+    pub samples: Option<Located<usize>>,
+    /// Relative tolerance, positive.
+    pub rtol: Option<Located<f64>>,
+    /// Absolute tolerance, positive.
+    pub atol: Option<Located<f64>>,
+    /// Largest length of a step, positive.
+    pub max_step: Option<Located<f64>>,
+    /// Integration method.
+    pub method: Option<Located<Method>>,
+    /// Form of the equations.
+    pub form: Option<Located<Form>>,
+    /// Integrals, or `energy`, to whose values at the start the motion is projected.
+    pub project: Vec<Located<String>>,
+}
 
 pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
     let mut result = Simulation { place: Some(table.place.clone()), ..Simulation::default() };
@@ -18,6 +43,9 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             "samples" => result.samples = Some(samples(&item)?),
             "rtol" => result.rtol = Some(tolerance(&item, "rtol = 1e-9")?),
             "atol" => result.atol = Some(tolerance(&item, "atol = 1e-12")?),
+            "max_step" => {
+                result.max_step = Some(positive(&item, "a length greater than 0", "max_step = 0.01")?);
+            }
             "method" => {
                 result.method = Some(item.choice(&[
                     ("bdf", Method::Bdf),
@@ -33,8 +61,9 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             }
             "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {
-                return Err(item
-                    .unknown(&["t_start", "t_end", "samples", "rtol", "atol", "method", "form", "project"]));
+                return Err(item.unknown(&[
+                    "t_start", "t_end", "samples", "rtol", "atol", "max_step", "method", "form", "project",
+                ]));
             }
         }
     }
@@ -44,9 +73,9 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
 fn samples(item: &Item<'_>) -> Result<Located<usize>, ModelError> {
     let value = item.integer()?.value;
     match usize::try_from(value) {
-        Ok(count) if count >= 2 && value <= MOST_SAMPLES => Ok(item.located(count)),
+        Ok(count) if (2..=MOST_SAMPLES).contains(&count) => Ok(item.located(count)),
         _ => Err(item.error(ErrorKind::OutOfRange {
-            expected: "2 (start and end) to 1000000000 samples",
+            expected: "2 (start and end) to 10000000 samples",
             found: value.to_string(),
             example: "samples = 101",
         })),
@@ -54,12 +83,20 @@ fn samples(item: &Item<'_>) -> Result<Located<usize>, ModelError> {
 }
 
 fn tolerance(item: &Item<'_>, example: &'static str) -> Result<Located<f64>, ModelError> {
+    positive(item, "a tolerance greater than 0", example)
+}
+
+fn positive(
+    item: &Item<'_>,
+    expected: &'static str,
+    example: &'static str,
+) -> Result<Located<f64>, ModelError> {
     let number = item.number()?;
     if number.value > 0.0 {
         return Ok(number);
     }
     let found = number.value.to_string();
-    Err(item.error(ErrorKind::OutOfRange { expected: "a tolerance greater than 0", found, example }))
+    Err(item.error(ErrorKind::OutOfRange { expected, found, example }))
 }
 
 pub(super) fn events(table: &Table<'_>) -> Result<Vec<Event>, ModelError> {
@@ -99,4 +136,21 @@ fn resets(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
         Ok(NamedExpression { name, expression: entry.expression()? })
     };
     entries.items().map(reset).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+    use crate::source::Source;
+
+    #[test]
+    fn the_largest_table_is_that_of_the_message() {
+        let text = |samples: usize| format!("[simulation]\nsamples = {samples}\n");
+        let read = |samples: usize| Document::parse(Source::new("m.toml", text(samples))).map(|_| ());
+        let refusal = |samples: usize| read(samples).map_err(|error| error.to_string());
+        let is_range = |message: &String| message.contains(&format!("to {MOST_SAMPLES} samples"));
+        assert!(refusal(MOST_SAMPLES + 1).is_err_and(|message| is_range(&message)));
+        assert!(refusal(MOST_SAMPLES).is_err_and(|message| !is_range(&message)), "the rest of the model");
+    }
 }

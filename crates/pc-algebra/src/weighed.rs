@@ -1,0 +1,151 @@
+//! Numbers with the size of the terms that they were made of, to tell a small number from what rounding left of zero.
+
+use std::ops::{Add, Mul, Neg};
+
+use pc_expr::{Function, Number, Scalar};
+
+/// Relative change of an argument by which it is seen how a function enlarges errors: far above rounding.
+const CHANGE: f64 = 1e-12;
+
+/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of the order of
+/// the weight times the unit of rounding. What is given exactly has weight 0.
+///
+///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
+///
+/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Weighed {
+    pub(crate) value: f64,
+    weight: f64,
+}
+
+impl Weighed {
+    /// |a|, or the weight where that is larger.
+    pub(crate) fn size(self) -> f64 {
+        self.value.abs().max(self.weight)
+    }
+
+    /// The part of its terms that is left in their sum, from 0 to 1; rounding leaves about 10⁻¹⁶.
+    pub(crate) fn rest(self) -> f64 {
+        if self.value == 0.0 { 0.0 } else { self.value.abs() / self.size() }
+    }
+
+    pub(crate) fn is_finite(self) -> bool {
+        self.value.is_finite() && self.weight.is_finite()
+    }
+
+    /// f(a), with the weight that it has by each of its arguments.
+    fn of<const N: usize>(args: [Weighed; N], f: impl Fn([f64; N]) -> f64) -> Weighed {
+        let at = args.map(|arg| arg.value);
+        let value = f(at);
+        let mut weight = value.abs();
+        for (i, arg) in args.iter().enumerate().filter(|(_, arg)| arg.weight > 0.0) {
+            for change in [-CHANGE, CHANGE] {
+                let mut moved = at;
+                moved[i] += change * arg.size();
+                weight = weight.max((f(moved) - value).abs() / CHANGE); // outside of its domain f has no say
+            }
+        }
+        Weighed { value, weight }
+    }
+}
+
+impl Add for Weighed {
+    type Output = Weighed;
+    fn add(self, other: Weighed) -> Weighed {
+        Weighed { value: self.value + other.value, weight: self.size() + other.size() }
+    }
+}
+
+impl Mul for Weighed {
+    type Output = Weighed;
+    fn mul(self, other: Weighed) -> Weighed {
+        let value = self.value * other.value;
+        let errors = (self.value.abs() * other.weight).max(self.weight * other.value.abs());
+        Weighed { value, weight: value.abs().max(errors) }
+    }
+}
+
+impl Neg for Weighed {
+    type Output = Weighed;
+    fn neg(self) -> Weighed {
+        Weighed { value: -self.value, ..self }
+    }
+}
+
+impl Scalar for Weighed {
+    fn from_f64(value: f64) -> Weighed {
+        Weighed { value, weight: 0.0 }
+    }
+
+    /// A rounded constant of the size of rounding is taken for what is left of numbers of order one, as cos(π/2) is.
+    fn constant(value: Number) -> Weighed {
+        const LEAST: f64 = f64::EPSILON / 16.0;
+        const MOST: f64 = f64::EPSILON * 64.0;
+        match value {
+            Number::Rational { .. } => Weighed::from_f64(value.to_f64()),
+            Number::Real(value) if (LEAST..MOST).contains(&value.abs()) => Weighed { value, weight: 1.0 },
+            Number::Real(value) => Weighed { value, weight: value.abs() },
+        }
+    }
+
+    fn powi(self, exponent: i32) -> Weighed {
+        if exponent == 1 { self } else { Weighed::of([self], |[x]| x.powi(exponent)) }
+    }
+
+    fn call(function: Function, args: &[Weighed]) -> Weighed {
+        match *args {
+            [x] => Weighed::of([x], |args| f64::call(function, &args)),
+            [x, y] => Weighed::of([x, y], |args| f64::call(function, &args)),
+            [x, y, z] => Weighed::of([x, y, z], |args| f64::call(function, &args)),
+            _ => Weighed::from_f64(f64::NAN), // no function has another number of arguments
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exact(value: f64) -> Weighed {
+        Weighed::from_f64(value)
+    }
+
+    #[test]
+    fn a_small_number_is_no_rounding_error_and_a_rounding_error_no_small_number() {
+        let small = exact(1e-10) * exact(0.3);
+        assert_eq!(small.rest(), 1.0);
+        let third = exact(0.1) * exact(3.0);
+        let rounding = third + -exact(0.3);
+        assert!(rounding.value != 0.0 && rounding.rest() < 1e-15, "{rounding:?}");
+        // Multiplied by whatever, or passed through a function, it stays what it is.
+        let sine = Weighed::call(Function::Sin, &[rounding * exact(1e3)]);
+        assert!(sine.value != 0.0 && sine.rest() < 1e-15, "{sine:?}");
+        let sign = Weighed::call(Function::Sign, &[rounding]);
+        assert!(sign.value != 0.0 && sign.rest() <= CHANGE, "{sign:?}");
+        assert_eq!((rounding + exact(1.0)).rest(), 1.0 / 1.6);
+        assert_eq!((exact(2.0) + -exact(2.0)).rest(), 0.0);
+    }
+
+    #[test]
+    fn a_function_enlarges_errors_by_its_slope() {
+        // The error of 10⁶ − 10⁶ + 1 is that of 10⁶, and so is the one of its logarithm.
+        let one = exact(1e6) + -exact(1e6) + exact(1.0);
+        let log = Weighed::call(Function::Log, &[one]);
+        let relative = log.size() / one.size() - 1.0;
+        // log(1 + h) − h = h²/2, where h = CHANGE·2·10⁶
+        assert!(relative.abs() < CHANGE * 2e6, "{relative}");
+        let large = Weighed::call(Function::Sin, &[exact(1e9)]);
+        assert_eq!(large.rest(), 1.0, "an exact argument has no error to enlarge");
+    }
+
+    #[test]
+    fn what_rounding_left_of_a_constant_is_no_small_constant() {
+        let zero = Weighed::constant(Number::from((std::f64::consts::PI / 2.0).cos()));
+        assert!(zero.rest() < 1e-16 && (zero * exact(1e3)).rest() < 1e-16);
+        for small in [1e-10, 1e-14, 1e-20] {
+            assert_eq!(Weighed::constant(Number::from(small)).rest(), 1.0);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Definitions, resolved in their order.
+
+use std::collections::BTreeSet;
+
+use pc_expr::Expr;
+use pc_expr::parse::{Ast, AstKind};
+
+use super::{Scope, Stage};
+use crate::error::ModelError;
+
+impl<'g> Scope<'g, '_> {
+    /// The definition at `place`, after those that it is made of: they stand before it, so that in this order a long chain of
+    /// them needs no deep recursion.
+    pub(super) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        if let Some(&value) = self.definitions.get(&(stage, place)) {
+            return Ok(value);
+        }
+        let definitions = &self.document.definitions;
+        let (mut open, mut needed) = (BTreeSet::from([place]), Vec::new());
+        while let Some(last) = open.pop_last() {
+            needed.push(last);
+            for_each_name(&definitions[last].expression.ast, &mut |name| match self.places.get(name) {
+                Some(&earlier) if earlier < last && !self.definitions.contains_key(&(stage, earlier)) => {
+                    open.insert(earlier);
+                }
+                _ => {}
+            });
+        }
+        let mut value = Expr::ZERO;
+        for &place in needed.iter().rev() {
+            self.within = Some(place);
+            let resolved = self.resolve(&definitions[place].expression, stage);
+            self.within = None;
+            value = resolved?;
+            self.definitions.insert((stage, place), value);
+        }
+        Ok(value)
+    }
+}
+
+/// Visits the names in an expression.
+fn for_each_name(ast: &Ast, visit: &mut impl FnMut(&str)) {
+    match &ast.kind {
+        AstKind::Number(_) | AstKind::Velocity(_) => {}
+        AstKind::Name(name) => visit(name),
+        AstKind::TotalDerivative(inner) | AstKind::Negate(inner) => for_each_name(inner, visit),
+        AstKind::Sum(terms) => terms.iter().for_each(|(_, term)| for_each_name(term, visit)),
+        AstKind::Product(factors) => factors.iter().for_each(|(_, factor)| for_each_name(factor, visit)),
+        AstKind::Power(base, exponent) => [base, exponent].into_iter().for_each(|x| for_each_name(x, visit)),
+        AstKind::Call(_, _, arguments) => arguments.iter().for_each(|x| for_each_name(x, visit)),
+    }
+}
