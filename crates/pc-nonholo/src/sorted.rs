@@ -56,7 +56,7 @@ impl<'g> Sorted<'g> {
     ///
     /// # Errors
     /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others; errors of
-    /// [`System::with_multipliers`] and [`Adapted::new`].
+    /// [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
     pub fn new(
         system: &System<'g>,
         constraints: &[Constraint<'g>],
