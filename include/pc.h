@@ -42,6 +42,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
 /**
  * First number of the version of the header.
  */
@@ -508,10 +512,6 @@ typedef struct {
  * to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
-
-#ifdef __cplusplus
-extern "C" {
-#endif // __cplusplus
 
 /**
  * The version of the library, such as "0.1.0". Static.
@@ -1371,7 +1371,8 @@ pc_status pc_system_print(const pc_system *system,
 
 /**
  * Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
- * where NAME is `name`, spelt as an identifier. The source has the right-hand side, its Jacobian, the mass
+ * where NAME is `name`, spelt as an identifier: Greek letters by their names, other signs as `_`, one at a time and
+ * not at the ends, `n_` before a digit at the beginning, `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass
  * matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
  * system, and says at its head how it is used. External forces are parameters of it, after the others, called
  * `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in

@@ -1,11 +1,13 @@
-//! Expressions that are affine in some of their symbols.
+//! Expressions that are affine or quadratic in some of their symbols.
 
 use pc_expr::{Expr, Folding, Graph};
+
+use crate::matrix::Matrix;
 
 /// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols` z; `None` for
 /// one that is not.
 ///
-/// Tested is the identity itself: of |z|, max(z, 0) and the sign of z all second derivatives vanish, too.
+/// |z|, max(z, 0) and the sign of z are not, though their second derivatives vanish.
 ///
 /// ```
 /// # use pc_algebra::affine;
@@ -20,14 +22,73 @@ pub fn affine<'g>(
     value: Expr<'g>,
     symbols: &[Expr<'g>],
 ) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
-    let at_zero: Vec<_> = symbols.iter().map(|&symbol| (symbol, Expr::ZERO)).collect();
-    let mut parts = graph.gradient(value, symbols);
-    parts.push(value);
-    // A coefficient written with a quotient of the symbols may hide its independence of them only at zero.
-    let mut coefficients = graph.substitute(&parts, &at_zero);
-    let rest = coefficients.pop()?;
-    let linear = graph.dot(coefficients.iter().copied(), symbols.iter().copied());
-    vanishes(graph, value - rest - linear).then_some((coefficients, rest))
+    let slopes = graph.gradient(value, symbols);
+    let known = smooth(graph, value, symbols) && !depend(&slopes, symbols);
+    let (coefficients, rest) = at_zero(graph, slopes, value, symbols)?;
+    let polynomial = || rest + graph.dot(coefficients.iter().copied(), symbols.iter().copied());
+    (known || vanishes(graph, value - polynomial())).then_some((coefficients, rest))
+}
+
+/// An expression f = ½ z_r M_rs z_s + p_s z_s + f_0 in the symbols z.
+#[derive(Clone, Debug)]
+pub struct Quadratic<'g> {
+    /// M, symmetric.
+    pub matrix: Matrix<Expr<'g>>,
+    /// p
+    pub linear: Vec<Expr<'g>>,
+    /// f_0
+    pub constant: Expr<'g>,
+}
+
+/// The parts of an expression that is quadratic in the `symbols` z; `None` for one that is not.
+///
+/// ```
+/// # use pc_algebra::quadratic;
+/// # use pc_expr::Graph;
+/// let graph = Graph::new();
+/// let [x, v] = graph.symbols(["x", "v"]);
+/// let parts = quadratic(&graph, x * (v + 1.0).square(), &[v]).expect("quadratic in v");
+/// assert_eq!((parts.matrix[(0, 0)], parts.linear[0], parts.constant), (2.0 * x, 2.0 * x, x));
+/// assert!(quadratic(&graph, v.square() + v.abs(), &[v]).is_none());
+/// ```
+pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> Option<Quadratic<'g>> {
+    let k = symbols.len();
+    let slopes = graph.gradient(value, symbols);
+    let curvatures: Vec<Expr<'g>> = slopes.iter().flat_map(|&slope| graph.gradient(slope, symbols)).collect();
+    let known = smooth(graph, value, symbols) && !depend(&curvatures, symbols);
+    let (mut parts, constant) = at_zero(graph, [curvatures, slopes].concat(), value, symbols)?;
+    let linear = parts.split_off(k * k);
+    let matrix = Matrix::from_fn(k, k, |r, s| parts[r.max(s) * k + r.min(s)]);
+    let dot = |row: &[Expr<'g>]| graph.dot(row.iter().copied(), symbols.iter().copied());
+    let polynomial = || {
+        let halves: Vec<Expr<'g>> = (0..k).map(|s| dot(matrix.row(s)) / 2.0).collect();
+        constant + dot(&halves) + dot(&linear)
+    };
+    (known || vanishes(graph, value - polynomial())).then_some(Quadratic { matrix, linear, constant })
+}
+
+/// The derivatives and the value at z = 0, if they have one: what does not depend on z may be written with quotients of z.
+fn at_zero<'g>(
+    graph: &'g Graph,
+    derivatives: Vec<Expr<'g>>,
+    value: Expr<'g>,
+    symbols: &[Expr<'g>],
+) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
+    let zeros: Vec<_> = symbols.iter().map(|&symbol| (symbol, Expr::ZERO)).collect();
+    let mut parts = graph.substitute(&[&derivatives[..], &[value]].concat(), &zeros);
+    let value = parts.pop()?;
+    let defined = parts.iter().chain([&value]).all(|part| !part.is_undefined());
+    defined.then_some((parts, value))
+}
+
+/// Whether derivatives tell all of the value, as they do of polynomials with rounded coefficients, whose identities hold but
+/// for rounding.
+fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
+    !graph.applies(value, symbols, |function| !function.is_smooth())
+}
+
+fn depend<'g>(values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {
+    values.iter().any(|value| symbols.iter().any(|&symbol| value.depends_on(symbol)))
 }
 
 /// Whether an expression is zero by its value, also where the graph merges only what is written alike.
@@ -80,6 +141,37 @@ mod tests {
             }
             assert_eq!(affine(&graph, value + y * z, &[y, z]), None);
             assert_eq!(affine(&graph, value + z.abs(), &[y, z]), None);
+        }
+    }
+
+    /// Multiplied out in another order they differ in the last digits.
+    #[test]
+    fn rounded_coefficients_do_not_hide_a_polynomial() {
+        let graph = Graph::new();
+        let [x, y, z] = graph.symbols(["x", "y", "z"]);
+        let nested = 0.1234567890123456 * (y + 0.9876543210987654 * (z + 0.7654321098765432 * x));
+        assert!(affine(&graph, nested, &[y, z]).is_some());
+        let square = 0.3333333333333333 * (nested + y * x.sin()).square();
+        assert!(quadratic(&graph, square, &[y, z]).is_some());
+        assert!(affine(&graph, square, &[y, z]).is_none());
+        assert!(quadratic(&graph, square * nested, &[y, z]).is_none());
+    }
+
+    #[test]
+    fn what_is_quadratic_in_pieces_only_is_not_quadratic() {
+        for folding in [Folding::ByValue, Folding::Structural] {
+            let graph = Graph::with_folding(folding);
+            let [x, y, z] = graph.symbols(["x", "y", "z"]);
+            let square = (y + x * z).square() / 2.0 + x.abs() * y;
+            for more in [y.abs(), x * z.step(Expr::ONE, 2.0), y.square() * z.sign(), y * z.abs(), y * y.abs()]
+            {
+                assert!(quadratic(&graph, square + more, &[y, z]).is_none(), "{more}");
+            }
+            let parts = quadratic(&graph, square + x.cos(), &[y, z]).expect("quadratic");
+            let known = [parts.matrix[(0, 0)], parts.matrix[(0, 1)], parts.matrix[(1, 1)], parts.linear[0]];
+            let values = graph.evaluate(&[&known[..], &[parts.constant]].concat(), &[(x, -0.5)]);
+            let expected = [1.0, -0.5, 0.25, 0.5, 0.5f64.cos()];
+            assert_eq!(values.expect("values"), expected);
         }
     }
 }

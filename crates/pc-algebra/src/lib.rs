@@ -109,7 +109,7 @@ mod structure;
 mod subspace;
 mod weighed;
 
-pub use affine::affine;
+pub use affine::{Quadratic, affine, quadratic};
 pub use catalogue::{CATALOGUE, Entry};
 pub use error::AlgebraError;
 pub use frame::Frame;

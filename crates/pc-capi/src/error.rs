@@ -119,9 +119,6 @@ impl Fault {
             | Fault::NotADraft { .. }
             | Fault::Begun { .. }
             | Fault::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
-            Fault::Solve(error) if matches!(error.code(), Some(Code::BadTime | Code::BadOrder)) => {
-                pc_status::PC_INVALID_ARGUMENT
-            }
             Fault::Model(error) => match error.category() {
                 Category::Text => pc_status::PC_INVALID_MODEL,
                 Category::Unsupported => pc_status::PC_UNSUPPORTED,

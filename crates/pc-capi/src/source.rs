@@ -65,7 +65,8 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, Fault> {
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
-/// where NAME is `name`, spelt as an identifier. The source has the right-hand side, its Jacobian, the mass
+/// where NAME is `name`, spelt as an identifier: Greek letters by their names, other signs as `_`, one at a time and
+/// not at the ends, `n_` before a digit at the beginning, `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass
 /// matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
 /// system, and says at its head how it is used. External forces are parameters of it, after the others, called
 /// `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in

@@ -90,7 +90,7 @@ impl<'g> Report<'g> {
 
         let mut integrals = integrals::integrals(equations, &near);
         if assembly.bound.nonlinear().is_some() && assembly.keeps_energy() {
-            integrals::say_energy_is_kept(&mut integrals);
+            integrals::say_energy_is_kept(&mut integrals, equations);
         }
         if energy_remark(assembly).is_some()
             && let Some(energy) = energy_of_all(assembly, equations)

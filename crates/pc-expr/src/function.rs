@@ -71,6 +71,17 @@ impl Function {
         }
     }
 
+    /// Whether it has derivatives of every order wherever it has a value: no jump, no corner, no root.
+    pub fn is_smooth(self) -> bool {
+        use Function::*;
+        !matches!(self, Asin | Acos | Atan2 | Sqrt | Abs | Sign | Min | Max | Step | Pow)
+    }
+
+    /// Whether it has no jump.
+    pub fn is_continuous(self) -> bool {
+        !matches!(self, Function::Atan2 | Function::Sign | Function::Step)
+    }
+
     /// Symmetry under x → −x of a function of one argument.
     pub(crate) fn parity(self) -> Parity {
         match self {

@@ -8,6 +8,7 @@ use crate::dag::{Atom, Dag, Folding, Node, NodeId};
 use crate::error::ExprError;
 use crate::evaluate::{Scalar, evaluate};
 use crate::expr::Expr;
+use crate::function::Function;
 use crate::number::Number;
 
 /// An arena of interned expressions.
@@ -184,6 +185,31 @@ impl Graph {
             cone.order.into_iter().filter(|&node| matches!(dag.node(node), Node::Symbol(_))).collect()
         });
         nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
+    }
+
+    /// Whether a function of which `which` holds is applied to something that is written with one of the `symbols`.
+    ///
+    /// ```
+    /// # use pc_expr::{Function, Graph};
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.applies(x + y.abs(), &[y], |f| !f.is_smooth()));
+    /// assert!(!graph.applies(x + y.abs(), &[x], |f| !f.is_smooth()));
+    /// ```
+    pub fn applies<'g>(
+        &'g self,
+        value: Expr<'g>,
+        symbols: &[Expr<'g>],
+        which: impl Fn(Function) -> bool,
+    ) -> bool {
+        let root = value.atom_in(self);
+        let symbols: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
+        self.with(|dag| {
+            let cone = Cone::below(dag, [root]);
+            let moving = cone.depending_on(dag, &symbols);
+            let is_one = |node| matches!(dag.node(node), Node::Call { function, .. } if which(function));
+            cone.order.iter().any(|&node| moving.contains(&node) && is_one(node))
+        })
     }
 
     /// The values of `outputs`, over any scalar, when the symbols have the values given.

@@ -1,6 +1,6 @@
 //! The same system in other quasi-velocities.
 
-use pc_algebra::{AlgebraError, Frame, FrameChange, Matrix, StructureCoefficients};
+use pc_algebra::{AlgebraError, Frame, FrameChange, Matrix, StructureCoefficients, affine};
 use pc_expr::Expr;
 
 use crate::error::{MechError, shape};
@@ -52,15 +52,14 @@ impl<'g> System<'g> {
     /// The change to quasi-velocities given by their expressions in the old ones.
     pub(crate) fn change(&self, definitions: &[Expr<'g>]) -> Result<FrameChange<'g>, MechError> {
         let (graph, eta) = (self.graph(), &self.quasi_velocities);
-        let rows: Vec<Vec<Expr<'g>>> = definitions.iter().map(|&d| graph.gradient(d, eta)).collect();
-        if let Some(row) =
-            rows.iter().position(|row| row.iter().any(|a| eta.iter().any(|&eta| a.depends_on(eta))))
-        {
-            let definition = definitions[row].to_string();
-            return Err(AlgebraError::DefinitionNotAffine { row: row + 1, definition }.into());
-        }
-        let zeros: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        let drift = graph.substitute(definitions, &zeros);
+        let parts = definitions.iter().enumerate().map(|(row, &definition)| {
+            affine(graph, definition, eta).ok_or_else(|| AlgebraError::DefinitionNotAffine {
+                row: row + 1,
+                definition: definition.to_string(),
+            })
+        });
+        let (rows, drift): (Vec<Vec<Expr<'g>>>, Vec<Expr<'g>>) =
+            parts.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
         let matrix = Matrix::from_fn(rows.len(), eta.len(), |u, s| rows[u][s]);
         Ok(self.frame.changed_by(&matrix, &drift)?)
     }

@@ -17,6 +17,7 @@ pub(crate) mod ldl;
 pub(crate) mod motion;
 pub(crate) mod options;
 pub(crate) mod pivots;
+pub(crate) mod rounding;
 pub(crate) mod saddle;
 pub(crate) mod solver;
 pub(crate) mod staged;

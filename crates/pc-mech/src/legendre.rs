@@ -1,6 +1,6 @@
 //! From quasi-velocities to momenta and back: y = ∂L/∂η.
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::canonical::Canonical;
@@ -33,7 +33,7 @@ pub(crate) enum Inverse<'g> {
     },
     /// In numbers.
     Implicit {
-        /// An η on which M depends.
+        /// An η in which L is not quadratic.
         quasi_velocity: Expr<'g>,
         /// The η from which the solution is looked for.
         guess: Vec<f64>,
@@ -45,30 +45,35 @@ impl<'g> Legendre<'g> {
     /// [`MechError::DegenerateLagrangian`]
     pub(crate) fn of(system: &System<'g>) -> Result<Legendre<'g>, MechError> {
         let graph = system.graph();
-        let eta = system.quasi_velocities();
+        let (eta, lagrangian) = (system.quasi_velocities(), system.lagrangian());
         let (k, order) = (eta.len(), system.collecting_order());
         let momenta = system.momenta();
-        let hessian: Vec<Vec<Expr<'g>>> = momenta.iter().map(|&p| graph.gradient(p, eta)).collect();
-        let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        let rest = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &at_rest), &order);
-        let moving = eta.iter().find(|&&eta| hessian.iter().flatten().any(|m| m.depends_on(eta)));
-        let (mass, inverse) = match moving {
-            Some(&quasi_velocity) => (
-                graph.shorten(&hessian.concat(), &order),
-                Inverse::Implicit { quasi_velocity, guess: vec![0.0; k] },
-            ),
-            None => (
-                rest(&hessian.concat()),
-                Inverse::Closed {
-                    momenta_at_rest: rest(&momenta),
-                    lagrangian_at_rest: rest(&[system.lagrangian()])[0],
-                },
-            ),
+        let short = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
+        let (entries, inverse) = match quadratic(graph, lagrangian, eta) {
+            Some(Quadratic { matrix, linear, constant }) => {
+                let (momenta_at_rest, lagrangian_at_rest) = (short(&linear), short(&[constant])[0]);
+                (matrix.entries().to_vec(), Inverse::Closed { momenta_at_rest, lagrangian_at_rest })
+            }
+            None => {
+                let hessian = momenta.iter().flat_map(|&p| graph.gradient(p, eta)).collect();
+                let quasi_velocity = not_quadratic_in(system);
+                (hessian, Inverse::Implicit { quasi_velocity, guess: vec![0.0; k] })
+            }
         };
-        let mass = Matrix::from_fn(k, k, |r, s| mass[r.max(s) * k + r.min(s)]);
+        let entries = short(&entries);
+        let mass = Matrix::from_fn(k, k, |r, s| entries[r.max(s) * k + r.min(s)]);
         system.check_regular(&mass)?;
-        Ok(Legendre { mass, momenta: graph.shorten(&momenta, &order), inverse })
+        Ok(Legendre { mass, momenta: short(&momenta), inverse })
     }
+}
+
+/// A quasi-velocity that stands in L otherwise than in squares and products of two.
+pub(crate) fn not_quadratic_in<'g>(system: &System<'g>) -> Expr<'g> {
+    let (graph, lagrangian, eta) = (system.graph(), system.lagrangian(), system.quasi_velocities());
+    let alone = eta.iter().find(|&&eta| quadratic(graph, lagrangian, &[eta]).is_none());
+    let curvatures: Vec<Expr<'g>> = system.momenta().iter().flat_map(|&p| graph.gradient(p, eta)).collect();
+    let moving = || eta.iter().find(|&&eta| curvatures.iter().any(|m| m.depends_on(eta)));
+    *alone.or_else(moving).unwrap_or(&eta[0])
 }
 
 /// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.

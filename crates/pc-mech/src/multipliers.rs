@@ -1,6 +1,6 @@
 //! Constraints held by multipliers, in whatever coordinates.
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, affine};
 use pc_expr::Expr;
 
 use crate::compiled::first_order::FirstOrder;
@@ -89,14 +89,7 @@ impl<'g> Constraint<'g> {
     /// [`MechError::ConstraintNotAffine`]
     pub fn coefficients(&self, system: &System<'g>) -> Result<(Vec<Expr<'g>>, Expr<'g>), MechError> {
         let (graph, eta) = (system.graph(), &system.quasi_velocities);
-        let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        let affine = |value: Expr<'g>| {
-            let row = graph.substitute(&graph.gradient(value, eta), &at_rest);
-            let rest = graph.substitute(&[value], &at_rest)[0];
-            // Derivatives alone do not show |η| and the sign of η.
-            let exact = (value - rest - graph.dot(row.iter().copied(), eta.iter().copied())).is_zero();
-            exact.then_some((row, rest))
-        };
+        let affine = |value: Expr<'g>| affine(graph, value, eta);
         let whole = affine(self.expression).and_then(|_| affine(self.velocity(system)));
         whole.ok_or_else(|| MechError::ConstraintNotAffine { constraint: self.name.clone() })
     }

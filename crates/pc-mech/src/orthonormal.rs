@@ -1,10 +1,11 @@
 //! Frames in which the mass matrix is the unit matrix.
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, quadratic};
 use pc_expr::Expr;
 
 use crate::compiled::ldl::Factors;
 use crate::error::MechError;
+use crate::legendre::not_quadratic_in;
 use crate::system::System;
 
 impl<'g> System<'g> {
@@ -43,14 +44,12 @@ impl<'g> System<'g> {
             let what = "the list of names";
             return Err(MechError::Shape { what, found: free, expected: eta.len() });
         }
-        let momenta = self.momenta();
-        let hessian: Vec<Vec<Expr<'g>>> =
-            momenta[..free].iter().map(|&p| graph.gradient(p, &eta[..free])).collect();
-        if let Some(eta) = eta.iter().find(|&&eta| hessian.iter().flatten().any(|m| m.depends_on(eta))) {
-            return Err(MechError::NotQuadratic { quasi_velocity: eta.to_string() });
-        }
-        let order = self.collecting_order();
-        let entries = graph.shorten(&hessian.concat(), &order);
+        let depends = |m: &Expr<'g>| eta.iter().any(|&eta| m.depends_on(eta));
+        let form = quadratic(graph, self.lagrangian, &eta[..free]);
+        let Some(form) = form.filter(|form| !form.matrix.entries().iter().any(depends)) else {
+            return Err(MechError::NotQuadratic { quasi_velocity: not_quadratic_in(self).to_string() });
+        };
+        let entries = graph.shorten(form.matrix.entries(), &self.collecting_order());
         let mass = Matrix::from_fn(free, free, |r, s| entries[r.max(s) * free + r.min(s)]);
         self.check_regular(&mass)?;
         let Factors::Ldl(factors) = Factors::of(graph, &mass) else {

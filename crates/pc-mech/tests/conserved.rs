@@ -52,6 +52,27 @@ fn verdicts_on_the_top() {
     assert_eq!(rates.verdict(canonical.in_momenta(w3)), Conservation::ConservedHere);
 }
 
+/// A potential that jumps gives no force, yet the energy jumps with it.
+#[test]
+fn derivatives_do_not_prove_what_jumps() {
+    let graph = Graph::new();
+    let [depth, x, v] = graph.symbols(["U", "x", "x'"]);
+    let builder = || System::builder(&graph).parameter(depth, 5.0).coordinates(["x"]);
+    let jumping = builder().lagrangian(|_, x, v| v[0].square() / 2.0 - x[0].step(depth, Expr::ZERO));
+    let jumping = jumping.build().unwrap();
+    let rates = jumping.poincare().unwrap().rates();
+    let between = Conservation::ConservedBetweenJumps;
+    assert_eq!(rates.verdict(jumping.energy()), between);
+    assert!(!between.is_conserved());
+    assert_eq!(rates.verdict(v + (depth - 5.0) * x + x.sign()), between);
+    assert_eq!(rates.verdict(v), Conservation::Conserved);
+    assert_eq!(rates.verdict(v + depth.sign()), Conservation::Conserved);
+    assert_eq!(rates.verdict(x.sign() * v.square() + x), Conservation::Changing(v));
+    // A corner is no jump.
+    let bent = builder().lagrangian(|_, x, v| v[0].square() / 2.0 - depth * x[0].abs()).build().unwrap();
+    assert_eq!(bent.poincare().unwrap().rates().verdict(bent.energy()), Conservation::Conserved);
+}
+
 /// ∂E/∂t + ẋ ∂E/∂x + η̇ ∂E/∂η with E = y·η − L and the rates that the compiled motion has.
 fn energy_rate_along<'g>(system: &System<'g>, point: &[(Expr<'g>, f64)]) -> f64 {
     let graph = system.graph();

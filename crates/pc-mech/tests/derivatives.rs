@@ -334,3 +334,49 @@ fn a_parameter_that_makes_the_mass_matrix_singular_is_found_when_it_changes() {
     motion.rhs(0.0, &y, &mut ydot).unwrap();
     assert_eq!(ydot, [1.0, 2.0, 0.0, 0.0]);
 }
+
+/// The Earth and a satellite, kg and m: the lighter body is no rounding of the heavier one.
+#[test]
+fn masses_of_any_ratio_are_regular() {
+    let graph = Graph::new();
+    let [earth, satellite] = [5.972e24, 1000.0];
+    let system = System::builder(&graph)
+        .coordinates(["X", "x", "φ"])
+        .lagrangian(|_, x, v| {
+            let coupled = (v[1] + 1e-3 * x[2].cos() * v[2]).square();
+            (earth * v[0].square() + satellite * coupled + 1e-9 * v[2].square()) / 2.0
+                + 6.674e-11 * earth * satellite / (x[0] - x[1])
+        })
+        .build()
+        .unwrap();
+    let mut motion = system.poincare().unwrap().compile().unwrap();
+    let mut rates = [0.0; 6];
+    motion.rhs(0.0, &[7e6, 0.0, 1.0, 0.0, 0.0, 0.0], &mut rates).unwrap();
+    // m c (ẍ + c φ̈) + 10⁻⁹ φ̈ = 0 and m (ẍ + c φ̈) = F with c = cos φ/1000
+    let (force, c) = (6.674e-11 * earth * satellite / 49e12, 1e-3 * 1f64.cos());
+    let turn = -c * force / 1e-9;
+    assert!((rates[5] - turn).abs() < 1e-9 * turn.abs(), "{rates:?}"); // m c² is 300 000 times 10⁻⁹
+}
+
+/// M = (x 1; 1 0) has the determinant −1 also where its first pivot vanishes: ẏ-equation ẍ = −x, and
+/// ÿ = −y − ẋ²/2 + x².
+#[test]
+fn an_indefinite_mass_matrix_is_regular_where_a_pivot_vanishes() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| v[0] * v[1] + x[0] * v[0].square() / 2.0 - x[0] * x[1])
+        .build()
+        .unwrap();
+    let mut motion = system.poincare().unwrap().compile().unwrap();
+    let canonical = system.canonical().unwrap();
+    let mut in_momenta = canonical.compile_for(pc_mech::Backend::Fastest).unwrap();
+    for x in [0.0, 0.5] {
+        let (y, vx, vy) = (1.0, 1.0, 0.5);
+        let mut rates = [0.0; 4];
+        motion.rhs(0.0, &[x, y, vx, vy], &mut rates).unwrap();
+        assert_eq!(rates, [vx, vy, -x, -y - vx * vx / 2.0 + x * x]);
+        in_momenta.rhs(0.0, &[x, y, vy + x * vx, vx], &mut rates).unwrap();
+        assert_eq!(rates, [vx, vy, vx * vx / 2.0 - y, -x]);
+    }
+}

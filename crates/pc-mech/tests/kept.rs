@@ -220,3 +220,22 @@ fn rounding_moves_nothing_near_an_equilibrium() {
     motion.project(0.0, &mut state).unwrap();
     assert!(distance(&state, &[3e-9, 1e-8]) < 1e-10, "{state:?}"); // a hundredth of the motion
 }
+
+/// Far from its level an integral that is flat there is reached in many steps that are not half as long as those before.
+#[test]
+fn slow_steps_are_no_end() {
+    let graph = Graph::new();
+    let equations = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .integral("power", |_, _, v| (v[0] - 1.0).powi(5))
+        .build()
+        .unwrap()
+        .poincare()
+        .unwrap();
+    let kept = equations.kept(&["power"]).unwrap();
+    let mut motion = equations.compile().unwrap().keep(kept, 0.0, &[0.0, 0.0, 1.2, 0.0]).unwrap();
+    let mut state = [0.0, 0.0, 2.5, 0.0];
+    motion.project(0.0, &mut state).unwrap();
+    assert!((state[2] - 1.2).abs() < 1e-13, "{state:?}");
+}

@@ -232,3 +232,37 @@ fn an_undetermined_velocity_is_still_refused() {
         .unwrap();
     assert!(matches!(system.canonical(), Err(MechError::DegenerateLagrangian { rank: 1, size: 2, .. })));
 }
+
+/// Where ∂²L/∂η∂η does not show η, L may jump or bend all the same.
+#[test]
+fn a_lagrangian_that_is_quadratic_in_pieces_is_not_called_quadratic() {
+    let system = |graph: &'static Graph, l: fn(Expr<'static>) -> Expr<'static>| {
+        System::builder(graph)
+            .coordinates(["x"])
+            .lagrangian(move |_, x, v| l(v[0]) - x[0].square() / 2.0)
+            .build()
+            .unwrap()
+    };
+    let pieces: [fn(Expr<'static>) -> Expr<'static>; 4] = [
+        |v| v.square() / 2.0 + 3.0 * v.abs(),
+        |v| v.square() / 2.0 * v.step(Expr::ONE, 3.0),
+        |v| v.square() * (2.0 + v.sign()),
+        |v| v.square() + v.max(Expr::ONE),
+    ];
+    for piece in pieces {
+        let graph: &'static Graph = Box::leak(Box::new(Graph::new()));
+        let system = system(graph, piece);
+        let canonical = system.canonical().unwrap();
+        assert!(!canonical.is_closed(), "{}", system.lagrangian());
+        let error = system.in_orthonormal_frame(["w"]).unwrap_err();
+        assert_eq!(error, MechError::NotQuadratic { quasi_velocity: "x'".to_owned() });
+        for velocity in [-1.5, 2.0] {
+            let canonical = canonical.clone().with_guess(&[velocity / 2.0]).unwrap();
+            let mut transform = canonical.legendre_transform().unwrap();
+            let state = transform.to_momenta(0.0, &[0.4, velocity]).unwrap();
+            let mut rates = [0.0; 2];
+            canonical.compile_for(pc_mech::Backend::Fastest).unwrap().rhs(0.0, &state, &mut rates).unwrap();
+            assert!((rates[0] - velocity).abs() < 1e-12 && rates[1] == -0.4, "{rates:?}");
+        }
+    }
+}

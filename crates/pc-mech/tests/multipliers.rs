@@ -265,6 +265,84 @@ fn what_cannot_be_held_is_refused() {
     );
 }
 
+/// At the lowest point of the circle the coordinates are smaller than the rounding of its equation.
+#[test]
+fn states_near_the_origin_of_coordinates_are_projected() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    let circle = Constraint::new("circle", x.square() + (y - 1.7).square() - 1.7_f64.powi(2));
+    let mut motion = system.with_multipliers(&[circle]).unwrap().compile().unwrap();
+    for exponent in 0..40 {
+        let x = 10f64.powi(-exponent / 2);
+        let mut state = [x, 0.1 * x * x, 1e-9 * x, 1e-7 * x];
+        motion.project(0.0, &mut state).unwrap();
+        let residual = motion.constraint_residuals(0.0, &state)[0];
+        assert!(residual.abs() < 6e-15, "{state:?}: {residual:e}"); // some roundings of 2.89
+    }
+}
+
+/// Far from a surface that bends away Newton's whole step overshoots.
+#[test]
+fn the_way_to_a_surface_may_be_long() {
+    let graph = Graph::new();
+    let [x, y, z, t] = graph.symbols(["x", "y", "z", "t"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, x, v| {
+            (2.0 + x[2].square()) * v[0].square() / 2.0
+                + (1.5 + x[1].cos()) * v[1].square() / 2.0
+                + 0.6 * v[2].square()
+        })
+        .build()
+        .unwrap();
+    let bent = Constraint::new("bent", x.square() + y * z + z * t.sin() + 0.3 * z);
+    let steep = Constraint::new("steep", (3.0 * x).atan() + y.tanh());
+    let mut next = numbers(5);
+    for constraint in [bent, steep] {
+        let mut motion = system.with_multipliers(&[constraint]).unwrap().compile().unwrap();
+        for _ in 0..300 {
+            let mut state: Vec<f64> = (0..6).map(|_| next()).collect();
+            motion.project(0.412, &mut state).unwrap();
+            let residual = motion.constraint_residuals(0.412, &state)[0];
+            assert!(residual.abs() < 1e-14, "{state:?}: {residual}"); // some roundings of numbers below 5
+        }
+    }
+}
+
+/// A disk of atomic size and mass that rolls: x' = r θ' cos φ, y' = r θ' sin φ.
+#[test]
+fn units_do_not_matter_under_constraints() {
+    let graph = Graph::new();
+    let [phi, vx, vy, turn] = graph.symbols(["φ", "x'", "y'", "θ'"]);
+    let (m, r, inertia) = (2e-26, 1e-10, 1e-46);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "φ", "θ"])
+        .lagrangian(|_, _, v| {
+            (m * (v[0].square() + v[1].square()) + inertia * (v[2].square() + v[3].square())) / 2.0
+        })
+        .build()
+        .unwrap();
+    let rolling = [
+        Constraint::new("along", vx - r * turn * phi.cos()),
+        Constraint::new("across", vy - r * turn * phi.sin()),
+    ];
+    let mut motion = system.with_multipliers(&rolling).unwrap().compile().unwrap();
+    let (sin, cos) = 0.3f64.sin_cos();
+    let state = [0.0, 0.0, 0.3, 0.0, 3.0 * r * cos, 3.0 * r * sin, 0.7, 3.0];
+    let mut rates = [0.0; 8];
+    motion.rhs(0.0, &state, &mut rates).unwrap();
+    // It goes in a circle: v̇ = φ' v across the direction, nothing else changes.
+    let expected = [-3.0 * r * 0.7 * sin, 3.0 * r * 0.7 * cos, 0.0, 0.0];
+    for (found, (expected, unit)) in rates[4..].iter().zip(expected.iter().zip([r, r, 1.0, 1.0])) {
+        assert!((found - expected).abs() < 1e-14 * unit, "{rates:?}"); // some roundings of numbers about 1
+    }
+}
+
 #[test]
 fn independent_velocities_need_integrable_constraints() {
     let graph = Graph::new();

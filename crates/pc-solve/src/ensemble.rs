@@ -52,6 +52,9 @@ use crate::trajectory::Trajectory;
 /// Members that may be ahead of the one that is consumed next, for each thread.
 const WINDOW: usize = 64;
 
+/// Threads beyond these help on no machine, and so many more that none has room for them would end the program.
+const MOST_THREADS: usize = 1024;
+
 /// Bytes of stack of a thread, as the main one usually has: making a member may go deep.
 const STACK: usize = 8 << 20;
 
@@ -76,7 +79,7 @@ impl<'a> Ensemble<'a> {
         Ensemble { threads, window: None, flag: None }
     }
 
-    /// So many threads. The results are the same for any number.
+    /// So many threads, though not more than 1024. The results are the same for any number.
     pub fn threads(self, threads: NonZeroUsize) -> Self {
         Ensemble { threads, ..self }
     }
@@ -148,7 +151,7 @@ impl<'a> Ensemble<'a> {
         work: impl Fn(u64, &Stop<'_>) -> T + Sync,
         mut consume: impl FnMut(u64, Result<T, Panicked>) -> ControlFlow<()>,
     ) -> Result<Ending, EnsembleError> {
-        let threads = self.threads.get();
+        let threads = self.threads.get().min(MOST_THREADS);
         let window = self.window.map_or(WINDOW.saturating_mul(threads), NonZeroUsize::get);
         let stopped = AtomicBool::new(false);
         let stop = Stop { own: &stopped, flag: self.flag };

@@ -36,7 +36,15 @@ pub(crate) fn header() -> String {
     let mut text = Vec::new();
     bindings.write(&mut text);
     let text = String::from_utf8(text).expect("the sources are UTF-8");
-    text.replace(" \n", "\n")
+    within_extern_c(&text.replace(" \n", "\n"))
+}
+
+/// The text with all of its declarations as those of C. cbindgen leaves out the types of functions, which in C++ are others.
+fn within_extern_c(text: &str) -> String {
+    const OPENING: &str = "#ifdef __cplusplus\nextern \"C\" {\n#endif // __cplusplus\n\n";
+    const INCLUDES: &str = "#include <stdint.h>\n\n";
+    assert!(text.matches(OPENING).count() == 1 && text.matches(INCLUDES).count() == 1);
+    text.replace(OPENING, "").replace(INCLUDES, &format!("{INCLUDES}{OPENING}"))
 }
 
 /// In the order in which a reader needs them.

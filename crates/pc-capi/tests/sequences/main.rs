@@ -16,6 +16,7 @@ mod solvers;
 mod systems;
 
 use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::thread;
 
 use calls::{Call, calls};
@@ -33,9 +34,10 @@ fn play(calls: &[Call], quiet: bool) -> (usize, isize) {
     (succeeded, counting::live() - before)
 }
 
-/// Plays so many sequences; how many of their calls succeeded.
-fn play_all(cases: u32, seed: u8) -> usize {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]);
+/// Plays so many sequences, others for each batch; how many of their calls succeeded.
+fn play_all(cases: u32, batch: u32) -> usize {
+    let seed = batch.to_le_bytes().repeat(8);
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let succeeded = Cell::new(0);
     let outcome = TestRunner::new_with_rng(config, rng).run(&(calls(), any::<bool>()), |(calls, quiet)| {
@@ -54,18 +56,28 @@ fn play_all(cases: u32, seed: u8) -> usize {
     succeeded.get()
 }
 
+/// Sequences are played in so many at a time, so that a long play says how far it is.
+const BATCH: u32 = 5000;
+
 #[test]
 fn any_sequence_of_calls_is_survived_and_leaves_nothing_behind() {
     let cases: u32 = std::env::var("PC_SEQUENCES").map_or(300, |number| number.parse().unwrap());
-    let workers =
-        if cases < 10_000 { 1 } else { thread::available_parallelism().map_or(1, |n| n.get() as u32) };
-    let share = |worker: u32| cases / workers + u32::from(worker < cases % workers);
-    let succeeded: usize = thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers)
-            .map(|worker| scope.spawn(move || play_all(share(worker), 7 + worker as u8)))
-            .collect();
-        workers.into_iter().map(|worker| worker.join().unwrap()).sum()
+    let batches = cases.div_ceil(BATCH);
+    let workers = thread::available_parallelism().map_or(1, |n| n.get() as u32).min(batches);
+    let (next, succeeded, played) = (AtomicU32::new(0), AtomicUsize::new(0), AtomicU32::new(0));
+    let work = || {
+        while let Some(batch) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&batch| batch < batches) {
+            let count = BATCH.min(cases - batch * BATCH);
+            succeeded.fetch_add(play_all(count, batch), Ordering::Relaxed);
+            let played = played.fetch_add(count, Ordering::Relaxed) + count;
+            println!("{played} sequences");
+        }
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().for_each(|worker| worker.join().unwrap());
     });
+    let succeeded = succeeded.into_inner();
     println!("{cases} sequences, {succeeded} calls succeeded");
     assert!(3 * succeeded > 10 * cases as usize, "only {succeeded} calls did something");
 }

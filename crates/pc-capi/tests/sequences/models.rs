@@ -1,6 +1,6 @@
 //! Calls of models.
 
-use std::ffi::{CString, c_char, c_int};
+use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr;
 
 use pc::*;
@@ -8,6 +8,22 @@ use pc::*;
 use crate::calls::ModelCall;
 use crate::common::c;
 use crate::handles::{Handles, Outcome, free_text};
+
+/// Models that are soon compiled: with and without events, constraints of each kind, resets, and L that is not quadratic.
+const SHORT: [&CStr; 12] = [
+    c"bouncing-ball",
+    c"chaplygin-sleigh",
+    c"charged-particle",
+    c"damped-oscillator",
+    c"double-pendulum-cartesian",
+    c"euler-top",
+    c"nonholonomic-particle",
+    c"relativistic-particle",
+    c"rotating-oscillator",
+    c"stick-slip-block",
+    c"suslov",
+    c"vertical-disk",
+];
 
 impl Handles {
     /// The outcome of a call that makes a model, which takes the place of the one before.
@@ -36,10 +52,8 @@ impl Handles {
                     self.made(|place, error| pc_model_parse(data, len, ptr::null(), place, error))
                 }
                 ModelCall::Builtin(index) => {
-                    // Short ones, and one with events.
-                    let name = pc_builtin_name(usize::from(*index) % 12);
-                    let used = if index % 3 == 0 { c"bouncing-ball".as_ptr() } else { name };
-                    self.made(|place, error| pc_model_builtin(used, place, error))
+                    let name = SHORT[usize::from(*index) % SHORT.len()].as_ptr();
+                    self.made(|place, error| pc_model_builtin(name, place, error))
                 }
                 ModelCall::File(path) => {
                     let path = CString::new(path.as_slice()).unwrap();

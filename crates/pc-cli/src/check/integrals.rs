@@ -34,6 +34,8 @@ enum Verdict<'g> {
     Conserved,
     /// It vanishes identically for these values of the parameters.
     ConservedHere,
+    /// It vanishes identically, if only for these values, where the function does not jump.
+    BetweenJumps,
     /// It is not seen to vanish.
     Rate {
         rate: Expr<'g>,
@@ -62,9 +64,10 @@ pub(super) fn integrals<'g>(equations: &Equations<'g>, near: &Neighbourhood<'g>)
 }
 
 /// Says that the energy is proved to be kept, where its rate vanishes on constraints that the equations do not know.
-pub(super) fn say_energy_is_kept(list: &mut [Integral<'_>]) {
+pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equations<'g>) {
     for integral in list.iter_mut().filter(|integral| integral.is_energy()) {
-        integral.verdict = Verdict::Conserved;
+        let jumps = equations.rates().has_jumps(integral.value);
+        integral.verdict = if jumps { Verdict::BetweenJumps } else { Verdict::Conserved };
     }
 }
 
@@ -139,6 +142,7 @@ impl<'a, 'g> Search<'a, 'g> {
         match self.rates.verdict(function) {
             Conservation::Conserved => Verdict::Conserved,
             Conservation::ConservedHere => Verdict::ConservedHere,
+            Conservation::ConservedBetweenJumps => Verdict::BetweenJumps,
             Conservation::Changing(rate) => self.changing(rate),
         }
     }
@@ -171,9 +175,12 @@ impl<'a, 'g> Search<'a, 'g> {
         let verdict = match self.verdict(value) {
             Verdict::Rate { .. } if self.unconstrained => {
                 let rate = self.system().energy_rate();
-                if rate.is_zero() {
+                let vanishes_here = self.bind(rate).is_zero();
+                if vanishes_here && self.rates.has_jumps(value) {
+                    Verdict::BetweenJumps
+                } else if rate.is_zero() {
                     Verdict::Conserved
-                } else if self.bind(rate).is_zero() {
+                } else if vanishes_here {
                     Verdict::ConservedHere
                 } else {
                     self.changing(rate)
@@ -212,7 +219,8 @@ impl<'a, 'g> Search<'a, 'g> {
     /// The verdict on what is proved to be conserved at least for these parameters.
     fn proved(&self, function: Expr<'g>) -> Verdict<'g> {
         match self.verdict(function) {
-            Verdict::Conserved => Verdict::Conserved,
+            known @ (Verdict::Conserved | Verdict::BetweenJumps) => known,
+            _ if self.rates.has_jumps(function) => Verdict::BetweenJumps,
             _ => Verdict::ConservedHere,
         }
     }
@@ -319,7 +327,7 @@ fn binomial(n: usize, d: usize) -> usize {
 
 impl Verdict<'_> {
     fn is_conserved(self) -> bool {
-        !matches!(self, Verdict::Rate { .. })
+        matches!(self, Verdict::Conserved | Verdict::ConservedHere)
     }
 
     /// `jumps`: whether an event may change it.
@@ -328,6 +336,7 @@ impl Verdict<'_> {
         match self {
             Verdict::Conserved => format!("conserved{between} (proved)"),
             Verdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
+            Verdict::BetweenJumps => "conserved where it does not jump (proved)".to_owned(),
             // Rounding of a rate that is zero there.
             Verdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
                 "not proved to be conserved, though it does not change at the start".to_owned()

@@ -1,6 +1,6 @@
 //! Rigid bodies.
 
-use pc_algebra::{Matrix, determinant};
+use pc_algebra::{Matrix, affine, determinant};
 use pc_expr::Expr;
 
 use crate::bodies::particle::Particle;
@@ -207,15 +207,11 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
 /// ω_0..ω_k with ω = ω_0 + η_s ω_s.
 fn affine_parts<'g>(omega: &[Expr<'g>; 3], moving: &Moving<'_, 'g>) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
     let (graph, eta) = (moving.frame.graph(), moving.eta);
-    let in_eta = moving.in_quasi_velocities(omega);
-    let slopes: Vec<Vec<Expr<'g>>> = in_eta.iter().map(|&component| graph.gradient(component, eta)).collect();
-    for (component, slopes) in in_eta.iter().zip(&slopes) {
-        if slopes.iter().any(|slope| eta.iter().any(|&eta| slope.depends_on(eta))) {
-            return Err(MechError::AngularVelocityNotAffine { component: component.to_string() });
-        }
+    let mut parts = vec![Vec::new(); eta.len() + 1];
+    for component in moving.in_quasi_velocities(omega) {
+        let error = || MechError::AngularVelocityNotAffine { component: component.to_string() };
+        let (slopes, rest) = affine(graph, component, eta).ok_or_else(error)?;
+        parts.iter_mut().zip([rest].into_iter().chain(slopes)).for_each(|(part, value)| part.push(value));
     }
-    let at_rest: Vec<_> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
-    let mut parts = vec![graph.substitute(&in_eta, &at_rest)];
-    parts.extend((0..eta.len()).map(|s| slopes.iter().map(|slopes| slopes[s]).collect()));
     Ok(parts)
 }

@@ -35,7 +35,7 @@ impl DenseLdl {
     /// Factorises M, of which `values` stand at the places `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] for the first pivot that vanishes against the diagonal of M.
+    /// [`Fault::Pivot`] for the first pivot that vanishes against the entry of M in its place.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
         let k = self.diagonal.len();
         self.matrix.fill(0.0);
@@ -59,7 +59,7 @@ impl DenseLdl {
         for s in 0..known {
             self.pivots[s] = self.matrix[(s, s)];
         }
-        pivots::check(&self.pivots[..known], self.diagonal.iter().copied())?;
+        pivots::check(&self.pivots[..known], &self.diagonal[..known])?;
         match outcome {
             Ok(_) => Ok(()),
             Err(LdltError::ZeroPivot { index }) => Err(Fault::Pivot { index, pivot: self.pivots[index] }),
@@ -93,6 +93,14 @@ mod tests {
         for (found, expected) in columns.iter().zip([1.0, 2.0, 3.0, 0.0, 1.0, 0.0]) {
             assert!((found - expected).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn units_do_not_matter() {
+        // Beside the mass of the Earth that of a satellite is no rounding.
+        assert!(factorised([6e24, 0.0, 0.0, 1e3, 0.0, 1e-46]).is_ok());
+        let singular = factorised([6e24, 0.0, 0.0, 1e-3, 1e-3, 1e-3]);
+        assert!(matches!(singular, Err(Fault::Pivot { index: 2, .. })));
     }
 
     #[test]

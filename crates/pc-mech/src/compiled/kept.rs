@@ -6,6 +6,7 @@ use crate::canonical::Canonical;
 use crate::compiled::fault::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::motion::Motion;
+use crate::compiled::rounding::Measured;
 use crate::error::MechError;
 use crate::multipliers::Multipliers;
 use crate::poincare::Equations;
@@ -15,9 +16,6 @@ const MOST_STEPS: usize = 50;
 
 /// After a step so short against the state the next one would be rounding.
 const SHORT: f64 = 1e-8;
-
-/// Roundings in the value of an integral, in units of its terms.
-const ROUNDINGS: f64 = 4.0;
 
 /// A gradient of which less than this is left beside those before it adds nothing to them.
 const DEPENDENT: f64 = 1e-10;
@@ -37,7 +35,7 @@ pub struct KeptIntegrals {
     /// Of the integrals.
     names: Vec<String>,
     /// The constraints, if there are any, which are not to be left on the way, then the integrals.
-    values: Evaluator,
+    values: Measured,
     /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one after the other.
     gradients: Evaluator,
     /// Zeros of the constraints, then the values of the integrals at the start.
@@ -95,13 +93,11 @@ impl<'g> FirstOrder<'g> {
         let variables: Vec<Expr<'g>> = [self.time].iter().chain(&self.state).copied().collect();
         let gradients: Vec<Expr<'g>> =
             functions.iter().flat_map(|&function| self.graph.gradient(function, &variables)).collect();
-        let compiled = |outputs: &[Expr<'g>]| -> Result<Evaluator, MechError> {
-            Ok(Evaluator::new(Program::new(self.graph, &self.inputs(&[]), outputs)?, Backend::Fastest))
-        };
+        let inputs = self.inputs(&[]);
         Ok(KeptIntegrals {
             names: names.iter().map(|name| name.as_ref().to_owned()).collect(),
-            values: compiled(&functions)?,
-            gradients: compiled(&gradients)?,
+            values: Measured::new(self.graph, &inputs, &functions, Backend::Fastest)?,
+            gradients: Evaluator::new(Program::new(self.graph, &inputs, &gradients)?, Backend::Fastest),
             levels: vec![0.0; functions.len()],
         })
     }
@@ -209,9 +205,9 @@ impl KeptIntegrals {
     }
 
     /// Takes the values at (t, y) for those to be kept.
-    pub(crate) fn set_levels(&mut self, (t, y, p): (f64, &[f64], &[f64])) {
-        self.values.eval(t, y, p, &mut self.levels);
+    pub(crate) fn set_levels(&mut self, at: (f64, &[f64], &[f64])) {
         let held = self.held();
+        self.levels.copy_from_slice(self.values.eval(at));
         self.levels[..held].fill(0.0);
     }
 
@@ -230,23 +226,23 @@ impl KeptIntegrals {
     /// Newton's method for I(t, y) = I_0, each step the shortest.
     ///
     /// # Errors
-    /// [`Fault::NotKept`] if the way leads nowhere, [`Fault::Expr`] for values that are not finite.
+    /// [`Fault::NotKept`] if the steps do not become shorter, [`Fault::Expr`] for values that are not finite.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
-        let mut residuals = vec![0.0; self.levels.len()];
         for _ in 0..MOST_STEPS {
-            self.values.eval(t, y, p, &mut residuals);
-            check_finite(&residuals, &self.values, (t, y, p))?;
-            residuals.iter_mut().zip(&self.levels).for_each(|(value, level)| *value -= level);
-            let change = self.shortest((t, y, p), &residuals)?;
+            self.values.try_eval((t, y, p))?;
+            let change = self.shortest((t, y, p))?;
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let length = largest(&change);
-            if length >= before / 2.0 {
-                let small = length <= SHORT * largest(y) || length <= SHORT * first;
-                return if small { Ok(()) } else { Err(Fault::NotKept) };
+            let is_short = length <= SHORT * largest(y);
+            if length >= before / 2.0 && (is_short || length <= SHORT * first) {
+                return Ok(());
+            }
+            if length >= before {
+                return Err(Fault::NotKept);
             }
             y.iter_mut().zip(&change).for_each(|(y, change)| *y -= change);
-            if length <= SHORT * largest(y) {
+            if is_short {
                 return Ok(());
             }
             first = first.min(length);
@@ -255,18 +251,17 @@ impl KeptIntegrals {
         Err(Fault::NotKept)
     }
 
-    /// The shortest δ with ∂I_j/∂y · δ = `residuals`\[j\], by orthogonalising the gradients one after the other. A residual
+    /// The shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
     /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
-    fn shortest(&mut self, at: (f64, &[f64], &[f64]), residuals: &[f64]) -> Result<Vec<f64>, Fault> {
+    fn shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<Vec<f64>, Fault> {
         let gradients = self.gradients_at(at);
         let mut change = vec![0.0; at.1.len()];
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        for ((row, &residual), level) in gradients.iter().zip(residuals).zip(&self.levels) {
+        for (place, row) in gradients.iter().enumerate() {
             check_finite(row, &self.gradients, at)?;
             let gradient = &row[1..];
-            let terms: f64 = gradient.iter().zip(at.1).map(|(g, y)| (g * y).abs()).sum();
-            let rounding = ROUNDINGS * f64::EPSILON * (terms + level.abs());
-            let residual = if residual.abs() <= rounding { 0.0 } else { residual };
+            let difference = self.values.values()[place] - self.levels[place];
+            let residual = if self.values.is_rounding(place, difference) { 0.0 } else { difference };
             let mut direction = gradient.to_vec();
             for known in &basis {
                 let along = dot(known, &direction);

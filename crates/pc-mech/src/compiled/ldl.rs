@@ -7,9 +7,13 @@ use pc_expr::{Expr, Graph};
 pub(crate) enum Factors<'g> {
     /// L D Lᵀ in the order of elimination that fills in least.
     Ldl(Ldl<'g>),
-    /// The inverse itself, for a regular matrix without a usable pivot on its diagonal, such as that of L = ẋẏ.
+    /// The inverse itself, for a matrix that has a zero on its diagonal and so both signs, such as that of L = ẋẏ: a pivot
+    /// may vanish where it is regular.
     Inverse(Matrix<Expr<'g>>),
 }
+
+/// The rows up to which the inverse is shorter than what could be saved.
+const MOST_INVERTED: usize = 4;
 
 /// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
@@ -22,7 +26,9 @@ impl<'g> Factors<'g> {
     /// Factorises a matrix that is regular at almost all states.
     pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Factors<'g> {
         let undefined = || Matrix::from_fn(m.rows(), m.rows(), |_, _| Expr::ONE / Expr::ZERO);
-        match Ldl::of(graph, m) {
+        let indefinite = (0..m.rows()).any(|s| m[(s, s)].is_zero());
+        let inverted = indefinite && m.rows() <= MOST_INVERTED;
+        match Ldl::of(graph, m).filter(|_| !inverted) {
             Some(ldl) => Factors::Ldl(ldl),
             None => Factors::Inverse(inverse(graph, m).unwrap_or_else(undefined)), // a regular M has an inverse
         }

@@ -3,13 +3,17 @@
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::rounding::Measured;
 use crate::compiled::solver::Solver;
 
 /// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
 const MOST_STEPS: usize = 50;
 
-/// The last step of a projection is rounding against the coordinates, or against the first step.
-const ROUNDING: f64 = 1e-8;
+/// How often a step is halved before the way is taken to lead nowhere.
+const HALVINGS: i32 = 20;
+
+/// After a step so short against the state, or against the first step, the next one would be rounding.
+const SHORT: f64 = 1e-8;
 
 /// What a surface is made of, in expressions of t, x, η and parameters.
 #[derive(Debug)]
@@ -37,9 +41,9 @@ pub(crate) struct Conditions<'a, 'g> {
 pub(crate) struct Surface {
     coordinates: usize,
     k: usize,
-    positions: Evaluator,
+    positions: Measured,
     places: Vec<usize>,
-    velocities: Evaluator,
+    velocities: Measured,
     displacements: Evaluator,
     lower: Pattern,
     bordered: Evaluator,
@@ -47,10 +51,17 @@ pub(crate) struct Surface {
     solver: Solver,
     /// A right-hand side, then a solution.
     change: Vec<f64>,
-    residual: Vec<f64>,
     /// x, then δπ.
     displaced: Vec<f64>,
-    moved: Vec<f64>,
+}
+
+/// What of a state is moved.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// x, to f = 0.
+    Position,
+    /// η, to g = 0.
+    Velocity,
 }
 
 impl Surface {
@@ -69,28 +80,23 @@ impl Surface {
         Ok(Surface {
             coordinates,
             k,
-            positions: compiled(conditions.positions)?,
-            velocities: compiled(conditions.velocities)?,
+            positions: Measured::new(graph, inputs, conditions.positions, Backend::Interpreter)?,
+            velocities: Measured::new(graph, inputs, conditions.velocities, Backend::Interpreter)?,
             displacements: compiled(conditions.displacements)?,
             bordered: compiled(conditions.bordered)?,
             entries: vec![0.0; conditions.lower.len()],
             lower: conditions.lower,
             solver: Solver::new(k + m, m),
             change: vec![0.0; k + m],
-            residual: vec![0.0; m],
             displaced: vec![0.0; coordinates + k],
-            moved: vec![0.0; coordinates],
             places: conditions.places,
         })
     }
 
     /// f where a constraint has a position and g where it has none, one number a constraint.
     pub(crate) fn residuals(&mut self, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
-        let mut residuals = vec![0.0; self.residual.len()];
-        self.velocities.eval(t, y, p, &mut residuals);
-        let found = &mut self.residual[..self.places.len()];
-        self.positions.eval(t, y, p, found);
-        for (&place, &value) in self.places.iter().zip(&*found) {
+        let mut residuals = self.velocities.eval((t, y, p)).to_vec();
+        for (&place, &value) in self.places.iter().zip(self.positions.eval((t, y, p))) {
             residuals[place] = value;
         }
         residuals
@@ -103,9 +109,9 @@ impl Surface {
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
-            self.project_position(t, y, p)?;
+            self.project_part(Part::Position, t, y, p)?;
         }
-        self.project_velocity(t, y, p)
+        self.project_part(Part::Velocity, t, y, p)
     }
 
     fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
@@ -114,66 +120,83 @@ impl Surface {
         self.solver.factorise(&self.lower, &self.entries)
     }
 
-    /// Newton's method for f(t, x) = 0; leaves the matrix factorised where it ends.
-    fn project_position(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+    /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which comes to its end at once where g is affine in η;
+    /// leaves the matrix factorised where it ends.
+    ///
+    /// A step is halved until the next one, with the same matrix, is shorter in the kinetic metric, which knows no units
+    /// of f (the natural monotonicity test of P. Deuflhard, Numer. Math. 22, 1974, 289–315). Where none is, the way is at
+    /// its end if what is left is rounding.
+    fn project_part(&mut self, part: Part, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         let n = self.coordinates;
-        let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
+        let range = if part == Part::Position { 0..n } else { n..y.len() };
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let mut first = f64::INFINITY;
+        self.measured(part).try_eval((t, y, p))?;
         for _ in 0..MOST_STEPS {
-            let found = &mut self.residual[..self.places.len()];
-            self.positions.eval(t, y, p, found);
-            check_finite(found, &self.positions, (t, y, p))?;
-            self.change.fill(0.0);
-            for (&place, &value) in self.places.iter().zip(&*found) {
-                self.change[self.k + place] = value;
+            let length = self.step(part);
+            if length == 0.0 {
+                return Ok(());
             }
-            self.solver.solve(&mut self.change);
-            // M δπ − Cᵀ μ = 0 and −C δπ = f: δπᵀ M δπ = −μ f
-            let multipliers = self.places.iter().map(|&place| self.change[self.k + place]);
-            let length = multipliers.zip(&*found).map(|(mu, f)| mu * f).sum::<f64>().abs().sqrt();
-            self.displaced[..n].copy_from_slice(&y[..n]);
-            self.displaced[n..].copy_from_slice(&self.change[..self.k]);
-            self.displacements.eval(t, &self.displaced, p, &mut self.moved);
-            if length >= before / 2.0 || length == 0.0 {
-                let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-                let small = largest(&self.moved) <= ROUNDING * largest(&y[..n]) || length <= ROUNDING * first;
-                return if small { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
-            }
-            for (x, moved) in y[..n].iter_mut().zip(&self.moved) {
-                *x += moved;
+            let (start, change) = (y[range.clone()].to_vec(), self.moved(part, t, y, p));
+            first = first.min(length);
+            let is_short = largest(&change) <= SHORT * largest(&start) || length <= SHORT * first;
+            let is_there = is_short || self.measured(part).vanish();
+            let halvings = if is_there { 0 } else { HALVINGS };
+            let found = (0..=halvings).any(|halvings| {
+                let fraction = 0.5f64.powi(halvings);
+                let moving = y[range.clone()].iter_mut().zip(&start).zip(&change);
+                moving.for_each(|((y, start), change)| *y = start + fraction * change);
+                let is_finite = self.measured(part).try_eval((t, y, p)).is_ok();
+                is_finite && self.step(part) <= (1.0 - fraction / 4.0) * length
+            });
+            if !found {
+                y[range].copy_from_slice(&start);
+                return if is_there { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
             }
             self.factorise(t, y, p)?;
-            first = first.min(length);
-            before = length;
         }
         Err(Fault::NoProjection { unknowns: self.k })
     }
 
-    /// Newton's method for g(t, x, η) = 0, which comes to its end at once where g is affine in η.
-    fn project_velocity(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        let n = self.coordinates;
-        let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..MOST_STEPS {
-            self.velocities.eval(t, y, p, &mut self.residual);
-            check_finite(&self.residual, &self.velocities, (t, y, p))?;
-            self.change[..self.k].fill(0.0);
-            self.change[self.k..].copy_from_slice(&self.residual);
-            self.solver.solve(&mut self.change);
-            let along = self.change[self.k..].iter().zip(&self.residual);
-            let length = along.map(|(mu, g)| mu * g).sum::<f64>().abs().sqrt();
-            if length >= before / 2.0 || length == 0.0 {
-                let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-                let (change, size) = (largest(&self.change[..self.k]), largest(&y[n..]));
-                // Where nothing moves, what is left of g is the rounding of numbers that cancel.
-                let small = change <= ROUNDING * size || length <= ROUNDING * first || size == 0.0;
-                return if small { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
-            }
-            for (eta, change) in y[n..].iter_mut().zip(&self.change) {
-                *eta += change;
-            }
-            self.factorise(t, y, p)?;
-            first = first.min(length);
-            before = length;
+    fn measured(&mut self, part: Part) -> &mut Measured {
+        match part {
+            Part::Position => &mut self.positions,
+            Part::Velocity => &mut self.velocities,
         }
-        Err(Fault::NoProjection { unknowns: self.k })
+    }
+
+    /// Leaves in `change` the step that the values call for, with the matrix as it is factorised; its length
+    /// √(δπᵀ M δπ).
+    fn step(&mut self, part: Part) -> f64 {
+        let multipliers = &mut self.change[self.k..];
+        match part {
+            Part::Position => {
+                multipliers.fill(0.0);
+                for (&place, &value) in self.places.iter().zip(self.positions.values()) {
+                    multipliers[place] = value;
+                }
+            }
+            Part::Velocity => multipliers.copy_from_slice(self.velocities.values()),
+        }
+        let residuals = multipliers.to_vec();
+        self.change[..self.k].fill(0.0);
+        self.solver.solve(&mut self.change);
+        // M δπ − Cᵀ μ = 0 and −C δπ = f: δπᵀ M δπ = −μ f
+        self.change[self.k..].iter().zip(&residuals).map(|(mu, f)| mu * f).sum::<f64>().abs().sqrt()
+    }
+
+    /// What the step changes of x or of η.
+    fn moved(&mut self, part: Part, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
+        let (n, k) = (self.coordinates, self.k);
+        match part {
+            Part::Velocity => self.change[..k].to_vec(),
+            Part::Position => {
+                let mut moved = vec![0.0; n];
+                self.displaced[..n].copy_from_slice(&y[..n]);
+                self.displaced[n..].copy_from_slice(&self.change[..k]);
+                self.displacements.eval(t, &self.displaced, p, &mut moved);
+                moved
+            }
+        }
     }
 }

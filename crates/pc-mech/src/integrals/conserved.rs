@@ -14,6 +14,9 @@ pub enum Conservation<'g> {
     Conserved,
     /// Its rate vanishes identically for the values that the parameters have.
     ConservedHere,
+    /// Its rate vanishes identically, if only for the values that the parameters have, but it jumps where a sign or a
+    /// step in it does, and of that the rate knows nothing.
+    ConservedBetweenJumps,
     /// The rate, which the graph does not fold to zero.
     Changing(Expr<'g>),
 }
@@ -21,7 +24,7 @@ pub enum Conservation<'g> {
 impl Conservation<'_> {
     /// Whether the function is proved to be an integral, if only for the values that the parameters have.
     pub fn is_conserved(self) -> bool {
-        !matches!(self, Conservation::Changing(_))
+        matches!(self, Conservation::Conserved | Conservation::ConservedHere)
     }
 }
 
@@ -122,13 +125,23 @@ impl<'g> Rates<'g> {
     /// rate contains roots, logarithms or the like: the graph knows few of their identities.
     pub fn verdict(&self, f: Expr<'g>) -> Conservation<'g> {
         let rate = self.of(f);
-        if rate.is_zero() {
+        let (always, here) = (rate.is_zero(), self.graph.substitute(&[rate], &self.parameters)[0].is_zero());
+        if here && self.has_jumps(f) {
+            Conservation::ConservedBetweenJumps
+        } else if always {
             Conservation::Conserved
-        } else if self.graph.substitute(&[rate], &self.parameters)[0].is_zero() {
+        } else if here {
             Conservation::ConservedHere
         } else {
             Conservation::Changing(rate)
         }
+    }
+
+    /// Whether f is written with a sign, a step or an angle of what changes, and so may jump.
+    pub fn has_jumps(&self, f: Expr<'g>) -> bool {
+        let f = self.graph.substitute(&[f], &self.accelerations)[0];
+        let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();
+        self.graph.applies(f, &changing, |function| !function.is_continuous())
     }
 
     /// The derivative with the parameters replaced by their numbers.
