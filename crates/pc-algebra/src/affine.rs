@@ -82,9 +82,9 @@ fn at_zero<'g>(
 }
 
 /// Whether derivatives tell all of the value, as they do of polynomials with rounded coefficients, whose identities hold but
-/// for rounding.
+/// for rounding: without corners and jumps, and without poles, beyond which a function may go on otherwise.
 fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
-    !graph.applies(value, symbols, |function| !function.is_smooth())
+    !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }
 
 fn depend<'g>(values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {

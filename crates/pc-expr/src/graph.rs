@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::fmt;
 
+use rustc_hash::FxHashSet;
+
 use crate::cone::Cone;
 use crate::dag::{Atom, Dag, Folding, Node, NodeId};
 use crate::error::ExprError;
@@ -202,13 +204,42 @@ impl Graph {
         symbols: &[Expr<'g>],
         which: impl Fn(Function) -> bool,
     ) -> bool {
+        self.finds(
+            value,
+            symbols,
+            |dag, _, node| matches!(dag.node(node), Node::Call { function, .. } if which(function)),
+        )
+    }
+
+    /// Whether something that is written with one of the `symbols` stands in a divisor.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.divides_by(x / (y + 1.0), &[y]));
+    /// assert!(!graph.divides_by(x / (y + 1.0), &[x]));
+    /// ```
+    pub fn divides_by<'g>(&'g self, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
+        self.finds(value, symbols, |dag, moving, node| {
+            let Node::Product { factors } = dag.node(node) else { return false };
+            dag.factors(factors).iter().any(|(child, exponent)| *exponent < 0 && moving.contains(child))
+        })
+    }
+
+    /// Whether a node of the value that depends on one of the symbols is one; it is told all those.
+    fn finds<'g>(
+        &'g self,
+        value: Expr<'g>,
+        symbols: &[Expr<'g>],
+        is_one: impl Fn(&Dag, &FxHashSet<NodeId>, NodeId) -> bool,
+    ) -> bool {
         let root = value.atom_in(self);
         let symbols: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
         self.with(|dag| {
             let cone = Cone::below(dag, [root]);
             let moving = cone.depending_on(dag, &symbols);
-            let is_one = |node| matches!(dag.node(node), Node::Call { function, .. } if which(function));
-            cone.order.iter().any(|&node| moving.contains(&node) && is_one(node))
+            cone.order.iter().any(|&node| moving.contains(&node) && is_one(dag, &moving, node))
         })
     }
 

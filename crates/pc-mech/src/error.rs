@@ -36,10 +36,10 @@ pub enum MechError {
     /// H(t, x, y) was asked for where y = ∂L/∂η is not linear in the quasi-velocities.
     #[error(
         "the Hamiltonian as a function of the momenta needs a Lagrangian that is quadratic in the quasi-velocities; \
-         ∂²L/∂η∂η depends on `{quasi_velocity}`"
+         this one is not in `{quasi_velocity}`"
     )]
     NotQuadratic {
-        /// A quasi-velocity in the Hessian.
+        /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: String,
     },
     /// Lagrange's equations asked for in coordinates that are not independent.
@@ -134,7 +134,7 @@ pub enum MechError {
         state: Vec<(String, f64)>,
     },
     /// Newton's method found no state with the values of the [kept](crate::Motion::keep) integrals.
-    #[error("no state with the values of the integrals is found near t = {t}, {}", listed(state))]
+    #[error("no state with the values of the integrals is found near t = {t}{}", listed(state))]
     NotKept {
         /// Time.
         t: f64,

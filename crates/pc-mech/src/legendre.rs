@@ -73,7 +73,7 @@ pub(crate) fn not_quadratic_in<'g>(system: &System<'g>) -> Expr<'g> {
     let alone = eta.iter().find(|&&eta| quadratic(graph, lagrangian, &[eta]).is_none());
     let curvatures: Vec<Expr<'g>> = system.momenta().iter().flat_map(|&p| graph.gradient(p, eta)).collect();
     let moving = || eta.iter().find(|&&eta| curvatures.iter().any(|m| m.depends_on(eta)));
-    *alone.or_else(moving).unwrap_or(&eta[0])
+    alone.or_else(moving).or(eta.first()).copied().unwrap_or(lagrangian)
 }
 
 /// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.

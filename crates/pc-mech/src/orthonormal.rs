@@ -14,7 +14,7 @@ impl<'g> System<'g> {
     /// quasi-velocities; the others, such as those that constraints keep at zero, stay.
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`] unless the metric is independent of η; [`MechError::DegenerateLagrangian`];
+    /// [`MechError::NotQuadratic`] unless L is quadratic in η, with a metric independent of it; [`MechError::DegenerateLagrangian`];
     /// [`MechError::Shape`] if there are more names than quasi-velocities.
     ///
     /// ```

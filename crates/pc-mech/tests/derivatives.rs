@@ -380,3 +380,36 @@ fn an_indefinite_mass_matrix_is_regular_where_a_pivot_vanishes() {
         assert_eq!(rates, [vx, vy, vx * vx / 2.0 - y, -x]);
     }
 }
+
+/// Where a pivot is what roundings leave, of an entry or of a matrix with both signs, the rates would be rounding too.
+#[test]
+fn a_mass_matrix_that_is_singular_but_for_rounding_is_refused() {
+    type Lagrangian = for<'g> fn(&[Expr<'g>], &[Expr<'g>]) -> Expr<'g>;
+    let cases: [(Lagrangian, [f64; 2], &str); 4] = [
+        // sin² π
+        (
+            |x, v| (v[0].square() + x[0].sin().square() * v[1].square()) / 2.0,
+            [std::f64::consts::PI, 0.0],
+            "y'",
+        ),
+        (|x, v| x[0] * v[0].square() / 2.0 + v[0] * v[1] + v[1].square() / 2.0, [1e-18, 0.0], "x'"),
+        (|x, v| x[0] * v[0].square() / 2.0 + x[1].sin() * v[0] * v[1], [0.3, std::f64::consts::PI], "y'"),
+        (|x, v| x[0] * v[0].square() / 2.0 + x[1] * v[0] * v[1], [0.3, 0.0], "y'"),
+    ];
+    for (lagrangian, x, undetermined) in cases {
+        let graph = Graph::new();
+        let system = System::builder(&graph)
+            .coordinates(["x", "y"])
+            .lagrangian(|_, x, v| lagrangian(x, v) + x[0])
+            .build()
+            .unwrap();
+        let mut motion = system.poincare().unwrap().compile().unwrap();
+        let error = motion.rhs(0.0, &[x[0], x[1], 0.1, 1.0], &mut [0.0; 4]).unwrap_err();
+        match error.cause().downcast_ref() {
+            Some(MechError::SingularMassMatrix { quasi_velocity, .. }) => {
+                assert_eq!(quasi_velocity, undetermined)
+            }
+            _ => panic!("{error}"),
+        }
+    }
+}

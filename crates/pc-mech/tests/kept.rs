@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use pc_mech::{Constraint, Graph, LieAlgebra, MechError, System, VectorField};
+use pc_mech::{Constraint, Expr, Graph, LieAlgebra, MechError, System, VectorField};
 
 /// A heavy top in (γ, ω) with the integrals |γ|² and the area.
 fn top(graph: &Graph) -> System<'_> {
@@ -238,4 +238,31 @@ fn slow_steps_are_no_end() {
     let mut state = [0.0, 0.0, 2.5, 0.0];
     motion.project(0.0, &mut state).unwrap();
     assert!((state[2] - 1.2).abs() < 1e-13, "{state:?}");
+}
+
+/// A bumper that is not touched: its power has no derivative by the exponent there.
+#[test]
+fn parts_without_a_derivative_are_no_hindrance() {
+    let graph = Graph::new();
+    let bumpers: [for<'g> fn(Expr<'g>) -> Expr<'g>; 2] =
+        [|depth| depth.pow(2.5), |depth| depth.square() * depth.sqrt()];
+    for bumper in bumpers {
+        let equations = System::builder(&graph)
+            .coordinates(["φ"])
+            .lagrangian(|_, x, v| {
+                v[0].square() / 2.0 + x[0].cos() - 100.0 * bumper((x[0] - 0.5).max(Expr::ZERO))
+            })
+            .build()
+            .unwrap()
+            .poincare()
+            .unwrap();
+        let kept = equations.kept(&["energy"]).unwrap();
+        let mut motion = equations.compile().unwrap().keep(kept, 0.0, &[5e-8, 0.0]).unwrap();
+        for i in 0..100 {
+            let (sin, cos) = (0.1 * f64::from(i)).sin_cos();
+            let mut state = [5e-8 * cos, -5e-8 * sin];
+            motion.project(0.0, &mut state).unwrap();
+            assert!(distance(&state, &[5e-8 * cos, -5e-8 * sin]) < 1e-15, "{state:?}");
+        }
+    }
 }

@@ -286,6 +286,91 @@ fn states_near_the_origin_of_coordinates_are_projected() {
     }
 }
 
+/// Where a coordinate is too large to be moved by its share of a rounding, the other one comes nearer by halves.
+#[test]
+fn rounding_is_no_way_to_go() {
+    let graph = Graph::new();
+    let [x, y, vx, vy] = graph.symbols(["x", "y", "x'", "y'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    for constraint in [x + y - 1.0, x.abs() + y.abs() - 1.0, vx + vy - 1.0] {
+        let mut motion =
+            system.with_multipliers(&[Constraint::new("c", constraint)]).unwrap().compile().unwrap();
+        for small in [1e-15, 1e-16, 1e-17, 1e-20] {
+            let mut state = [1.0, small, 1.0, small];
+            motion.project(0.0, &mut state).unwrap();
+            let residual = motion.constraint_residuals(0.0, &state)[0];
+            assert!(residual.abs() < 1e-15, "{state:?}: {residual:e}");
+        }
+    }
+}
+
+/// A step along which T vanishes has a length all the same.
+#[test]
+fn a_metric_that_is_not_positive_is_none_to_measure_steps_by() {
+    let graph = Graph::new();
+    let [x, y, z, vx, vz] = graph.symbols(["x", "y", "z", "x'", "z'"]);
+    let system = |masses: [f64; 3]| {
+        System::builder(&graph)
+            .coordinates(["x", "y", "z"])
+            .lagrangian(|_, _, v| graph.sum((0..3).map(|i| masses[i] * v[i].square() / 2.0)))
+            .build()
+            .unwrap()
+    };
+    let (indefinite, massless) = (system([1.0, -1.0, 1.0]), system([1.0, 0.0, 1.0]));
+    let sines = [Constraint::new("a", x - z.sin()), Constraint::new("b", y - z.sin())];
+    let tie = [Constraint::new("tie", y - x.square() - z)];
+    let free = [Constraint::new("rate", graph.symbol("y'") - vx * z.cos() - vz)];
+    for (system, constraints) in [(&indefinite, &sines[..]), (&massless, &tie), (&massless, &free)] {
+        let mut motion = system.with_multipliers(constraints).unwrap().compile().unwrap();
+        let mut state = [0.3, 0.4, 0.5, 1.0, 1.1, 1.2];
+        motion.project(0.0, &mut state).unwrap();
+        let residuals = motion.constraint_residuals(0.0, &state);
+        assert!(residuals.iter().all(|r| r.abs() < 1e-15), "{state:?}: {residuals:?}");
+    }
+}
+
+/// A coordinate in other units does not make a step a short one.
+#[test]
+fn a_large_coordinate_hides_no_distance() {
+    let graph = Graph::new();
+    let x = graph.symbol("x");
+    let system = System::builder(&graph)
+        .coordinates(["s", "x"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    let mut motion = system.with_multipliers(&[Constraint::new("c", x.atan())]).unwrap().compile().unwrap();
+    let mut state = [1e10, 3.0, 1.0, 0.0];
+    motion.project(0.0, &mut state).unwrap();
+    assert!(state[1].abs() < 1e-15, "{state:?}");
+}
+
+/// x' − c y' has a mass, and the constraint leaves nothing of it.
+#[test]
+fn a_mass_that_cancels_under_constraints_is_singular() {
+    let graph = Graph::new();
+    let [z, vx, vy] = graph.symbols(["z", "x'", "y'"]);
+    let c = 0.1;
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, x, v| ((v[0] - c * v[1]).square() + v[2].square()) / 2.0 - x[1])
+        .build()
+        .unwrap();
+    for factor in [1.0, 3.0] {
+        let constraint = Constraint::new("a", factor * vx - (z + factor * c) * vy);
+        let mut motion = system.with_multipliers(&[constraint]).unwrap().compile().unwrap();
+        let error = motion.rhs(0.0, &[0.0, 0.0, 0.0, c, 1.0, 1.0], &mut [0.0; 6]).unwrap_err();
+        assert!(
+            matches!(error.cause().downcast_ref(), Some(MechError::SingularMassMatrix { .. })),
+            "{error}"
+        );
+    }
+}
+
 /// Far from a surface that bends away Newton's whole step overshoots.
 #[test]
 fn the_way_to_a_surface_may_be_long() {

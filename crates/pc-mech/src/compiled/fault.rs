@@ -24,6 +24,14 @@ pub(crate) enum Fault {
 }
 
 impl Fault {
+    /// The same of a pivot whose unknown has another index.
+    pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> Fault {
+        match self {
+            Fault::Pivot { index, pivot } => Fault::Pivot { index: place(index), pivot },
+            other => other,
+        }
+    }
+
     /// The error, of the unknowns and constraints called `unknowns`, at the state with these `names`.
     pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
         let state = || names.iter().cloned().zip(state.iter().copied()).collect();

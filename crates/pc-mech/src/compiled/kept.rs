@@ -17,6 +17,9 @@ const MOST_STEPS: usize = 50;
 /// After a step so short against the state the next one would be rounding.
 const SHORT: f64 = 1e-8;
 
+/// Roundings in the value of an integral, in units of what its gradient and its value are.
+const ROUNDINGS: f64 = 4.0;
+
 /// A gradient of which less than this is left beside those before it adds nothing to them.
 const DEPENDENT: f64 = 1e-10;
 
@@ -108,7 +111,8 @@ impl Motion {
     /// that to its constraints: the shortest way in the components of the state as they are. Asked for after each
     /// step, it changes the state by no more than the error of the step.
     ///
-    /// An integral whose gradient depends on those before it, such as the energy at rest, is left to itself there.
+    /// An integral whose gradient depends on those before it, such as the energy at rest, is left to itself there. One that
+    /// jumps on the way, as energy does where a potential is a step, is none there, and to keep it changes the motion.
     ///
     /// # Errors
     /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
@@ -228,12 +232,13 @@ impl KeptIntegrals {
     /// # Errors
     /// [`Fault::NotKept`] if the steps do not become shorter, [`Fault::Expr`] for values that are not finite.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        let (mut first, mut before) = (f64::INFINITY, f64::INFINITY);
+        let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
             self.values.try_eval((t, y, p))?;
             let change = self.shortest((t, y, p))?;
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let length = largest(&change);
+            let first = *first.get_or_insert(length);
             let is_short = length <= SHORT * largest(y);
             if length >= before / 2.0 && (is_short || length <= SHORT * first) {
                 return Ok(());
@@ -245,7 +250,6 @@ impl KeptIntegrals {
             if is_short {
                 return Ok(());
             }
-            first = first.min(length);
             before = length;
         }
         Err(Fault::NotKept)
@@ -261,7 +265,13 @@ impl KeptIntegrals {
             check_finite(row, &self.gradients, at)?;
             let gradient = &row[1..];
             let difference = self.values.values()[place] - self.levels[place];
-            let residual = if self.values.is_rounding(place, difference) { 0.0 } else { difference };
+            // At the edge of the domain of a function that is part of it an integral may have no bound.
+            let error =
+                Some(self.values.error(place)).filter(|error| error.is_finite()).unwrap_or_else(|| {
+                    let terms: f64 = gradient.iter().zip(at.1).map(|(g, y)| (g * y).abs()).sum();
+                    ROUNDINGS * f64::EPSILON * (terms + self.levels[place].abs())
+                });
+            let residual = if difference.abs() <= error { 0.0 } else { difference };
             let mut direction = gradient.to_vec();
             for known in &basis {
                 let along = dot(known, &direction);

@@ -1,19 +1,28 @@
 //! M = L D Lᵀ, unrolled over expressions.
 
-use pc_algebra::{Matrix, inverse};
+use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {
     /// L D Lᵀ in the order of elimination that fills in least.
     Ldl(Ldl<'g>),
-    /// The inverse itself, for a matrix that has a zero on its diagonal and so both signs, such as that of L = ẋẏ: a pivot
-    /// may vanish where it is regular.
+    /// The inverse itself, for a small matrix that has a zero on its diagonal, such as that of L = ẋẏ: it has both signs,
+    /// and a pivot may vanish where it is regular. And for any without a usable pivot on its diagonal.
     Inverse(Matrix<Expr<'g>>),
 }
 
-/// The rows up to which the inverse is shorter than what could be saved.
-const MOST_INVERTED: usize = 4;
+/// The rows up to which a matrix with a zero on its diagonal is inverted whole; the inverse of more is long.
+const MOST_INVERTED: usize = 3;
+
+/// What vanishes where M is singular, or where its factors have no numbers.
+pub(crate) struct Watched<'g> {
+    /// The unknown that is undetermined there.
+    pub(crate) place: usize,
+    pub(crate) pivot: Expr<'g>,
+    /// What its rounding is proportional to.
+    pub(crate) size: Expr<'g>,
+}
 
 /// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
@@ -34,11 +43,22 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D, in the order of M; none where M was inverted.
-    pub(crate) fn pivots(&self) -> &[Expr<'g>] {
+    /// The pivots D with the diagonal of M, of which they are what is left; or the determinant of an inverted M of few rows,
+    /// with what that of its largest entry would be.
+    pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
+        let rows = m.rows();
         match self {
-            Factors::Ldl(ldl) => &ldl.diagonal,
-            Factors::Inverse(_) => &[],
+            Factors::Ldl(ldl) => {
+                let pivots = ldl.diagonal.iter().enumerate();
+                pivots.map(|(place, &pivot)| Watched { place, pivot, size: m[(place, place)] }).collect()
+            }
+            Factors::Inverse(_) if rows <= MOST_INVERTED => {
+                let largest = m.entries().iter().fold(Expr::ZERO, |largest, entry| largest.max(entry.abs()));
+                let size = largest.powi(rows as i32);
+                let pivot = determinant(graph, m).into_iter();
+                pivot.map(|pivot| Watched { place: rows - 1, pivot, size }).collect()
+            }
+            Factors::Inverse(_) => Vec::new(),
         }
     }
 

@@ -6,8 +6,12 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Function, Graph, Inputs, Numb
 
 use crate::compiled::fault::{Fault, check_finite};
 
-/// What the errors are counted in: one rounding to either side.
+/// What the errors are counted in. An operation errs by a quarter of it; a long sum, of whose roundings only those of the
+/// terms are counted, by more.
 const UNIT: f64 = 2.0 * f64::EPSILON;
+
+/// Keeps quotients of two zeros from being no numbers.
+const TINY: f64 = 1e-300;
 
 /// Functions with bounds of their rounding errors, compiled.
 #[derive(Clone, Debug)]
@@ -64,16 +68,19 @@ impl Measured {
         &self.values[..self.values.len() / 2]
     }
 
-    /// Whether a difference from the value of the function in this place is no more than its rounding. At the edge of a
-    /// domain, where there is no bound of that, it is only if it is none.
-    pub(crate) fn is_rounding(&self, place: usize, difference: f64) -> bool {
-        let bound = UNIT * self.values[self.values.len() / 2 + place];
-        difference == 0.0 || bound.is_finite() && difference.abs() <= bound
+    /// A bound of the rounding error of the function in this place; not finite where one of its parts has no derivative.
+    pub(crate) fn error(&self, place: usize) -> f64 {
+        UNIT * self.values[self.values.len() / 2 + place]
     }
 
-    /// Whether nothing but rounding is left of the values.
-    pub(crate) fn vanish(&self) -> bool {
-        self.values().iter().enumerate().all(|(place, &value)| self.is_rounding(place, value))
+    /// The largest of the values in units of the bound of its error: no more than 1 where only rounding is left of them.
+    pub(crate) fn in_errors(&self) -> f64 {
+        let ratio = |(place, value): (usize, &f64)| match self.error(place) {
+            _ if *value == 0.0 => 0.0,
+            error if error.is_finite() => value.abs() / error,
+            _ => f64::INFINITY,
+        };
+        self.values().iter().enumerate().map(ratio).fold(0.0, f64::max)
     }
 }
 
@@ -108,6 +115,9 @@ impl Add for WithError<'_> {
 impl Mul for WithError<'_> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
+        if self.value.constant().is_some() {
+            return WithError { value: self.value * other.value, error: self.value.abs() * other.error };
+        }
         WithError::with_slopes(
             self.value * other.value,
             &[self, other],
@@ -141,15 +151,32 @@ impl Scalar for WithError<'_> {
     }
 
     fn call(function: Function, args: &[Self]) -> Self {
-        // The slopes in a graph of their own, where each argument is a symbol.
-        let graph = Graph::new();
-        let symbols: Vec<_> = (0..args.len()).map(|i| graph.symbol(&format!("x{i}"))).collect();
-        let slopes = graph.gradient(Expr::apply(function, &symbols), &symbols);
         let values: Vec<_> = args.iter().map(|arg| arg.value).collect();
-        let known: Vec<_> = symbols.iter().copied().zip(values.iter().copied()).collect();
-        let slopes = graph.evaluate(&slopes, &known).unwrap_or_default(); // every symbol has a value
-        WithError::with_slopes(Expr::apply(function, &values), args, slopes.into_iter())
+        let value = Expr::apply(function, &values);
+        let error = match (function, args) {
+            // √(u + e) − √u
+            (Function::Sqrt, [u]) => u.error / ((u.value + UNIT * u.error).sqrt() + u.value.sqrt() + TINY),
+            (Function::Pow, [u, exponent]) if exponent.value.constant().is_some() => {
+                let base = u.value + UNIT * u.error + TINY;
+                (exponent.value * Expr::apply(Function::Pow, &[base, exponent.value - 1.0])).abs() * u.error
+            }
+            // Of the branch that is taken: the other may have no number.
+            (Function::Step, [x, a, b]) => x.value.step(a.error, b.error),
+            (Function::Max, [a, b]) => (a.value - b.value).step(a.error, b.error),
+            (Function::Min, [a, b]) => (a.value - b.value).step(b.error, a.error),
+            _ => return WithError::with_slopes(value, args, slopes(function, &values).into_iter()),
+        };
+        WithError { value, error: value.abs() + error }
     }
+}
+
+/// ∂f/∂x_i at `values`, derived in a graph of their own, where each argument is a symbol.
+fn slopes<'g>(function: Function, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let graph = Graph::new();
+    let symbols: Vec<_> = (0..values.len()).map(|i| graph.symbol(&format!("x{i}"))).collect();
+    let slopes = graph.gradient(Expr::apply(function, &symbols), &symbols);
+    let known: Vec<_> = symbols.into_iter().zip(values.iter().copied()).collect();
+    graph.evaluate(&slopes, &known).unwrap_or_default() // every symbol has a value
 }
 
 #[cfg(test)]
@@ -163,20 +190,39 @@ mod tests {
         let circle = x.square() + (y - a).square() - a.square();
         let steep = (1e3 * (x + 1.0)).sin() + t;
         let flat = (y - 3.0 + x / 1e3).powi(5);
-        let edge = (x + 1.0).sqrt();
         let inputs = Inputs { time: Some(t), state: vec![x, y], parameters: vec![a] };
-        let mut measured = Measured::new(&graph, &inputs, &[circle, steep, flat, edge], Backend::Interpreter)
-            .expect("bound");
-        let at = (0.5, &[-1.0, 3.0][..], &[2.0][..]);
-        assert_eq!(measured.try_eval(at).expect("finite")[..2], [-2.0, 0.5]);
-        // 14 and 12 in units of 2 ε for the circle, however the graph may have written it.
-        assert!(measured.is_rounding(0, 5e-15) && !measured.is_rounding(0, 5e-14));
-        // The argument is a thousand times a difference of numbers about 1.
-        assert!(measured.is_rounding(1, 5e-13) && !measured.is_rounding(1, 5e-12));
-        // u⁵ with u = 1/1000 and errors of numbers about 3 in u.
-        assert!(measured.is_rounding(2, 1e-27) && !measured.is_rounding(2, 1e-25));
-        // The root has no slope there.
-        assert!(measured.is_rounding(3, 0.0) && !measured.is_rounding(3, 1e-16));
-        assert!(!measured.vanish());
+        let functions = [circle, steep, flat];
+        let mut measured = Measured::new(&graph, &inputs, &functions, Backend::Interpreter).expect("bound");
+        let values = measured.try_eval((0.5, &[-1.0, 3.0], &[2.0])).expect("finite");
+        assert_eq!(values[..2], [-2.0, 0.5]);
+        // About 26 units for the circle, however the graph may have written it; a thousand times the error of a difference
+        // of numbers about 1; that of u⁵ with u = 1/1000 and errors of numbers about 3 in u.
+        for (place, size) in [1e-14, 1e-12, 1e-26].into_iter().enumerate() {
+            let error = measured.error(place);
+            assert!((size / 5.0..=size * 5.0).contains(&error), "{place}: {error:e}");
+        }
+        assert!(measured.in_errors() > 1e10);
+    }
+
+    /// Roots, powers and the branches of a step have bounds at the edges of their domains.
+    #[test]
+    fn edges_have_bounds() {
+        let graph = Graph::new();
+        let x = graph.symbol("x");
+        let beyond = x.max(Expr::ZERO);
+        let functions = [
+            beyond.pow(2.5),
+            beyond.square() * beyond.sqrt(),
+            beyond.pow(0.3),
+            x.step(x.sqrt(), Expr::ONE),
+            (x + 1.0).sqrt(),
+        ];
+        let inputs = Inputs { time: None, state: vec![x], parameters: Vec::new() };
+        let mut measured = Measured::new(&graph, &inputs, &functions, Backend::Interpreter).expect("bound");
+        measured.eval((0.0, &[-1.0], &[]));
+        let errors: Vec<f64> = (0..4).map(|place| measured.error(place)).collect();
+        assert!(errors.iter().all(|&error| (0.0..1e-15).contains(&error)), "{errors:?}");
+        // √(2 ε)
+        assert!((1e-8..1e-7).contains(&measured.error(4)), "{}", measured.error(4));
     }
 }

@@ -64,10 +64,9 @@ impl Saddle {
         self.eliminate(lower, values)?;
         self.express_dependent();
         let reduced = self.reduced_mass();
-        self.reduced.factorise(&self.full, &reduced).map_err(|fault| match fault {
-            Fault::Pivot { index, pivot } => Fault::Pivot { index: self.columns[self.m + index], pivot },
-            other => other,
-        })
+        let sizes: Vec<f64> = (0..self.k - self.m).map(|i| self.size_of_reduced(i)).collect();
+        let outcome = self.reduced.factorise_sum(&self.full, &reduced, sizes.into_iter());
+        outcome.map_err(|fault| fault.at_place(|index| self.columns[self.m + index]))
     }
 
     /// As [`factorise`](Saddle::factorise), but only so far that the dependent unknowns are known.
@@ -179,6 +178,14 @@ impl Saddle {
             moved[(m + i) * free + j] + (0..m).map(|d| g(d, i) * moved[d * free + j]).sum::<f64>()
         };
         (0..free).flat_map(|j| (j..free).map(move |i| (i, j))).map(|(i, j)| entry(i, j)).collect()
+    }
+
+    /// The sum of the absolute values of all that the entry i of the diagonal of the reduced mass is the sum of.
+    fn size_of_reduced(&self, i: usize) -> f64 {
+        let (m, free) = (self.m, self.k - self.m);
+        let g = |row: usize| self.dependence[row * free + i].abs();
+        let across = |row: usize| (0..m).map(|d| self.mass(row, d).abs() * g(d)).sum::<f64>();
+        self.mass(m + i, m + i).abs() + 2.0 * across(m + i) + (0..m).map(|d| g(d) * across(d)).sum::<f64>()
     }
 
     /// A row of r − M w, of which the first `known` entries of w count, in the order of the elimination.

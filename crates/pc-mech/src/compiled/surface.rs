@@ -12,7 +12,11 @@ const MOST_STEPS: usize = 50;
 /// How often a step is halved before the way is taken to lead nowhere.
 const HALVINGS: i32 = 20;
 
-/// After a step so short against the state, or against the first step, the next one would be rounding.
+/// What a single rounding may leave of f, in units of the bound of all. To move a state for it would put noise into the
+/// differences from which an integrator foresees the motion.
+const ONE_ROUNDING: f64 = 0.125;
+
+/// A step so short against the state that none is shorter is rounding.
 const SHORT: f64 = 1e-8;
 
 /// What a surface is made of, in expressions of t, x, η and parameters.
@@ -48,6 +52,10 @@ pub(crate) struct Surface {
     lower: Pattern,
     bordered: Evaluator,
     entries: Vec<f64>,
+    /// Where the diagonal of the mass matrix stands among the entries.
+    diagonal: Vec<Option<usize>>,
+    /// Masses by which steps of the quasi-velocities are measured, all positive.
+    weights: Vec<f64>,
     solver: Solver,
     /// A right-hand side, then a solution.
     change: Vec<f64>,
@@ -77,7 +85,10 @@ impl Surface {
         };
         let (k, m) = (conditions.quasi_velocities, conditions.velocities.len());
         let coordinates = conditions.displacements.len();
+        let place = |s: usize| conditions.lower.entries().position(|entry| entry == (s, s));
         Ok(Surface {
+            diagonal: (0..k).map(place).collect(),
+            weights: vec![1.0; k],
             coordinates,
             k,
             positions: Measured::new(graph, inputs, conditions.positions, Backend::Interpreter)?,
@@ -117,30 +128,34 @@ impl Surface {
     fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, (t, y, p))?;
+        let masses =
+            || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
+        let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
+        let lightest = if lightest.is_finite() { lightest } else { 1.0 };
+        let weights = masses().map(|mass| if mass > 0.0 { mass } else { lightest });
+        self.weights.iter_mut().zip(weights).for_each(|(weight, mass)| *weight = mass);
         self.solver.factorise(&self.lower, &self.entries)
     }
 
     /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which comes to its end at once where g is affine in η;
     /// leaves the matrix factorised where it ends.
     ///
-    /// A step is halved until the next one, with the same matrix, is shorter in the kinetic metric, which knows no units
-    /// of f (the natural monotonicity test of P. Deuflhard, Numer. Math. 22, 1974, 289–315). Where none is, the way is at
-    /// its end if what is left is rounding.
+    /// A step is halved until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,
+    /// Numer. Math. 22, 1974, 289–315); lengths are those of δπ, with the diagonal of M for a metric, and so know no units of
+    /// f. Where only rounding is left of f, one whole step more is all that can help.
     fn project_part(&mut self, part: Part, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         let n = self.coordinates;
         let range = if part == Part::Position { 0..n } else { n..y.len() };
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        let mut first = f64::INFINITY;
         self.measured(part).try_eval((t, y, p))?;
         for _ in 0..MOST_STEPS {
-            let length = self.step(part);
-            if length == 0.0 {
+            let rest = self.measured(part).in_errors();
+            if rest <= ONE_ROUNDING {
                 return Ok(());
             }
+            let is_there = rest <= 1.0;
+            let length = self.step(part);
             let (start, change) = (y[range.clone()].to_vec(), self.moved(part, t, y, p));
-            first = first.min(length);
-            let is_short = largest(&change) <= SHORT * largest(&start) || length <= SHORT * first;
-            let is_there = is_short || self.measured(part).vanish();
             let halvings = if is_there { 0 } else { HALVINGS };
             let found = (0..=halvings).any(|halvings| {
                 let fraction = 0.5f64.powi(halvings);
@@ -151,9 +166,13 @@ impl Surface {
             });
             if !found {
                 y[range].copy_from_slice(&start);
-                return if is_there { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
+                let is_rounding = is_there || largest(&change) <= SHORT * largest(&start);
+                return if is_rounding { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
             }
             self.factorise(t, y, p)?;
+            if is_there {
+                return Ok(());
+            }
         }
         Err(Fault::NoProjection { unknowns: self.k })
     }
@@ -165,8 +184,7 @@ impl Surface {
         }
     }
 
-    /// Leaves in `change` the step that the values call for, with the matrix as it is factorised; its length
-    /// √(δπᵀ M δπ).
+    /// Leaves in `change` the step that the values call for, with the matrix as it is factorised; its length.
     fn step(&mut self, part: Part) -> f64 {
         let multipliers = &mut self.change[self.k..];
         match part {
@@ -178,11 +196,9 @@ impl Surface {
             }
             Part::Velocity => multipliers.copy_from_slice(self.velocities.values()),
         }
-        let residuals = multipliers.to_vec();
         self.change[..self.k].fill(0.0);
         self.solver.solve(&mut self.change);
-        // M δπ − Cᵀ μ = 0 and −C δπ = f: δπᵀ M δπ = −μ f
-        self.change[self.k..].iter().zip(&residuals).map(|(mu, f)| mu * f).sum::<f64>().abs().sqrt()
+        self.change.iter().zip(&self.weights).map(|(change, mass)| mass * change * change).sum::<f64>().sqrt()
     }
 
     /// What the step changes of x or of η.
