@@ -24,7 +24,7 @@ pub fn affine<'g>(
 ) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
     let slopes = graph.gradient(value, symbols);
     let known = smooth(graph, value, symbols) && !depend(&slopes, symbols);
-    let (coefficients, rest) = at_zero(graph, slopes, value, symbols)?;
+    let (coefficients, rest) = at_zero(graph, &slopes, value, symbols)?;
     let polynomial = || rest + graph.dot(coefficients.iter().copied(), symbols.iter().copied());
     (known || vanishes(graph, value - polynomial())).then_some((coefficients, rest))
 }
@@ -56,7 +56,7 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
     let slopes = graph.gradient(value, symbols);
     let curvatures: Vec<Expr<'g>> = slopes.iter().flat_map(|&slope| graph.gradient(slope, symbols)).collect();
     let known = smooth(graph, value, symbols) && !depend(&curvatures, symbols);
-    let (mut parts, constant) = at_zero(graph, [curvatures, slopes].concat(), value, symbols)?;
+    let (mut parts, constant) = at_zero(graph, &[curvatures, slopes].concat(), value, symbols)?;
     let linear = parts.split_off(k * k);
     let matrix = Matrix::from_fn(k, k, |r, s| parts[r.max(s) * k + r.min(s)]);
     let dot = |row: &[Expr<'g>]| graph.dot(row.iter().copied(), symbols.iter().copied());
@@ -70,12 +70,12 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
 /// The derivatives and the value at z = 0, if they have one: what does not depend on z may be written with quotients of z.
 fn at_zero<'g>(
     graph: &'g Graph,
-    derivatives: Vec<Expr<'g>>,
+    derivatives: &[Expr<'g>],
     value: Expr<'g>,
     symbols: &[Expr<'g>],
 ) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
     let zeros: Vec<_> = symbols.iter().map(|&symbol| (symbol, Expr::ZERO)).collect();
-    let mut parts = graph.substitute(&[&derivatives[..], &[value]].concat(), &zeros);
+    let mut parts = graph.substitute(&[derivatives, &[value]].concat(), &zeros);
     let value = parts.pop()?;
     let defined = parts.iter().chain([&value]).all(|part| !part.is_undefined());
     defined.then_some((parts, value))

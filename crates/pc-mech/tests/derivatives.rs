@@ -407,7 +407,7 @@ fn a_mass_matrix_that_is_singular_but_for_rounding_is_refused() {
         let error = motion.rhs(0.0, &[x[0], x[1], 0.1, 1.0], &mut [0.0; 4]).unwrap_err();
         match error.cause().downcast_ref() {
             Some(MechError::SingularMassMatrix { quasi_velocity, .. }) => {
-                assert_eq!(quasi_velocity, undetermined)
+                assert_eq!(quasi_velocity, undetermined);
             }
             _ => panic!("{error}"),
         }

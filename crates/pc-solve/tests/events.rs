@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow::{Break, Continue};
 
 use pc_solve::{
-    Accumulation, Cvode, Ending, Event, Events, Failure, FnEvents, Hybrid, Method, Occurrence, Options,
+    Accumulation, Code, Cvode, Ending, Event, Events, Failure, FnEvents, Hybrid, Method, Occurrence, Options,
     Reason, SolveError, VectorField, from_fn, solve_with_events,
 };
 
@@ -478,6 +478,21 @@ fn many_events() {
     };
     assert_eq!(saw.advance_to(20_000.5, check).unwrap(), Ending::Completed);
     assert_eq!(count, 20_000);
+}
+
+/// A call that would go through events without end comes to one.
+#[test]
+fn events_do_not_lift_the_limit_of_steps() {
+    let zeros = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
+    let options = Options::default().max_steps(200);
+    let mut motion =
+        Cvode::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap().with_events(zeros).unwrap();
+    let error = motion.advance_to(1e12, |_| Continue(())).unwrap_err();
+    assert_eq!(error.code(), Some(Code::TooMuchWork));
+    let reached = motion.time();
+    assert!((2.0..1e3).contains(&reached), "{reached}");
+    // The next call has as many.
+    assert_eq!(motion.advance_to(reached + 1.0, |_| Continue(())).unwrap(), Ending::Completed);
 }
 
 /// Steps that end at t = 0, where a time has no size of its own.

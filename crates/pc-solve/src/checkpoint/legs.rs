@@ -147,7 +147,7 @@ struct Plan<'a> {
     times: &'a [f64],
     /// Steps of a leg.
     every: u64,
-    /// Most steps from one output, or occurrence, to the next.
+    /// Most steps from one output to the next.
     limit: u64,
 }
 
@@ -181,7 +181,6 @@ impl Plan<'_> {
         let occurrences = &mut stand.occurrences;
         let mut occurred = |occurrence: &Occurrence| {
             occurrences.push(occurrence.clone());
-            since.set(0);
             ControlFlow::Continue(())
         };
         let (mut steps, mut end) = (0, None);

@@ -130,7 +130,6 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         let mut steps = 0;
         while !self.is_before_front(t) {
             if !self.due.is_empty() {
-                steps = 0;
                 if let Some(ending) = self.occur(occurred)? {
                     return Ok(Some(ending));
                 }
