@@ -104,10 +104,10 @@ mod tests {
         assert_eq!(usual, Places::below(Path::new("/opt/pc")).unwrap());
         assert_eq!(usual, of("--includedir include --libdir=/opt/pc/lib --prefix=/opt/pc").unwrap());
         assert_eq!(usual.staged(&usual.libdir), Path::new("/opt/pc/lib"));
-        let packed = of("--prefix /usr --libdir lib/x --destdir /stage/root").unwrap();
+        let packed = of("--prefix /usr --libdir lib/x --destdir /stage").unwrap();
         assert_eq!(packed.libdir, Path::new("/usr/lib/x"));
-        assert_eq!(packed.staged(&packed.libdir), Path::new("/stage/root/usr/lib/x"));
-        assert_eq!(packed.staged(&packed.includedir), Path::new("/stage/root/usr/include"));
+        assert_eq!(packed.staged(&packed.libdir), Path::new("/stage/usr/lib/x"));
+        assert_eq!(packed.staged(&packed.includedir), Path::new("/stage/usr/include"));
         assert!(of("--prefix here").unwrap().libdir.is_absolute());
     }
 
