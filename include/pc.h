@@ -28,9 +28,10 @@
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
- * time returns PC_BUSY and does nothing. (Freeing a handle while another thread uses it is not safe, as ever.) Different
- * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
- * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
+ * time returns PC_BUSY and does nothing; only of pc_system_rhs many may succeed side by side, as it says. (Freeing a handle
+ * while another thread uses it is not safe, as ever.) Different handles are independent; to evaluate on many threads, give
+ * each its own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call. Names and sizes
+ * may be read at any time, by any number of threads.
  *
  * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program; memory that is exhausted does, and
  * a stack: threads that make models and systems need some 256 KiB, more for long expressions.
@@ -1059,6 +1060,11 @@ pc_status pc_system_set_force(pc_system *system,
 
 /**
  * Writes the rate f(t, y) of the state to ydot.
+ *
+ * After the first call it takes no lock where f is one piece of machine code: where no function of the program computes
+ * forces, M is not factorised in numbers, and no velocities are solved for. Any number of threads may then call it at the
+ * same time and get its rates, those of the parameters before or after where another one sets them. It is PC_BUSY, with
+ * anything in ydot, only where that happens during its evaluation, and where it fails while the handle is in use.
  */
 pc_status pc_system_rhs(pc_system *system,
                         double t,

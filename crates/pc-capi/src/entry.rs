@@ -33,6 +33,19 @@ pub(crate) unsafe fn entry(error: *mut *mut pc_error, body: impl FnOnce() -> Res
     status
 }
 
+/// Writes to `*error` that there is none.
+///
+/// # Safety
+/// `error` is null or a place for a pointer.
+#[inline]
+pub(crate) unsafe fn succeeded(error: *mut *mut pc_error) -> pc_status {
+    if !error.is_null() {
+        // SAFETY: not null, and then a place for a pointer.
+        unsafe { error.write(ptr::null_mut()) };
+    }
+    pc_status::PC_OK
+}
+
 /// What a panic says.
 fn message_of(panic: Box<dyn Any + Send>) -> String {
     let message = panic

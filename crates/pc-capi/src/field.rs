@@ -1,7 +1,6 @@
 //! What is integrated.
 
-use pc_expr::Entry;
-use pc_mech::{Failure, ForcedMotion, MechError, Motion, VectorField};
+use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
 use crate::force::Controller;
 
@@ -36,10 +35,18 @@ impl Field {
         }
     }
 
-    /// The machine code of f alone, if it is no more than that.
-    pub(crate) fn machine_code(&mut self) -> Option<(Entry, usize)> {
+    /// The machine code of f, if it is no more than that.
+    pub(crate) fn machine_code(&mut self) -> Option<MachineCode> {
         match self {
             Field::Free(motion) => motion.machine_code(),
+            Field::Forced(_) => None,
+        }
+    }
+
+    /// What it asks for of the parameters as they are.
+    pub(crate) fn fixed_pivots(&mut self) -> Option<&[f64]> {
+        match self {
+            Field::Free(motion) => motion.fixed_pivots(),
             Field::Forced(_) => None,
         }
     }

@@ -4,15 +4,15 @@ use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use pc_expr::Entry;
 use pc_mech::VectorField;
 
+use crate::direct::Direct;
 use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
 use crate::field::Field;
 use crate::pointer::{are_usable, clear, fresh, handle, numbers, write};
 use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::system::{Inner, holding, pc_system};
 
 /// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
 /// pc_kernel_free.
@@ -25,24 +25,10 @@ pub struct pc_kernel {
     motion: Field,
 }
 
-/// The machine code of f alone, which needs no more than a look at what it wrote.
-struct Direct {
-    entry: Entry,
-    scratch: Vec<f64>,
-}
-
 impl pc_kernel {
     fn new(mut motion: Field, dim: usize) -> pc_kernel {
         let direct = Direct::of(&mut motion);
         pc_kernel { dim, direct, motion }
-    }
-}
-
-impl Direct {
-    /// It lives as long as the field, and is for its parameters as they are now.
-    fn of(motion: &mut Field) -> Option<Direct> {
-        let (entry, scratch) = motion.machine_code()?;
-        Some(Direct { entry, scratch: vec![0.0; scratch] })
     }
 }
 
@@ -53,8 +39,10 @@ pub unsafe extern "C" fn pc_kernel_new(
     kernel: *mut *mut pc_kernel,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let new = |inventory: &Inventory, inner: &mut Inner| {
-        let made = Box::new(pc_kernel::new(inner.field.clone(), inventory.dim()));
+    let new = |system: &pc_system, inner: &mut Inner| {
+        // What is compiled before is shared.
+        system.prepare_direct(inner);
+        let made = Box::new(pc_kernel::new(inner.field.clone(), system.inventory.dim()));
         // SAFETY: null or a place for a handle, as the preamble demands.
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
@@ -65,7 +53,7 @@ pub unsafe extern "C" fn pc_kernel_new(
     // SAFETY: `error` is null or a place for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
-        pc_status::PC_OK => unsafe { inside(system, error, new) },
+        pc_status::PC_OK => unsafe { holding(system, error, new) },
         refused => refused,
     }
 }
@@ -95,7 +83,9 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
             return Err(Fault::NotFinite { what: "a parameter", value });
         }
         parameters.copy_from_slice(values);
-        kernel.direct = Direct::of(&mut kernel.motion);
+        if let Some(direct) = &kernel.direct {
+            direct.publish(&mut kernel.motion);
+        }
         Ok(())
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -110,19 +100,14 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 /// `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
-    // SAFETY: a kernel and arrays of its dimension, as the documentation demands, which are apart. The code, which lives
-    // as long as the motion, reads the state and the parameters, and writes all rates and the scratch, which is ours.
+    // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
     unsafe {
-        if let Some(pc_kernel { dim, direct: Some(direct), motion }) = kernel.cast::<pc_kernel>().as_mut()
+        if let Some(pc_kernel { dim, direct: Some(direct), .. }) = kernel.cast::<pc_kernel>().as_ref()
             && are_usable((y, *dim), (ydot, *dim))
+            && direct.rates(t, y, ydot)
         {
-            let parameters = motion.parameters().as_ptr();
-            (direct.entry)(t, y, parameters, ydot, direct.scratch.as_mut_ptr());
-            if slice::from_raw_parts(ydot, *dim).iter().all(|rate| rate.is_finite()) {
-                return 0;
-            }
+            return 0;
         }
-        // Also for what is to be said of rates that are not finite.
         evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot))
     }
 }

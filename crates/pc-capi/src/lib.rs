@@ -17,6 +17,7 @@ mod bracket;
 mod builder;
 mod checkpoint;
 mod dense;
+mod direct;
 mod draft;
 mod engine;
 mod ensemble;

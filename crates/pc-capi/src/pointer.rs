@@ -11,7 +11,7 @@ use crate::error::Fault;
 /// Null, or a live handle of that type.
 pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Result<&'a T, Fault> {
     // SAFETY: as promised.
-    unsafe { handle.as_ref() }.ok_or(Fault::Null { what })
+    unsafe { handle.as_ref() }.ok_or_else(|| Fault::Null { what })
 }
 
 /// `expected` numbers at `data`, of which the caller says there are `found`.

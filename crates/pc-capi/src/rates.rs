@@ -4,10 +4,11 @@ use std::slice;
 
 use pc_mech::VectorField;
 
+use crate::entry::succeeded;
 use crate::error::{Fault, pc_error};
 use crate::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::system::{Inner, Inventory, holding, inside, pc_system};
 
 /// A state from C.
 #[derive(Clone, Copy)]
@@ -60,6 +61,11 @@ unsafe fn misfits<'a>(state: State, dim: usize, target: Target) -> Result<(&'a [
 }
 
 /// Writes the rate f(t, y) of the state to ydot.
+///
+/// After the first call it takes no lock where f is one piece of machine code: where no function of the program computes
+/// forces, M is not factorised in numbers, and no velocities are solved for. Any number of threads may then call it at the
+/// same time and get its rates, those of the parameters before or after where another one sets them. It is PC_BUSY, with
+/// anything in ydot, only where that happens during its evaluation, and where it fails while the handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
     system: *mut pc_system,
@@ -70,15 +76,43 @@ pub unsafe extern "C" fn pc_system_rhs(
     ydot_length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
-        let (state, dim) = (State { y, length: y_length }, inventory.dim());
-        let target = Target { data: ydot, length: ydot_length, expected: dim, what: "ydot" };
+    let (state, ydot) = (State { y, length: y_length }, (ydot, ydot_length));
+    let evaluate = |system: &pc_system, inner: &mut Inner| {
+        system.prepare_direct(inner);
+        let dim = system.inventory.dim();
+        let target = Target { data: ydot.0, length: ydot.1, expected: dim, what: "ydot" };
         // SAFETY: as the preamble demands.
         let (y, ydot) = unsafe { slices(state, dim, target) }?;
         Ok(inner.field.rhs(t, y, ydot)?)
     };
     // SAFETY: as the preamble demands.
-    unsafe { inside(system, error, evaluate) }
+    unsafe {
+        if system.as_ref().is_some_and(|system| rates_without_lock(system, t, state, ydot)) {
+            succeeded(error)
+        } else {
+            holding(system, error, evaluate)
+        }
+    }
+}
+
+/// Writes ydot by machine code alone; false where there is more to f, or it fails, or the parameters change meanwhile.
+///
+/// # Safety
+/// The arrays are null or as long as they say.
+#[inline]
+unsafe fn rates_without_lock(
+    system: &pc_system,
+    t: f64,
+    state: State,
+    (ydot, ydot_length): (*mut f64, usize),
+) -> bool {
+    let Some(direct) = system.direct() else { return false };
+    let dim = direct.dim();
+    // SAFETY: arrays of that length, as promised, which share no memory; the system, and so its field, lives.
+    state.length == dim
+        && ydot_length == dim
+        && are_usable((state.y, dim), (ydot, dim))
+        && unsafe { direct.rates(t, state.y, ydot) }
 }
 
 /// Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.

@@ -1,12 +1,13 @@
 //! Equations of motion: what they are of, and their parameters.
 
 use std::ffi::{CString, c_char};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Variables};
 use pc_expr::{Event, Events, Pattern};
 use pc_mech::{Graph, LegendreTransform, VectorField};
 
+use crate::direct::Direct;
 use crate::entry::{entry, free};
 use crate::error::{Fault, pc_error};
 use crate::field::Field;
@@ -22,6 +23,8 @@ use crate::strings::{c_string, c_strings, nth};
 pub struct pc_system {
     /// Dropped first: what functions of the program destroy may look at names.
     pub(crate) inner: Held<Inner>,
+    /// What needs the field to live, but not to be held; known after the first evaluation.
+    direct: OnceLock<Option<Direct>>,
     pub(crate) inventory: Arc<Inventory>,
 }
 
@@ -110,7 +113,36 @@ impl pc_system {
         let field = Field::new(flow.motion, forces)?;
         let kept_at = (assembly.t_start, flow.start);
         let inner = Inner { field, kept_at, events: flow.events, mechanics: None, legendre: None };
-        Ok(pc_system { inventory: Arc::new(inventory), inner: Held::new(inner) })
+        Ok(pc_system { inventory: Arc::new(inventory), direct: OnceLock::new(), inner: Held::new(inner) })
+    }
+
+    /// Another one of the same equations.
+    fn copy(&self) -> Result<pc_system, Fault> {
+        let mut inner = self.inner.take()?.clone();
+        let direct = OnceLock::new();
+        if self.direct().is_some() {
+            // The code is there, and the copy has it as well.
+            direct.get_or_init(|| Direct::of(&mut inner.field));
+        }
+        Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Held::new(inner) })
+    }
+
+    /// The machine code of f, where it is all that f is, and known to be.
+    #[inline]
+    pub(crate) fn direct(&self) -> Option<&Direct> {
+        self.direct.get()?.as_ref()
+    }
+
+    /// So that evaluations from now on need only the machine code, if that is all.
+    pub(crate) fn prepare_direct(&self, inner: &mut Inner) {
+        self.direct.get_or_init(|| Direct::of(&mut inner.field));
+    }
+
+    fn set_parameters(&self, inner: &mut Inner, set: impl Fn(&mut [f64])) {
+        inner.set_parameters(set);
+        if let Some(direct) = self.direct() {
+            direct.publish(&mut inner.field);
+        }
     }
 }
 
@@ -153,8 +185,7 @@ pub unsafe extern "C" fn pc_system_clone(
         unsafe { clear(copy, "copy") }?;
         // SAFETY: as above.
         let system = unsafe { handle(system, "system") }?;
-        let inner = Held::new(system.inner.take()?.clone());
-        let cloned = pc_system { inventory: Arc::clone(&system.inventory), inner };
+        let cloned = system.copy()?;
         // SAFETY: as above.
         unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
     };
@@ -311,17 +342,17 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     length: usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let set = |inventory: &Inventory, inner: &mut Inner| {
+    let set = |system: &pc_system, inner: &mut Inner| {
         // SAFETY: null or `length` numbers, as the preamble demands.
-        let values = unsafe { numbers(values, length, inventory.parameters.len(), "values") }?;
+        let values = unsafe { numbers(values, length, system.inventory.parameters.len(), "values") }?;
         for &value in values {
             finite(value, "a parameter")?;
         }
-        inner.set_parameters(|parameters| parameters.copy_from_slice(values));
+        system.set_parameters(inner, |parameters| parameters.copy_from_slice(values));
         Ok(())
     };
     // SAFETY: as the preamble demands.
-    unsafe { inside(system, error, set) }
+    unsafe { holding(system, error, set) }
 }
 
 /// Sets one parameter, by its place; otherwise as pc_system_set_parameters.
@@ -332,17 +363,17 @@ pub unsafe extern "C" fn pc_system_set_parameter(
     value: f64,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let set = |inventory: &Inventory, inner: &mut Inner| {
-        let count = inventory.parameters.len();
+    let set = |system: &pc_system, inner: &mut Inner| {
+        let count = system.inventory.parameters.len();
         if index >= count {
             return Err(Fault::Index { what: "the parameters", index, count });
         }
         let value = finite(value, "value")?;
-        inner.set_parameters(|parameters| parameters[index] = value);
+        system.set_parameters(inner, |parameters| parameters[index] = value);
         Ok(())
     };
     // SAFETY: as the preamble demands.
-    unsafe { inside(system, error, set) }
+    unsafe { holding(system, error, set) }
 }
 
 impl Inner {
@@ -372,10 +403,23 @@ pub(crate) unsafe fn inside(
     error: *mut *mut pc_error,
     body: impl FnOnce(&Inventory, &mut Inner) -> Result<(), Fault>,
 ) -> pc_status {
+    // SAFETY: as promised.
+    unsafe { holding(system, error, |system, inner| body(&system.inventory, inner)) }
+}
+
+/// Calls `body` with the system, and what only one may use at a time.
+///
+/// # Safety
+/// As for [`inside`].
+pub(crate) unsafe fn holding(
+    system: *const pc_system,
+    error: *mut *mut pc_error,
+    body: impl FnOnce(&pc_system, &mut Inner) -> Result<(), Fault>,
+) -> pc_status {
     let body = || {
         // SAFETY: as promised.
         let system = unsafe { handle(system, "system") }?;
-        body(&system.inventory, &mut *system.inner.take()?)
+        body(system, &mut *system.inner.take()?)
     };
     // SAFETY: as promised.
     unsafe { entry(error, body) }

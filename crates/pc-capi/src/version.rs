@@ -51,9 +51,10 @@ pub const PREAMBLE: &str = "\
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
- * time returns PC_BUSY and does nothing. (Freeing a handle while another thread uses it is not safe, as ever.) Different
- * handles are independent; to evaluate on many threads, give each its own by pc_system_clone, or a pc_kernel, which is the one
- * handle that does not notice a second call. Names and sizes may be read at any time, by any number of threads.
+ * time returns PC_BUSY and does nothing; only of pc_system_rhs many may succeed side by side, as it says. (Freeing a handle
+ * while another thread uses it is not safe, as ever.) Different handles are independent; to evaluate on many threads, give
+ * each its own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call. Names and sizes
+ * may be read at any time, by any number of threads.
  *
  * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program; memory that is exhausted does, and
  * a stack: threads that make models and systems need some 256 KiB, more for long expressions.

@@ -14,6 +14,7 @@ pub(crate) mod first_order;
 pub(crate) mod implicit;
 pub(crate) mod kept;
 pub(crate) mod ldl;
+pub(crate) mod machine_code;
 pub(crate) mod motion;
 pub(crate) mod options;
 pub(crate) mod pivots;

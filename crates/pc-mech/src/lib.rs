@@ -345,6 +345,7 @@ pub use bodies::velocity::BodyVelocity;
 pub use builder::SystemBuilder;
 pub use canonical::Canonical;
 pub use compiled::kept::KeptIntegrals;
+pub use compiled::machine_code::MachineCode;
 pub use compiled::motion::Motion;
 pub use compiled::options::CompileOptions;
 pub use emit::{EmitOptions, EmittedFile};

@@ -152,6 +152,20 @@ impl System {
         Ok(values)
     }
 
+    pub(crate) fn parameters(&self) -> Vec<f64> {
+        // SAFETY: a live system.
+        let mut values = vec![0.0; unsafe { pc_system_parameter_count(self.0) }];
+        // SAFETY: a live system and room as said.
+        call(|error| unsafe { pc_system_parameters(self.0, values.as_mut_ptr(), values.len(), error) })
+            .unwrap();
+        values
+    }
+
+    pub(crate) fn set_parameters(&self, values: &[f64]) -> Result<(), Refusal> {
+        // SAFETY: a live system and as many numbers as said.
+        call(|error| unsafe { pc_system_set_parameters(self.0, values.as_ptr(), values.len(), error) })
+    }
+
     pub(crate) fn name(&self, i: usize) -> String {
         // SAFETY: a live system; the name lives as long.
         unsafe { CStr::from_ptr(pc_system_name(self.0, i)).to_str().unwrap().to_owned() }

@@ -1,12 +1,13 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Entry, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::columns::Layout;
 use crate::compiled::elimination;
 use crate::compiled::fault::Fault;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::kept::KeptIntegrals;
+use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::staged::Staged;
 use crate::compiled::surface::Surface;
@@ -206,14 +207,19 @@ impl Motion {
         }
     }
 
-    /// The machine code of f, for callers that manage memory themselves, and how many numbers of scratch it needs; none
-    /// where f is more than one program of (t, y, p), or M is not regular with these parameters.
-    ///
-    /// It checks nothing: where a rate that it writes is not finite, [`rhs`](VectorField::rhs) fails. Valid as long as
-    /// this motion or a clone of it.
-    pub fn machine_code(&mut self) -> Option<(Entry, usize)> {
+    /// The machine code of f; none where f is more than one program of (t, y, p), or is interpreted.
+    pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.machine_code(self.names.len(), &self.parameters),
+            Form::Unrolled(unrolled) => unrolled.machine_code(self.names.len()),
+            Form::Staged(_) => None,
+        }
+    }
+
+    /// What does not change with the state of the pivots of M, for the parameters as they are: numbers that
+    /// [`MachineCode::is_regular`] asks for. None where M is factorised in numbers.
+    pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),
             Form::Staged(_) => None,
         }
     }

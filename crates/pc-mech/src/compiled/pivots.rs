@@ -1,5 +1,7 @@
 //! Watching the pivots of M.
 
+use std::sync::Arc;
+
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Program};
 
 use crate::compiled::fault::Fault;
@@ -47,21 +49,72 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Fault> {
     }
 }
 
+/// Which pivots there are, and which of them and of the sizes change with the state. Both are counted as one list, of
+/// the pivots and then as many sizes.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    /// The quasi-velocity of each pivot.
+    places: Vec<usize>,
+    /// What changes with the state, and how many pivots are among that.
+    moving: Vec<usize>,
+    moving_pivots: usize,
+    /// What does not.
+    fixed: Vec<usize>,
+}
+
+/// Places among the numbers that say what is fixed: the smallest pivot, the largest size, then all of them.
+const SMALLEST: usize = 0;
+const LARGEST: usize = 1;
+const ALL: usize = 2;
+
+impl Layout {
+    /// How many numbers say what is fixed.
+    pub(crate) fn fixed_len(&self) -> usize {
+        ALL + self.fixed.len()
+    }
+
+    /// How many pivots and sizes change with the state.
+    pub(crate) fn moving_len(&self) -> usize {
+        self.moving.len()
+    }
+
+    /// Whether no pivot vanishes, by the numbers of what is fixed and the values of what changes.
+    ///
+    /// # Errors
+    /// [`Fault::Pivot`] for the first that does.
+    #[inline]
+    pub(crate) fn check(&self, fixed: impl Fn(usize) -> f64, moving: &[f64]) -> Result<(), Fault> {
+        let (pivots, sizes) = moving.split_at(self.moving_pivots);
+        let largest = sizes.iter().fold(fixed(LARGEST), |largest, size| largest.max(size.abs()));
+        let least = VANISHING_PIVOT * largest;
+        if fixed(SMALLEST) > least && pivots.iter().all(|pivot| pivot.abs() > least) {
+            return Ok(());
+        }
+        self.check_each(fixed, moving)
+    }
+
+    #[cold]
+    fn check_each(&self, fixed: impl Fn(usize) -> f64, moving: &[f64]) -> Result<(), Fault> {
+        let mut values = vec![0.0; 2 * self.places.len()];
+        for (k, &i) in self.fixed.iter().enumerate() {
+            values[i] = fixed(ALL + k);
+        }
+        for (&i, &value) in self.moving.iter().zip(moving) {
+            values[i] = value;
+        }
+        let (pivots, sizes) = values.split_at(self.places.len());
+        check(pivots, sizes).map_err(|fault| fault.at_place(|index| self.places[index]))
+    }
+}
+
 /// The pivots of M and what they are compared with. Those that parameters alone determine are computed once for their
 /// values.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
-    /// The pivots, then as many sizes.
-    values: Vec<f64>,
-    /// The quasi-velocity of each pivot.
-    places: Vec<usize>,
-    /// Which of them change with the state.
-    moving: Vec<usize>,
-    /// Which do not, and the program that computes them.
-    fixed: Vec<usize>,
+    layout: Arc<Layout>,
     of_parameters: Evaluator,
-    /// Whether the fixed ones are known, for the parameters as they are, and none vanished when last looked at.
-    known: bool,
+    /// What says what is fixed, for the parameters as they are; empty if that is not known.
+    fixed: Vec<f64>,
 }
 
 impl Pivots {
@@ -81,20 +134,25 @@ impl Pivots {
             (0..all.len()).partition(|&i| system.is_fixed(all[i]));
         let pick = |indices: &[usize]| indices.iter().map(|&i| all[i]).collect::<Vec<_>>();
         let program = Program::new(system.graph, &system.inputs(&[]), &pick(&fixed))?;
-        let pivots = Pivots {
-            values: vec![0.0; all.len()],
+        let values = pick(&moving);
+        let layout = Layout {
             places: watched.iter().map(|watched| watched.place).collect(),
-            of_parameters: Evaluator::new(program, Backend::Interpreter),
-            known: false,
+            moving_pivots: moving.partition_point(|&i| i < watched.len()),
+            moving,
             fixed,
-            moving: moving.clone(),
         };
-        Ok((pivots, pick(&moving)))
+        let of_parameters = Evaluator::new(program, Backend::Interpreter);
+        Ok((Pivots { layout: Arc::new(layout), of_parameters, fixed: Vec::new() }, values))
+    }
+
+    /// Which there are.
+    pub(crate) fn layout(&self) -> &Arc<Layout> {
+        &self.layout
     }
 
     /// Says that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
-        self.known = false;
+        self.fixed.clear();
     }
 
     /// Whether no pivot vanishes; `moving` are the values of those that change.
@@ -103,27 +161,36 @@ impl Pivots {
     /// [`Fault::Pivot`] for the first that does.
     #[inline]
     pub(crate) fn check(&mut self, state: &[f64], parameters: &[f64], moving: &[f64]) -> Result<(), Fault> {
-        if self.known && moving.is_empty() {
-            return Ok(());
-        }
-        if !self.known {
+        if self.fixed.is_empty() {
             self.fix(state, parameters);
         }
-        for (&i, &value) in self.moving.iter().zip(moving) {
-            self.values[i] = value;
+        self.layout.check(|k| self.fixed[k], moving)
+    }
+
+    /// What says what is fixed.
+    pub(crate) fn fixed(&mut self, state: &[f64], parameters: &[f64]) -> &[f64] {
+        if self.fixed.is_empty() {
+            self.fix(state, parameters);
         }
-        let (pivots, sizes) = self.values.split_at(self.places.len());
-        let outcome = check(pivots, sizes);
-        self.known = outcome.is_ok();
-        outcome.map_err(|fault| fault.at_place(|index| self.places[index]))
+        &self.fixed
     }
 
     #[cold]
     fn fix(&mut self, state: &[f64], parameters: &[f64]) {
-        let mut values = vec![0.0; self.fixed.len()];
-        self.of_parameters.eval(0.0, state, parameters, &mut values);
-        for (&i, value) in self.fixed.iter().zip(values) {
-            self.values[i] = value;
-        }
+        let layout = &self.layout;
+        let mut fixed = vec![0.0; layout.fixed_len()];
+        self.of_parameters.eval(0.0, state, parameters, &mut fixed[ALL..]);
+        let (pivots, sizes) = fixed[ALL..].split_at(layout.places.len() - layout.moving_pivots);
+        (fixed[SMALLEST], fixed[LARGEST]) = if layout.moving.is_empty() {
+            // Nothing is left to be compared with them, so that they are looked at closely now and not again.
+            let regular = layout.check_each(|k| fixed[k], &[]).is_ok();
+            (if regular { f64::INFINITY } else { 0.0 }, 0.0)
+        } else {
+            (
+                pivots.iter().fold(f64::INFINITY, |smallest, pivot| smallest.min(pivot.abs())),
+                sizes.iter().fold(0.0, |largest, size| size.abs().max(largest)),
+            )
+        };
+        self.fixed = fixed;
     }
 }

@@ -1,11 +1,14 @@
 //! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
 
-use pc_expr::{Backend, Cost, Entry, Evaluator, Expr, ExprError, Pattern, Program};
+use std::sync::Arc;
+
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
 
 use crate::compiled::columns::{Columns, Layout, derivative};
 use crate::compiled::fault::{Fault, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::ldl::Factors;
+use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::pivots::Pivots;
 
@@ -93,10 +96,12 @@ impl Unrolled {
         Ok(())
     }
 
-    /// The machine code of ẏ where it writes nothing else, and M is regular with these parameters.
-    pub(crate) fn machine_code(&mut self, dim: usize, p: &[f64]) -> Option<(Entry, usize)> {
-        let alone = self.outputs.len() == dim && self.pivots.check(&vec![0.0; dim], p, &[]).is_ok();
-        if alone { self.rates.machine_code() } else { None }
+    pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {
+        Some(MachineCode::new(self.rates.machine_code()?, dim, Arc::clone(self.pivots.layout())))
+    }
+
+    pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {
+        self.pivots.fixed(&vec![0.0; dim], p)
     }
 
     pub(crate) fn jacobian(

@@ -27,7 +27,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     report.line(format!(
         "ns a call: minimum, 10th percentile and median of {ROUNDS} rounds, in each of which every variant has one \
          turn of about 100 µs. `rust` is `Motion::rhs`, `handle` is `pc_system_rhs`, which checks lengths and \
-         overlaps and that nobody else uses the handle, `pointer` is `pc_kernel_rhs`, as integrators are given it. \
+         overlaps and that nobody changes the parameters meanwhile, `pointer` is `pc_kernel_rhs`, as integrators are given it. \
          `/ rust` is the median over the rounds of the ratio within a round.\n"
     ));
     report.columns(&["model", "variant", "min", "p10", "median", "/ rust"]);

@@ -1,0 +1,65 @@
+//! f as bare machine code.
+
+use std::sync::Arc;
+
+use pc_expr::Entry;
+
+use crate::compiled::pivots::Layout;
+
+/// The machine code of f, for callers that manage memory themselves, and what its outputs are.
+///
+/// [`entry`](MachineCode::entry) writes ẏ, then what changes with the state of the pivots of M and of what they are
+/// compared with; whether ẏ can be trusted, [`is_regular`](MachineCode::is_regular) says. Valid as long as the motion it
+/// was asked of, or a clone made since.
+#[derive(Clone, Debug)]
+pub struct MachineCode {
+    entry: Entry,
+    scratch: usize,
+    rates: usize,
+    pivots: Arc<Layout>,
+}
+
+impl MachineCode {
+    pub(crate) fn new((entry, scratch): (Entry, usize), rates: usize, pivots: Arc<Layout>) -> MachineCode {
+        MachineCode { entry, scratch, rates, pivots }
+    }
+
+    /// The code.
+    #[inline]
+    pub fn entry(&self) -> Entry {
+        self.entry
+    }
+
+    /// How many numbers of scratch it needs.
+    pub fn scratch_len(&self) -> usize {
+        self.scratch
+    }
+
+    /// Number of rates, that of the components of the state.
+    #[inline]
+    pub fn rates_len(&self) -> usize {
+        self.rates
+    }
+
+    /// Number of outputs, of which the rates are the first.
+    #[inline]
+    pub fn outputs_len(&self) -> usize {
+        self.rates + self.pivots.moving_len()
+    }
+
+    /// How many [`fixed_pivots`](crate::Motion::fixed_pivots) there are.
+    pub fn fixed_len(&self) -> usize {
+        self.pivots.fixed_len()
+    }
+
+    /// Whether no pivot of M vanishes, by the outputs after the rates and the
+    /// [`fixed_pivots`](crate::Motion::fixed_pivots), of which `fixed` gives one by its place. Where it says no,
+    /// [`rhs`](pc_expr::VectorField::rhs) fails; so it does where a rate is not finite, which is not looked at here.
+    ///
+    /// # Panics
+    /// If there are not as many outputs.
+    #[inline]
+    pub fn is_regular(&self, watched: &[f64], fixed: impl Fn(usize) -> f64) -> bool {
+        self.pivots.check(fixed, watched).is_ok()
+    }
+}
