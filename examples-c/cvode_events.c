@@ -25,8 +25,8 @@ int main(void)
     pc_system *ball = NULL;
     pc_error *error = NULL;
     pc_cvode equations;
-    SUNContext context;
-    double t, state[DIM], t0 = sqrt(2.0 / 9.81), expected = t0, worst = 0.0;
+    SUNContext context = NULL;
+    double t = 0.0, state[DIM], t0 = sqrt(2.0 / 9.81), expected = t0, worst = 0.0;
     int bounce, found, direction;
 
     must(pc_model_builtin("bouncing-ball", &model, &error) == PC_OK &&

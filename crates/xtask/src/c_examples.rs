@@ -43,8 +43,7 @@ pub(crate) fn run() -> Result<(), Error> {
     let library = Library::shared(&installed.join("lib"), &place);
 
     let machine = Machine::this();
-    let compilers: Vec<_> =
-        COMPILERS.into_iter().filter(|(c, cpp)| machine.has_program(c) && machine.has_program(cpp)).collect();
+    let compilers = compilers(&machine);
     if compilers.is_empty() {
         let remedy = "install gcc with g++, or clang".to_owned();
         return Err(Error::Missing { tools: vec!["a C and C++ compiler"], remedy });
@@ -85,7 +84,13 @@ pub(crate) fn run() -> Result<(), Error> {
     }
 }
 
-/// The same with the compiler of the system only, plain and under the sanitizers, against what the tests have built.
+/// Those of [`COMPILERS`] that are there.
+fn compilers(machine: &Machine) -> Vec<(&'static str, &'static str)> {
+    COMPILERS.into_iter().filter(|(c, cpp)| machine.has_program(c) && machine.has_program(cpp)).collect()
+}
+
+/// The same in short, against what the tests have built: plain with every compiler, and under the sanitizers with that of
+/// the system.
 ///
 /// # Errors
 /// That of the first program that is wrong.
@@ -114,6 +119,10 @@ pub(crate) fn quick() -> Result<(), Error> {
     let library = Library::shared(&libraries, &place);
     c_numbers::check(&mut library.check(compiler, "-O1", "plain"), &pc)?;
     c_numbers::check_source(&place.join("plain"), &pc)?;
+    // Each warns of something that the others do not.
+    for compiler in compilers(&machine) {
+        announce_and_run(&mut library.check(compiler, "-O1", compiler.0))?;
+    }
     if !works("cc", SANITIZED, &place) {
         println!("skipped: the sanitizers, which do not run here");
         return Ok(());
