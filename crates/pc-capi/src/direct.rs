@@ -10,15 +10,15 @@ use crate::field::Field;
 
 /// The machine code of f, and the parameters it is for.
 ///
-/// An evaluation takes its room from the stack and changes nothing, so that it needs no lock. It notices when the
-/// parameters are published anew meanwhile, as the reader of a seqlock does.
+/// An evaluation changes nothing but its room, so that it needs no lock. It notices when the parameters are published
+/// anew meanwhile, as the reader of a seqlock does.
 pub(crate) struct Direct {
     code: MachineCode,
     /// What is published is complete if this is even, and another one if it is another number.
     version: AtomicU64,
-    /// The fixed pivots, then the parameters, all of them f64.
-    published: Box<[AtomicU64]>,
-    /// How many numbers it needs for scratch, and for its outputs where they are not the rates alone.
+    /// What is published, f64 all of it.
+    fixed_pivots: Box<[AtomicU64]>,
+    parameters: Box<[AtomicU64]>,
     room: usize,
 }
 
@@ -31,11 +31,12 @@ impl Direct {
     pub(crate) fn of(field: &mut Field) -> Option<Direct> {
         let code = field.machine_code()?;
         let beside = if code.outputs_len() == code.rates_len() { 0 } else { code.outputs_len() };
-        let numbers = code.fixed_len() + field.parameters().len();
+        let numbers = |len: usize| (0..len).map(|_| AtomicU64::new(0)).collect();
         let direct = Direct {
-            room: beside + code.scratch_len(),
-            published: (0..numbers).map(|_| AtomicU64::new(0)).collect(),
             version: AtomicU64::new(0),
+            fixed_pivots: numbers(code.fixed_len()),
+            parameters: numbers(field.parameters().len()),
+            room: beside + code.scratch_len(),
             code,
         };
         direct.publish(field);
@@ -49,8 +50,10 @@ impl Direct {
         self.version.store(version + 1, Ordering::Relaxed);
         // None of the numbers is seen before that.
         fence(Ordering::Release);
-        for (place, value) in self.published.iter().zip(fixed.iter().chain(field.parameters())) {
-            place.store(value.to_bits(), Ordering::Relaxed);
+        for (places, values) in [(&self.fixed_pivots, &fixed[..]), (&self.parameters, field.parameters())] {
+            for (place, value) in places.iter().zip(values) {
+                place.store(value.to_bits(), Ordering::Relaxed);
+            }
         }
         self.version.store(version + 2, Ordering::Release);
     }
@@ -59,6 +62,11 @@ impl Direct {
     #[inline]
     pub(crate) fn dim(&self) -> usize {
         self.code.rates_len()
+    }
+
+    /// How many numbers it needs for scratch, and for its outputs where they are not the rates alone.
+    pub(crate) fn room(&self) -> usize {
+        self.room
     }
 
     /// Writes ẏ. False where f fails, and where the parameters change meanwhile: ẏ is of no use then.
@@ -77,23 +85,24 @@ impl Direct {
             on_heap.as_mut_ptr()
         };
         // SAFETY: as promised, and the room is large enough.
-        let right = unsafe { self.written(t, y, ydot, room) };
+        let right = unsafe { self.rates_alone(t, y, ydot, room) };
         // All that was read was read before this.
         fence(Ordering::Acquire);
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
+    /// The same where nobody publishes meanwhile.
+    ///
     /// # Safety
-    /// As for [`rates`](Direct::rates), with place for `self.room` numbers at `room`.
+    /// As for [`rates`](Direct::rates), with place for [`room`](Direct::room) numbers at `room`.
     #[inline]
-    unsafe fn written(&self, t: f64, y: *const f64, ydot: *mut f64, room: *mut f64) -> bool {
+    pub(crate) unsafe fn rates_alone(&self, t: f64, y: *const f64, ydot: *mut f64, room: *mut f64) -> bool {
         let (dim, outputs) = (self.dim(), self.code.outputs_len());
-        let fixed = |place: usize| f64::from_bits(self.published[place].load(Ordering::Relaxed));
-        // SAFETY: the parameters come after the fixed pivots; the atomics are 64 bits each, as f64 is. The code, which
-        // lives as long as the field, reads as many numbers of state and parameters as there are, loading each at once,
-        // and writes all outputs and the scratch.
+        let fixed = |place: usize| f64::from_bits(self.fixed_pivots[place].load(Ordering::Relaxed));
+        let parameters = self.parameters.as_ptr().cast::<f64>();
+        // SAFETY: the atomics are 64 bits each, as f64 is. The code, which lives as long as the field, reads as many
+        // numbers of state and parameters as there are, loading each at once, and writes all outputs and the scratch.
         unsafe {
-            let parameters = self.published.as_ptr().add(self.code.fixed_len()).cast::<f64>();
             let run = |outputs, scratch| (self.code.entry())(t, y, parameters, outputs, scratch);
             if outputs == dim {
                 run(ydot, room);

@@ -22,13 +22,16 @@ use crate::system::{Inner, holding, pc_system};
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
+    /// For `direct` to compute in.
+    room: Vec<f64>,
     motion: Field,
 }
 
 impl pc_kernel {
     fn new(mut motion: Field, dim: usize) -> pc_kernel {
         let direct = Direct::of(&mut motion);
-        pc_kernel { dim, direct, motion }
+        let room = vec![0.0; direct.as_ref().map_or(0, Direct::room)];
+        pc_kernel { dim, direct, room, motion }
     }
 }
 
@@ -102,9 +105,9 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
     // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
     unsafe {
-        if let Some(pc_kernel { dim, direct: Some(direct), .. }) = kernel.cast::<pc_kernel>().as_ref()
+        if let Some(pc_kernel { dim, direct: Some(direct), room, .. }) = kernel.cast::<pc_kernel>().as_mut()
             && are_usable((y, *dim), (ydot, *dim))
-            && direct.rates(t, y, ydot)
+            && direct.rates_alone(t, y, ydot, room.as_mut_ptr())
         {
             return 0;
         }

@@ -16,12 +16,13 @@ pub struct MachineCode {
     entry: Entry,
     scratch: usize,
     rates: usize,
+    outputs: usize,
     pivots: Arc<Layout>,
 }
 
 impl MachineCode {
     pub(crate) fn new((entry, scratch): (Entry, usize), rates: usize, pivots: Arc<Layout>) -> MachineCode {
-        MachineCode { entry, scratch, rates, pivots }
+        MachineCode { entry, scratch, rates, outputs: rates + pivots.moving_len(), pivots }
     }
 
     /// The code.
@@ -44,7 +45,7 @@ impl MachineCode {
     /// Number of outputs, of which the rates are the first.
     #[inline]
     pub fn outputs_len(&self) -> usize {
-        self.rates + self.pivots.moving_len()
+        self.outputs
     }
 
     /// How many [`fixed_pivots`](crate::Motion::fixed_pivots) there are.
