@@ -37,8 +37,10 @@ use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 
 use pc_expr::VectorField;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use self::random::member_stream;
 
@@ -75,7 +77,7 @@ impl Default for Ensemble<'_> {
 impl<'a> Ensemble<'a> {
     /// A thread for each core.
     pub fn new() -> Self {
-        let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let threads = thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         Ensemble { threads, window: None, flag: None }
     }
 
@@ -156,25 +158,43 @@ impl<'a> Ensemble<'a> {
         let stopped = AtomicBool::new(false);
         let stop = Stop { own: &stopped, flag: self.flag };
         let queue = Queue::new(members.clone(), window as u64, &stop);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
-        Ok(pool.in_place_scope(|scope| {
-            // One for each thread; work that is itself parallel cannot begin another of these.
-            scope.spawn_broadcast(|_, _| {
-                while let Some(member) = queue.begin() {
-                    let result = caught(|| work(member, &stop)).map_err(|message| Panicked { message });
-                    queue.finish(member, result);
+        let consume_all = |pool: &ThreadPool| {
+            pool.in_place_scope(|scope| {
+                // One for each thread; work that is itself parallel cannot begin another of these.
+                scope.spawn_broadcast(|_, _| {
+                    while let Some(member) = queue.begin() {
+                        let result = caught(|| work(member, &stop)).map_err(|message| Panicked { message });
+                        queue.finish(member, result);
+                    }
+                });
+                // Lets the threads end however this one does.
+                let _closing = queue.closing();
+                for member in members {
+                    let Some(result) = queue.take(member) else { return Ending::Stopped };
+                    if consume(member, result).is_break() {
+                        return Ending::Stopped;
+                    }
                 }
+                Ending::Completed
+            })
+        };
+        thread::scope(|scope| {
+            let mut handles = Vec::with_capacity(threads);
+            let pool = ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|worker| {
+                let thread = thread::Builder::new().stack_size(STACK);
+                handles.push(thread.spawn_scoped(scope, || worker.run())?);
+                Ok(())
             });
-            // Lets the threads end however this one does.
-            let _closing = queue.closing();
-            for member in members {
-                let Some(result) = queue.take(member) else { return Ending::Stopped };
-                if consume(member, result).is_break() {
-                    return Ending::Stopped;
-                }
+            let pool = pool.build()?;
+            let ending = consume_all(&pool);
+            drop(pool);
+            // The scope would wait for their work, but not for their ends; a program may unload what it called.
+            for handle in handles {
+                let joined = handle.join();
+                debug_assert!(joined.is_ok(), "what panics is caught");
             }
-            Ending::Completed
-        }))
+            Ok(ending)
+        })
     }
 }
 
@@ -254,7 +274,7 @@ pub struct Panicked {
 pub enum EnsembleError {
     /// The threads cannot be started.
     #[error("cannot start the threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] ThreadPoolBuildError),
 }
 
 /// What `compute` gives, or what it said when it panicked.
