@@ -1671,9 +1671,10 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
  * not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
- * are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
- * told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
- * found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
+ * are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core;
+ * they have ended when this returns. A member that fails is told as any other, with what it reached, and the others go on.
+ * What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops it. The system may be
+ * used meanwhile.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

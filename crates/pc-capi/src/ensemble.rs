@@ -154,9 +154,10 @@ impl Plan<'_> {
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
 /// not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
-/// are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core. A member that fails is
-/// told as any other, with what it reached, and the others go on. What is the same for all, such as the times, is
-/// found by each. PC_STOPPED if the observer stops it. The system may be used meanwhile.
+/// are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core;
+/// they have ended when this returns. A member that fails is told as any other, with what it reached, and the others go on.
+/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops it. The system may be
+/// used meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,
