@@ -1,6 +1,6 @@
 //! Chaplygin's reducing multiplier.
 
-use pc_mech::{Expr, System};
+use pc_mech::{Expr, Number, System};
 
 use crate::error::NonholoError;
 use crate::measure::invariant_measure;
@@ -22,9 +22,10 @@ impl<'g> Voronets<'g> {
     ///
     ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
     ///
-    /// those of Lagrange, without a term of the constraints. With two degrees of freedom and T quadratic in the velocities
-    /// there is one exactly if N dx dp is an invariant measure [Chaplygin 1911]. Else the density of a measure is tried, and
-    /// given only where the equations are proved to be the same.
+    /// those of Lagrange, without a term of the constraints. Their volume dx dP, P = N p, is N^l dx dp, and by the old time
+    /// N^(l−1) dx dp is invariant: N is sought as a root of the density of an invariant measure. With two degrees of freedom
+    /// and T quadratic in the velocities there is one exactly if there is such a measure [Chaplygin 1911]; else N is given
+    /// only where the equations are proved to be the same.
     ///
     /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///
@@ -56,7 +57,7 @@ impl<'g> Voronets<'g> {
         let in_time = self.system()?;
         let (graph, v) = (in_time.graph(), in_time.quasi_velocities());
         let Some(measure) = invariant_measure(&in_time, &[])? else { return Ok(None) };
-        let multiplier = measure.density();
+        let multiplier = measure.density_to(Number::ratio(1, v.len().saturating_sub(1).max(1) as i64));
         let scaled: Vec<_> = v.iter().map(|&v| (v, multiplier * v)).collect();
         let lagrangian = graph.substitute(&[in_time.lagrangian()], &scaled)[0];
         let names: Vec<String> = self.independent().iter().map(ToString::to_string).collect();

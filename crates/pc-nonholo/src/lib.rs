@@ -186,7 +186,7 @@ pub use adapted::Adapted;
 pub use chaplygin::ReducingMultiplier;
 pub use constrained::Constrained;
 pub use error::NonholoError;
-pub use measure::InvariantMeasure;
+pub use measure::{InvariantMeasure, invariant_measure};
 pub use n_trailer::{NTrailer, Wagon};
 pub use sorted::{Kind, Redundant, Sorted};
 pub use voronets::Voronets;

@@ -1,6 +1,6 @@
 //! Phase volume: its growth, and the measures that are invariant.
 
-use pc_mech::{Expr, MechError, Number, System, determinant};
+use pc_mech::{Expr, Graph, Matrix, MechError, Number, System, determinant};
 
 use crate::constrained::Constrained;
 use crate::error::NonholoError;
@@ -15,7 +15,13 @@ pub struct InvariantMeasure<'g> {
 impl<'g> InvariantMeasure<'g> {
     /// The density N.
     pub fn density(&self) -> Expr<'g> {
+        self.density_to(Number::ONE)
+    }
+
+    /// N^p
+    pub(crate) fn density_to(&self, exponent: Number) -> Expr<'g> {
         let power = |&(factor, power): &(Expr<'g>, Number)| {
+            let power = power * exponent;
             let twice = (power * Number::integer(2)).as_integer();
             match (power.as_integer(), twice) {
                 (Some(power), _) => factor.powi(power),
@@ -37,9 +43,7 @@ impl<'g> Constrained<'g> {
         Ok(divergence(&self.free_system()?)?)
     }
 
-    /// The invariant measure whose density is a product of powers of `factors`, functions of the coordinates that are
-    /// positive, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved. Without `factors` the
-    /// entries of the mass matrix and its determinant are tried.
+    /// The [invariant measure](invariant_measure) of the motion in coordinates and momenta (34), if one is found.
     ///
     /// # Errors
     /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
@@ -69,7 +73,7 @@ impl<'g> Constrained<'g> {
     }
 }
 
-/// [`Constrained::divergence`] of the system of the free quasi-velocities.
+/// ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s of the motion (10), (11).
 fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, MechError> {
     let graph = free.graph();
     let canonical = free.canonical()?;
@@ -82,20 +86,43 @@ fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, MechError> {
     Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y))], canonical.momenta())[0])
 }
 
-/// [`Constrained::invariant_measure`] of the system of the free quasi-velocities.
-pub(crate) fn invariant_measure<'g>(
-    free: &System<'g>,
+/// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of `factors`, functions of
+/// the coordinates that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved.
+/// Without `factors` det b, the entries of the mass matrix and its determinant are tried: with n = k and forces that have a
+/// potential dx dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp.
+///
+/// # Errors
+/// [`MechError::NotQuadratic`] if the equations have no closed form.
+///
+/// ```
+/// use pc_mech::{Graph, System};
+/// use pc_nonholo::invariant_measure;
+///
+/// // A free particle by its velocities along and across the direction to the origin: r' = u, φ' = w/r, det b = 1/r.
+/// let graph = Graph::new();
+/// let particle = System::builder(&graph)
+///     .coordinates(["r", "φ"])
+///     .quasi_velocities(["u", "w"])
+///     .kinematics(|_, x, eta| [eta[0], eta[1] / x[0]])
+///     .lagrangian(|_, _, eta| (eta[0].square() + eta[1].square()) / 2.0)
+///     .build()?;
+/// let measure = invariant_measure(&particle, &[])?.unwrap();
+/// assert_eq!(measure.density(), graph.symbol("r"));
+/// # Ok::<(), pc_mech::MechError>(())
+/// ```
+pub fn invariant_measure<'g>(
+    system: &System<'g>,
     factors: &[Expr<'g>],
 ) -> Result<Option<InvariantMeasure<'g>>, MechError> {
-    let (graph, canonical) = (free.graph(), free.canonical()?);
-    let divergence = divergence(free)?;
+    let (graph, canonical) = (system.graph(), system.canonical()?);
+    let divergence = divergence(system)?;
     if divergence.is_zero() {
         return Ok(Some(InvariantMeasure { factors: Vec::new() }));
     }
-    let factors = if factors.is_empty() { inertias(free)? } else { factors.to_vec() };
-    let x = free.frame().coordinates().iter().copied();
+    let factors = if factors.is_empty() { candidates(system)? } else { factors.to_vec() };
+    let x = system.frame().coordinates().iter().copied();
     let along: Vec<_> =
-        x.zip(canonical.velocities().iter().copied()).chain([(free.frame().time(), Expr::ONE)]).collect();
+        x.zip(canonical.velocities().iter().copied()).chain([(system.frame().time(), Expr::ONE)]).collect();
     let rates = graph.directional(&factors, &along);
     let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
     let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();
@@ -108,16 +135,45 @@ pub(crate) fn invariant_measure<'g>(
     }))
 }
 
-/// The entries of the mass matrix of the free quasi-velocities, and its determinant, as far as they are not constant.
-fn inertias<'g>(free: &System<'g>) -> Result<Vec<Expr<'g>>, MechError> {
-    let equations = free.poincare()?;
+/// The factors of det b where b is square, the diagonal of the mass matrix and its determinant, as far as they are not constant.
+fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, MechError> {
+    let graph = system.graph();
+    let equations = system.poincare()?;
     let mass = equations.mass_matrix();
-    let diagonal = (0..mass.rows()).map(|s| mass[(s, s)]);
-    let mut inertias: Vec<Expr<'g>> = Vec::new();
-    for inertia in diagonal.chain(determinant(free.graph(), mass)) {
-        if inertia.constant().is_none() && !inertias.contains(&inertia) {
-            inertias.push(inertia);
+    let frame = determinants_of_blocks(graph, system.frame().b());
+    let inertias = (0..mass.rows()).map(|s| mass[(s, s)]);
+    let mut candidates: Vec<Expr<'g>> = Vec::new();
+    for candidate in frame.into_iter().chain(inertias).chain(determinant(graph, mass)) {
+        if candidate.constant().is_none() && !candidates.contains(&candidate) {
+            candidates.push(candidate);
         }
     }
-    Ok(inertias)
+    Ok(candidates)
+}
+
+/// The determinants of the blocks into which rows and columns of a matrix fall by its zeros, up to signs; those of blocks that
+/// are no short expressions are left out.
+fn determinants_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Vec<Expr<'g>> {
+    let mut determinants = Vec::new();
+    let mut open: Vec<usize> = (0..matrix.rows()).collect();
+    while let Some(first) = open.first().copied() {
+        let (mut rows, mut columns) = (vec![first], Vec::new());
+        loop {
+            let size = (rows.len(), columns.len());
+            columns =
+                (0..matrix.columns()).filter(|&j| rows.iter().any(|&i| !matrix[(i, j)].is_zero())).collect();
+            rows =
+                (0..matrix.rows()).filter(|&i| columns.iter().any(|&j| !matrix[(i, j)].is_zero())).collect();
+            if (rows.len(), columns.len()) == size {
+                break;
+            }
+        }
+        if rows.is_empty() {
+            break; // a row of zeros: no determinant is a factor of a density
+        }
+        open.retain(|i| !rows.contains(i));
+        let block = Matrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])]);
+        determinants.extend(determinant(graph, &block).filter(|_| block.rows() == block.columns()));
+    }
+    determinants
 }

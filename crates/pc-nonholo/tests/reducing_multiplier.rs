@@ -81,6 +81,36 @@ fn more_degrees_of_freedom_are_proved_or_none() {
     assert!(beside.reducing_multiplier().unwrap().is_none());
 }
 
+/// With ẇ_a = h(x) ẋ_a for each of l coordinates the kinetic energy is (1 + h²) ẋ²/2, and N = (1 + h²)^(−1/2) makes it x'²/2
+/// for every l: motions without a potential are straight lines, though N^(l−1) is the density of the measure.
+#[test]
+fn the_multiplier_is_a_root_of_the_density() {
+    for l in 2..=4 {
+        let graph = Graph::new();
+        let names: Vec<String> =
+            (1..=l).map(|i| format!("x{i}")).chain((1..=l).map(|i| format!("w{i}"))).collect();
+        let system = System::builder(&graph)
+            .coordinates(&names)
+            .lagrangian(|_, x, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0 - (x[0] - x[1]).cos())
+            .build()
+            .unwrap();
+        let (x, v) = (system.frame().coordinates().to_vec(), system.quasi_velocities().to_vec());
+        let h = (x[0] + x[l - 1] * 0.5).sin() * 0.5;
+        let constraint = |a: usize| Constraint::new(format!("k{a}"), v[l + a] - h * v[a]);
+        let held = system.with_multipliers(&(0..l).map(constraint).collect::<Vec<_>>()).unwrap();
+        let at: Vec<_> = x.iter().chain(&v).copied().zip((1..).map(|i| 0.1 * f64::from(i))).collect();
+        let at = [at, vec![(graph.symbol("t"), 0.0)]].concat();
+        let voronets = Voronets::new(&held, &at).unwrap();
+        let reduced = voronets.reducing_multiplier().unwrap().unwrap();
+        let square = 1.0 + h.square();
+        let place: Vec<_> = x.iter().copied().zip([0.3, -0.8, 1.1, 0.4]).collect();
+        let ratio = graph.evaluate(&[reduced.multiplier.square() * square], &place).unwrap()[0];
+        assert!((ratio - 1.0).abs() < 1e-15, "l = {l}: N² (1 + h²) = {ratio}");
+        let defect = defect(&graph, &voronets, &reduced);
+        assert!(defect < 1e-9, "l = {l}: {defect}"); // h² of the difference quotient
+    }
+}
+
 #[test]
 fn there_is_none_without_a_measure_or_symmetry_or_with_forces() {
     let graph = Graph::new();

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_mech::{Constraint, Expr, Graph, LieAlgebra, System};
-use pc_nonholo::{Adapted, Constrained};
+use pc_nonholo::{Adapted, Constrained, invariant_measure};
 
 /// A particle in space under the force function −x² with a constraint on its velocities.
 fn particle<'g>(graph: &'g Graph, constraint: Expr<'g>) -> Constrained<'g> {
@@ -120,4 +120,39 @@ fn phase_volume_is_kept_or_not() {
         .unwrap();
     let balanced = Constrained::new(&balanced, &[graph.symbol("ω3")]).unwrap();
     assert!(balanced.divergence().unwrap().is_zero());
+}
+
+/// y = bᵀp turns Liouville's measure dx dp into dx dy/det b, whatever the Lagrangian.
+#[test]
+fn every_holonomic_system_with_a_square_frame_has_liouvilles_measure() {
+    let graph = Graph::new();
+    // A vehicle: its velocity in its own axes, its attitude by Euler angles. det b = ±1/sin θ.
+    let names = ["x", "y", "z", "θ", "ψ", "φ"];
+    let vehicle = System::builder(&graph)
+        .coordinates(names)
+        .quasi_velocities(["u", "v", "w", "p", "q", "r"])
+        .kinematics(|_, x, eta| {
+            let [(st, ct), (sf, cf)] = [(x[3].sin(), x[3].cos()), (x[5].sin(), x[5].cos())];
+            let turn = (eta[3] * sf + eta[4] * cf) / st;
+            let lean = [eta[0] * cf - eta[1] * sf, eta[0] * sf + eta[1] * cf];
+            let (s, c) = (x[4].sin(), x[4].cos());
+            let ahead = ct * lean[1] - st * eta[2];
+            [
+                c * lean[0] - s * ahead,
+                s * lean[0] + c * ahead,
+                st * lean[1] + ct * eta[2],
+                eta[3] * cf - eta[4] * sf,
+                turn,
+                eta[5] - ct * turn,
+            ]
+        })
+        .lagrangian(|_, x, eta| {
+            let squares: Expr<'_> = eta.iter().enumerate().map(|(s, e)| e.square() * (1.0 + s as f64)).sum();
+            squares / 2.0 + eta[0] * eta[5] * 0.3 - x[2] - (x[3] * 2.0).sin()
+        })
+        .build()
+        .unwrap();
+    let measure = invariant_measure(&vehicle, &[]).unwrap().unwrap();
+    let ratio = measure.density() / graph.symbol("θ").sin();
+    assert!(ratio.constant().is_some(), "{ratio}");
 }
