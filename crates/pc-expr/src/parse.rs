@@ -229,13 +229,16 @@ impl<'i> Parser<'i> {
         Ok(chain(first, Factor::Times, factors, AstKind::Product))
     }
 
+    /// A signed operand; with a plus it is the operand itself.
     fn unary(&mut self) -> Parsed {
-        if self.token != Token::Symbol('-') {
-            return self.power();
-        }
+        let Token::Symbol(sign @ ('+' | '-')) = self.token else { return self.power() };
         let start = self.span.start;
-        let operand = self.nested(Self::unary)?;
+        let mut operand = self.nested(Self::unary)?;
         let span = Span { start, end: operand.span.end };
+        if sign == '+' {
+            operand.span = span;
+            return Ok(operand);
+        }
         Ok(Box::new(Ast { span, kind: AstKind::Negate(operand) }))
     }
 

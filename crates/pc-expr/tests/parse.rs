@@ -42,6 +42,12 @@ fn precedence() {
         ("x'", "x'"),
         ("θ_1' + Ω", "(θ_1' + Ω)"),
         ("a + b - c", "(a + b - c)"),
+        ("+a", "a"),
+        ("2*+a", "(2.0*a)"),
+        ("2^+1", "(2.0^1.0)"),
+        ("a + +b - +-c", "(a + b - (-c))"),
+        ("+a^2", "(a^2.0)"),
+        ("-+a", "(-a)"),
         ("a - (b - c)", "(a - (b - c))"),
         ("(a + b) + c", "((a + b) + c)"),
         ("a*b/c*d1", "(a*b/c*d1)"),
@@ -120,7 +126,7 @@ fn messages() {
     fails(" ", " ", "the expression is empty", "write a number, such as `0`, or an expression");
     fails("()", " ^", "expected an expression, found `)`", operand);
     fails("a + ", "    ", "expected an expression, found the end of the expression", operand);
-    fails("+a", "^", "expected an expression, found `+`", operand);
+    fails("a + +", "     ", "expected an expression, found the end of the expression", operand);
     fails("a + * b", "    ^", "expected an expression, found `*`", operand);
     fails("min(, b)", "    ^", "expected an expression, found `,`", operand);
     fails("x**2", "  ^", "expected an expression, found `*`", "a power is written with `^`, as in `x^2`");

@@ -5,9 +5,9 @@ pub(crate) mod rigid_body;
 pub(crate) mod velocity;
 
 use pc_algebra::Frame;
-use pc_expr::Expr;
+use pc_expr::{Expr, Graph};
 
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 
 /// Something with mass.
 #[derive(Clone, Debug)]
@@ -26,6 +26,19 @@ impl<'g> Body<'g> {
             Body::Particle(particle) => particle.share(moving),
             Body::Rigid(body) => body.share(moving),
         }
+    }
+
+    /// m g · r, what L has of it in a field of gravity.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]
+    pub(crate) fn weight(&self, graph: &'g Graph, acceleration: &[Expr<'g>]) -> Result<Expr<'g>, MechError> {
+        let (mass, position) = match self {
+            Body::Particle(particle) => particle.mass_and_position(),
+            Body::Rigid(body) => body.mass_and_position(),
+        };
+        shape("the acceleration of gravity", acceleration.len(), position.len())?;
+        Ok(mass * graph.dot(acceleration.iter().copied(), position.iter().copied()))
     }
 
     /// The name it was given.

@@ -33,6 +33,8 @@ pub struct SystemBuilder<'g> {
     /// Terms of L(t, x, ẋ), with the symbols x'.
     in_velocities: Vec<Expr<'g>>,
     bodies: Vec<Body<'g>>,
+    /// The acceleration of gravity.
+    gravity: Option<Vec<Expr<'g>>>,
     forces: Vec<Force<'g>>,
     /// Names of quasi-velocities.
     external: Vec<String>,
@@ -64,6 +66,7 @@ impl<'g> SystemBuilder<'g> {
             lagrangian: Vec::new(),
             in_velocities: Vec::new(),
             bodies: Vec::new(),
+            gravity: None,
             forces: Vec::new(),
             external: Vec::new(),
             integrals: Vec::new(),
@@ -200,6 +203,31 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
+    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds m g · r to L,
+    /// r being the place of its mass centre.
+    ///
+    /// ```
+    /// # use pc_mech::{Graph, Particle, System};
+    /// let graph = Graph::new();
+    /// let [m, l, g] = graph.symbols(["m", "l", "g"]);
+    /// let pendulum = System::builder(&graph)
+    ///     .coordinates(["φ"])
+    ///     .particle(|_, x, _| Particle::new(m, [l * x[0].sin(), -l * x[0].cos()]))
+    ///     .gravity(|_| [0.into(), -g])
+    ///     .build()?;
+    /// let [phi, rate] = graph.symbols(["φ", "φ'"]);
+    /// assert_eq!(pendulum.lagrangian(), m * l.square() * rate.square() / 2.0 + m * g * l * phi.cos());
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    #[must_use]
+    pub fn gravity<I: IntoIterator<Item = Expr<'g>>>(
+        mut self,
+        acceleration: impl FnOnce(Expr<'g>) -> I,
+    ) -> Self {
+        self.gravity = Some(acceleration(self.time).into_iter().collect());
+        self
+    }
+
     /// Adds generalised forces Q_1..Q_k (8): their power is Q_s η_s.
     #[must_use]
     pub fn forces<I: IntoIterator<Item = Expr<'g>>>(
@@ -327,6 +355,10 @@ impl<'g> SystemBuilder<'g> {
         for body in &self.bodies {
             let share = body.share(&moving)?;
             terms.push(share.kinetic);
+            if let Some(acceleration) = &self.gravity {
+                moving.check_at_rest("the acceleration of gravity", acceleration)?;
+                terms.push(body.weight(self.graph, acceleration)?);
+            }
             parts.push(share.forces);
             let name = body.name().map_or_else(|| format!("body {}", bodies.list.len() + 1), str::to_owned);
             let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);

@@ -67,6 +67,7 @@ impl<'g> Assembler<'g, '_> {
             .collect();
         let lagrangian = self.lagrangian(&x_dot)?;
         let bodies = self.bodies(&eta, &x_dot)?;
+        let gravity = self.gravity()?;
         let dissipation = self.dissipation(&x_dot)?;
         let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
         let integrals = self.observed(&document.integrals, &x_dot)?;
@@ -98,6 +99,9 @@ impl<'g> Assembler<'g, '_> {
                 Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
             };
         }
+        if let Some(acceleration) = gravity {
+            builder = builder.gravity(|_| acceleration);
+        }
         for (symbol, value) in parameters {
             builder = builder.parameter(symbol, value);
         }
@@ -115,6 +119,7 @@ impl<'g> Assembler<'g, '_> {
         let written_start = self.model.projects_start().then(|| start.clone());
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;
         let events = self.events(crossings, &x_dot, &bound)?;
+        self.scope.look_at_unused()?;
         Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
     }
 

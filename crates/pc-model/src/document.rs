@@ -102,8 +102,8 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`
-    pub parameters: Vec<Parameter>,
+    /// `[parameters]`: what stays adjustable, each with its number, or an expression in those before it.
+    pub parameters: Vec<NamedExpression>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
     /// `[coordinates]`, each with its start value.
@@ -122,6 +122,8 @@ pub struct Document {
     pub lagrangian: Option<Lagrangian>,
     /// `[bodies.NAME]`
     pub bodies: Vec<Body>,
+    /// `[gravity]`
+    pub gravity: Option<Gravity>,
     /// `[forces]`, by the names of quasi-velocities or coordinates.
     pub forces: Vec<NamedExpression>,
     /// `[integrals]`
@@ -143,15 +145,6 @@ pub struct Heading {
     pub description: Option<Located<String>>,
     /// Where it comes from.
     pub reference: Option<Located<String>>,
-}
-
-/// A number that stays adjustable.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its name.
-    pub name: Name,
-    /// Its value in the file; finite.
-    pub value: Located<f64>,
 }
 
 /// η_s: at least one of `is` and `start` is given.
@@ -253,6 +246,15 @@ pub struct Body {
     pub torque: Option<[Expression; 3]>,
 }
 
+/// A uniform field of gravity, which acts on the mass centres of all bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gravity {
+    /// The section's header.
+    pub place: Place,
+    /// The acceleration of what falls, along the axes of the positions.
+    pub acceleration: [Expression; 3],
+}
+
 /// Inertia matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Inertia {
@@ -326,6 +328,7 @@ impl Document {
         checks::check_names(&document)?;
         checks::require_motion(&document)?;
         checks::require_energy(&document)?;
+        checks::require_bodies(&document)?;
         Ok(document)
     }
 
@@ -357,7 +360,7 @@ impl Document {
         let table = item.section(key, &format!("[{key}]"))?;
         match key {
             "model" => self.model = sections::heading(&table)?,
-            "parameters" => self.parameters = sections::parameters(&table)?,
+            "parameters" => self.parameters = table.declarations()?,
             "definitions" => self.definitions = table.declarations()?,
             "coordinates" => self.coordinates = table.declarations()?,
             "quasi_velocities" => sections::quasi_velocities(&table, self)?,
@@ -366,6 +369,7 @@ impl Document {
             "constraints" => self.constraints = sections::constraints(&table)?,
             "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
             "bodies" => self.bodies = bodies::bodies(&table)?,
+            "gravity" => self.gravity = Some(bodies::gravity(&table)?),
             "forces" => self.forces = table.expressions()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,

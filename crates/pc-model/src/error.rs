@@ -345,6 +345,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "constraints",
     "lagrangian",
     "bodies",
+    "gravity",
     "forces",
     "integrals",
     "outputs",

@@ -280,6 +280,14 @@ pub enum Fault {
         /// The quasi-velocities without an equation.
         undetermined: Vec<String>,
     },
+    /// A parameter that is an expression without a value.
+    #[error("`{text}` is {value}")]
+    ParameterNotFinite {
+        /// The expression as written.
+        text: String,
+        /// NaN or an infinity.
+        value: f64,
+    },
     /// A value that is not a number at the start.
     #[error("`{text}` is {value} at the start{}", at(state))]
     NotFinite {
@@ -338,6 +346,7 @@ impl Fault {
             | Fault::OffConstraint { .. }
             | Fault::Contradictory { .. }
             | Fault::Constraint { .. }
+            | Fault::ParameterNotFinite { .. }
             | Fault::NotFinite { .. }
             | Fault::SingularStart { .. }
             | Fault::NotAnIntegral { .. }
@@ -358,7 +367,7 @@ impl Fault {
             Fault::NotAnIntegral { .. } => {
                 "leave it out of `project`; `pc check` says what the motion keeps".into()
             }
-            Fault::UsedBeforeDefined { .. } => "definitions are evaluated in order; move it up".into(),
+            Fault::UsedBeforeDefined { .. } => "what is defined is evaluated in order; move it up".into(),
             Fault::NotACoordinate { name, coordinates } => {
                 suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
             }
@@ -416,6 +425,7 @@ impl Fault {
             }
             Fault::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             Fault::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            Fault::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
             Fault::NotFinite { .. } | Fault::SingularStart { .. } => {
                 "start where the coordinates and functions are regular".into()
             }

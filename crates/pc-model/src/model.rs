@@ -13,13 +13,14 @@ use crate::document::{self, AlgebraDefinition, Bracket, Document, Method};
 use crate::error::{ErrorKind, ModelError};
 use crate::event::Event;
 use crate::fault::Fault;
+use crate::parameters::Parameters;
 use crate::source::Place;
 
 /// A model whose parameters can be set and that can be turned into a mechanical system.
 #[derive(Clone, Debug)]
 pub struct Model {
     document: Document,
-    parameters: Vec<f64>,
+    parameters: Parameters,
     /// Start values that are not those of the document, by their places.
     starts: Vec<(usize, f64)>,
     projects_start: bool,
@@ -128,11 +129,10 @@ pub struct UnknownIntegral {
 impl Model {
     /// The model of a document.
     pub fn new(document: Document) -> Model {
-        let parameters = document.parameters.iter().map(|p| p.value.value).collect();
         let kept = document.simulation.project.iter().map(|name| name.value.clone()).collect();
         Model {
+            parameters: Parameters::new(&document),
             document,
-            parameters,
             starts: Vec::new(),
             projects_start: false,
             observes_reactions: false,
@@ -152,7 +152,8 @@ impl Model {
         name.map_or_else(|| self.document.source.name(), |name| name.value.as_str())
     }
 
-    /// Sets a parameter to another value than that of the file.
+    /// Sets a parameter to another value than that of the file. Parameters that are expressions in it follow; one that is an
+    /// expression itself is no longer.
     ///
     /// # Errors
     /// [`UnknownParameter`] with the parameters there are.
@@ -162,13 +163,19 @@ impl Model {
             let known = parameters.iter().map(|p| p.name.text.clone()).collect();
             return Err(UnknownParameter { name: name.to_owned(), known });
         };
-        self.parameters[index] = value;
+        self.parameters.set(index, value);
         Ok(())
     }
 
     /// The names and values of the parameters.
     pub fn parameters(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.document.parameters.iter().map(|p| p.name.text.as_str()).zip(self.parameters.iter().copied())
+        let names = self.document.parameters.iter().map(|p| p.name.text.as_str());
+        names.zip(self.parameters.values().iter().copied())
+    }
+
+    /// The values of the parameters, to be changed by themselves.
+    pub fn parameter_values(&self) -> &Parameters {
+        &self.parameters
     }
 
     /// The mechanical system, its expressions in `graph`, and its start state.
@@ -177,6 +184,7 @@ impl Model {
     /// [`ModelError`] at the place in the file that is to blame.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
         self.refuse_unsupported()?;
+        self.parameters.check(&self.document)?;
         assemble(self, graph)
     }
 

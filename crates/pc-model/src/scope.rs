@@ -16,6 +16,8 @@ use crate::source::{Place, Source};
 /// What an expression may contain, by the place where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
+    /// The value of a parameter: parameters before it.
+    Parameter,
     /// A start value: parameters, and definitions made of them.
     Start,
     /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
@@ -24,6 +26,8 @@ pub(crate) enum Stage {
     Kinematics,
     /// Mass, inertia, place and attitude of a body: coordinates and t.
     Position,
+    /// The acceleration of gravity: parameters and t.
+    Gravity,
     /// A constraint: everything but accelerations.
     Constraint,
     /// The energy or a force: everything but accelerations.
@@ -39,10 +43,12 @@ pub(crate) enum Stage {
 impl Stage {
     fn place(self) -> &'static str {
         match self {
+            Stage::Parameter => "the value of a parameter",
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
             Stage::Position => "the mass, inertia, position or rotation of a body",
+            Stage::Gravity => "the acceleration of gravity",
             Stage::Constraint => "a constraint",
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Event => "an event",
@@ -53,10 +59,12 @@ impl Stage {
 
     fn allowed(self) -> &'static str {
         match self {
+            Stage::Parameter => "numbers and parameters before it",
             Stage::Start => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position => "parameters, coordinates and t",
+            Stage::Gravity => "numbers, parameters and t",
             Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
                 "declared names"
             }
@@ -83,7 +91,7 @@ pub(crate) struct Scope<'g, 'd> {
     places: HashMap<&'d str, usize>,
     /// Definitions that were used already: each is resolved once for a stage.
     definitions: BTreeMap<(Stage, usize), Expr<'g>>,
-    /// The place of the definition that is being resolved.
+    /// The place of the definition that is being resolved; of the parameter in that stage.
     within: Option<usize>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
@@ -134,6 +142,14 @@ impl<'g, 'd> Scope<'g, 'd> {
 
     pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
         self.document.quasi_velocities.iter().map(|q| self.graph.symbol(&q.name.text)).collect()
+    }
+
+    /// The expression that gives parameter number `place` its value.
+    pub(crate) fn parameter(&mut self, place: usize) -> Result<Expr<'g>, ModelError> {
+        self.within = Some(place);
+        let value = self.resolve(&self.document.parameters[place].expression, Stage::Parameter);
+        self.within = None;
+        value
     }
 
     /// The expression, its velocities as symbols x'.
@@ -240,21 +256,27 @@ impl<'g, 'd> Scope<'g, 'd> {
         if name == "pi" {
             return Ok(std::f64::consts::PI.into());
         }
-        if document.parameters.iter().any(|p| p.name.text == name) {
+        let is_late = |own: Option<usize>, place| own.is_some_and(|own| own <= place);
+        let late = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
+        if let Some(place) = document.parameters.iter().position(|p| p.name.text == name) {
+            if stage == Stage::Parameter && is_late(self.within, place) {
+                return Err(self.error(expression, span, late));
+            }
             return Ok(self.graph.symbol(name));
         }
-        if let Some(&place) = self.places.get(name) {
-            if self.within.is_some_and(|own| own <= place) {
-                let fault = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
-                return Err(self.error(expression, span, fault));
+        if let Some(&place) = self.places.get(name).filter(|_| stage != Stage::Parameter) {
+            if is_late(self.within, place) {
+                return Err(self.error(expression, span, late));
             }
             return self.definition(place, stage);
         }
         let is_coordinate = document.coordinates.iter().any(|c| c.name.text == name);
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
         match stage {
-            Stage::Start if name == "t" || is_coordinate || is_quasi_velocity => refuse(self),
+            Stage::Parameter if self.places.contains_key(name) => refuse(self),
+            Stage::Parameter | Stage::Start if name == "t" || is_coordinate || is_quasi_velocity => refuse(self),
             Stage::Definition | Stage::Position if is_quasi_velocity => refuse(self),
+            Stage::Gravity if is_coordinate || is_quasi_velocity => refuse(self),
             _ if name == "t" => Ok(self.time),
             _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
@@ -312,7 +334,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         match stage {
-            Stage::Start | Stage::Kinematics | Stage::Position => Err(self.error(expression, span, |text| {
+            Stage::Parameter | Stage::Start | Stage::Kinematics | Stage::Position | Stage::Gravity => Err(self.error(expression, span, |text| {
                 Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() }
             })),
             _ => Ok(self.velocity(name)),
@@ -328,7 +350,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
-            Stage::Start | Stage::Kinematics | Stage::Position => true,
+            Stage::Parameter | Stage::Start | Stage::Kinematics | Stage::Position | Stage::Gravity => true,
             Stage::Definition
             | Stage::Constraint
             | Stage::Dynamics

@@ -50,6 +50,7 @@ impl Model {
     /// # Errors
     /// [`ModelError`] where a start value is not a number.
     pub fn start(&self) -> Result<Vec<f64>, ModelError> {
+        self.parameter_values().check(self.document())?;
         assembly::start(self, &Graph::new())
     }
 }

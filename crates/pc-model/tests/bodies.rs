@@ -209,3 +209,57 @@ fn bodies_are_blamed_for_singular_energies() {
          help: every quasi-velocity needs kinetic energy of its own"
     );
 }
+
+/// A cart, a bob and a top: their weights are −m g · r in the energy, and no force.
+#[test]
+fn gravity_is_a_potential_of_all_bodies() {
+    const BODIES: &str = r#"
+[parameters]
+m = 2.0
+l = 0.5
+g = "0.98*10"
+[coordinates]
+s = 0.3
+"φ" = 1.0
+[bodies.cart]
+mass = 3
+position = ["s", 0, "s/10"]
+[bodies.rod]
+mass = "m"
+position = ["s + l*sin(φ)", 0, "s/10 - l*cos(φ)"]
+inertia = [0, "m*l^2/3", 0]
+angular_velocity = [0, "φ'", 0]
+"#;
+    let graph = Graph::new();
+    let falling = format!("{BODIES}[gravity]\nacceleration = [0.5, \"t\", \"-g\"]\n");
+    let assembly = model(&falling).assemble(&graph).unwrap_or_else(|error| panic!("{error}"));
+    let (fallen, floating) = (assembly.system, system(&graph, BODIES));
+    let [m, l, g, s, phi] = graph.symbols(["m", "l", "g", "s", "φ"]);
+    let potential = -3.0 * (s / 2.0 - g * s / 10.0)
+        - m * ((s + l * phi.sin()) / 2.0 - g * (s / 10.0 - l * phi.cos()));
+    assert_eq!(floating.lagrangian() - fallen.lagrangian(), potential);
+    assert_eq!(fallen.forces(), [Expr::ZERO; 2]);
+    assert!(fallen.energy_rate().is_zero());
+}
+
+/// The bodies do not move across: a component that depends on time does no work on them. One that does is seen.
+#[test]
+fn gravity_that_changes_with_time_does_not_keep_the_energy() {
+    let graph = Graph::new();
+    let shaken = PENDULUM.replace("force = [\"-k*s'\", 0, \"-m*g\"]", "")
+        + "[gravity]\nacceleration = [\"cos(t)\", 0, \"-g\"]\n";
+    let rate = system(&graph, &shaken).energy_rate();
+    let [m, cart, l, t, s, phi] = graph.symbols(["m", "M", "l", "t", "s", "φ"]);
+    assert_eq!(rate, (m * (s + l * phi.sin()) + cart * s) * t.sin());
+}
+
+#[test]
+fn gravity_depends_on_parameters_and_time_only() {
+    let with = |entry: &str| format!("{PENDULUM}[gravity]\nacceleration = [0, 0, \"{entry}\"]\n");
+    for (entry, name) in [("-s", "s"), ("-s'", "s'"), ("depth", "φ"), ("d(t)", "d(t)")] {
+        let error = refused(&with(entry)).to_string();
+        let message = format!("`{name}` cannot be used in the acceleration of gravity\n");
+        assert!(error.contains(&message), "{error}");
+        assert!(error.ends_with("help: use numbers, parameters and t only"), "{error}");
+    }
+}

@@ -46,25 +46,35 @@ fn refused(definitions: &str, potential: &str) -> String {
     error.to_string().lines().next().unwrap().to_owned()
 }
 
-/// What is not used may be anything; what is used is blamed where it stands.
+/// Whether they are used or not, at the entry that is wrong.
 #[test]
-fn definitions_are_looked_at_where_they_are_used() {
+fn definitions_contain_what_is_defined_before() {
     let (good, bad) = ("b = \"2*x\"\n", "c = \"y + b\"\n");
-    let graph = Graph::new();
-    let assembly = oscillator(&format!("{good}{bad}"), "b^2").assemble(&graph).unwrap();
-    let x = graph.symbol("x");
-    assert_eq!(assembly.system.lagrangian(), graph.symbol("x'").square() / 2.0 - 4.0 * x.square());
-    assert_eq!(
-        refused(&format!("{good}{bad}e = \"c + b\"\n"), "e"),
-        "m.toml:3:6: [definitions] c: the name `y` is not declared"
-    );
+    for potential in ["e", "b^2"] {
+        assert_eq!(
+            refused(&format!("{good}{bad}e = \"c + b\"\n"), potential),
+            "m.toml:3:6: [definitions] c: the name `y` is not declared"
+        );
+    }
     for (definitions, at, name) in [
         ("c = \"e\"\ne = \"x\"\n", "2:6", "e"),
         ("c = \"x + c\"\n", "2:10", "c"),
         ("c = \"e\"\ne = \"c\"\n", "2:6", "e"),
     ] {
-        let message = refused(definitions, "c");
-        assert!(message.starts_with(&format!("m.toml:{at}: [definitions] c: ")), "{message}");
-        assert!(message.contains(&format!("`{name}`")), "{message}");
+        for potential in ["c", "0"] {
+            let message = refused(definitions, potential);
+            assert!(message.starts_with(&format!("m.toml:{at}: [definitions] c: ")), "{message}");
+            assert!(message.contains(&format!("`{name}`")), "{message}");
+        }
     }
+}
+
+/// One that nothing is made of has no place that says what it may contain, and no value that would matter.
+#[test]
+fn an_unused_definition_may_contain_all_that_an_output_may() {
+    let graph = Graph::new();
+    let definitions = "b = \"d(x')/x^2\"\nc = \"log(x - 1) + b\"\n";
+    let assembly = oscillator(definitions, "x").assemble(&graph).unwrap();
+    assert_eq!(assembly.system.lagrangian(), graph.symbol("x'").square() / 2.0 - graph.symbol("x"));
+    assert!(refused("c = \"sin(x)/0\"\n", "0").contains("`sin(x)/0` divides by zero"));
 }

@@ -61,6 +61,10 @@ impl<'g> Particle<'g> {
         self.name.as_deref()
     }
 
+    pub(crate) fn mass_and_position(&self) -> (Expr<'g>, &[Expr<'g>]) {
+        (self.mass, &self.position)
+    }
+
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         let graph = moving.frame.graph();
         moving.check_at_rest("the mass", &[self.mass])?;

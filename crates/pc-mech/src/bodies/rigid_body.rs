@@ -143,6 +143,10 @@ impl<'g> RigidBody<'g> {
         self.centre.name()
     }
 
+    pub(crate) fn mass_and_position(&self) -> (Expr<'g>, &[Expr<'g>]) {
+        self.centre.mass_and_position()
+    }
+
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         moving.check_at_rest("the inertia", &self.inertia.0)?;
         let Share { kinetic, mut forces, velocity, .. } = self.centre.share(moving)?;

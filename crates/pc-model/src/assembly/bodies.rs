@@ -27,6 +27,12 @@ impl<'g> Assembler<'g, '_> {
         self.model.document().bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
     }
 
+    /// The entry of `[gravity]`.
+    pub(super) fn gravity(&mut self) -> Result<Option<[Expr<'g>; 3]>, ModelError> {
+        let gravity = self.model.document().gravity.as_ref();
+        gravity.map(|gravity| self.resolved(&gravity.acceleration, Stage::Gravity)).transpose()
+    }
+
     fn body(
         &mut self,
         body: &document::Body,
@@ -34,7 +40,7 @@ impl<'g> Assembler<'g, '_> {
         x_dot: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Body<'g>, ModelError> {
         let mass = self.scope.resolve(&body.mass, Stage::Position)?;
-        let position = self.resolved(&body.position)?;
+        let position = self.resolved(&body.position, Stage::Position)?;
         let force = body.force.as_ref().map(|force| self.all_dynamic(force, x_dot)).transpose()?;
         let Some(orientation) = &body.orientation else {
             let particle = Particle::new(mass, position).named(&body.name.text);
@@ -45,12 +51,12 @@ impl<'g> Assembler<'g, '_> {
         };
         let inertia: Inertia<'g> = match &body.inertia {
             None => [Expr::ZERO; 3].into(),
-            Some(document::Inertia::Principal(moments)) => self.resolved(moments)?.into(),
-            Some(document::Inertia::Full(entries)) => self.resolved(entries)?.into(),
+            Some(document::Inertia::Principal(moments)) => self.resolved(moments, Stage::Position)?.into(),
+            Some(document::Inertia::Full(entries)) => self.resolved(entries, Stage::Position)?.into(),
         };
         let mut rigid = match orientation {
             Orientation::Rotation(entries) => {
-                let entries = self.resolved(entries)?;
+                let entries = self.resolved(entries, Stage::Position)?;
                 let rotation = Matrix::from_fn(3, 3, |i, j| entries[3 * i + j]);
                 RigidBody::rotating(mass, position, inertia, rotation)
             }
@@ -69,11 +75,15 @@ impl<'g> Assembler<'g, '_> {
         Ok(Body::Rigid(Box::new(rigid)))
     }
 
-    /// Functions of time and place.
-    fn resolved<const N: usize>(&mut self, list: &[Expression; N]) -> Result<[Expr<'g>; N], ModelError> {
+    /// Functions of what may stand there.
+    fn resolved<const N: usize>(
+        &mut self,
+        list: &[Expression; N],
+        stage: Stage,
+    ) -> Result<[Expr<'g>; N], ModelError> {
         let mut values = [Expr::ZERO; N];
         for (value, expression) in values.iter_mut().zip(list) {
-            *value = self.scope.resolve(expression, Stage::Position)?;
+            *value = self.scope.resolve(expression, stage)?;
         }
         Ok(values)
     }

@@ -1,7 +1,7 @@
-//! The section of rigid bodies and mass points.
+//! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
-use super::{Body, Inertia, Orientation};
+use super::{Body, Gravity, Inertia, Orientation};
 use crate::error::{ErrorKind, ModelError};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
@@ -49,6 +49,21 @@ fn body(item: &Item<'_>) -> Result<Body, ModelError> {
         return Err(turning.key_error(ErrorKind::NoEffect { key, without: "inertia", example: INERTIA }));
     }
     Ok(Body { name, place: table.place.clone(), mass, position, inertia, orientation, force, torque })
+}
+
+pub(super) fn gravity(table: &Table<'_>) -> Result<Gravity, ModelError> {
+    const ACCELERATION: &str = "acceleration = [0, 0, -9.81]";
+    let mut acceleration = None;
+    for item in table.items() {
+        match item.key() {
+            "acceleration" => acceleration = Some(item.array("3 expressions", ACCELERATION)?),
+            _ => return Err(item.unknown(&["acceleration"])),
+        }
+    }
+    match acceleration {
+        Some(acceleration) => Ok(Gravity { place: table.place.clone(), acceleration }),
+        None => Err(table.error(ErrorKind::Missing { key: "acceleration", example: ACCELERATION })),
+    }
 }
 
 fn inertia(item: &Item<'_>) -> Result<Inertia, ModelError> {

@@ -21,6 +21,18 @@ pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
     }
 }
 
+/// Gravity must have something to act on.
+pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
+    match &document.gravity {
+        Some(gravity) if document.bodies.is_empty() => {
+            let (key, example) = ("[gravity]".to_owned(), "[bodies.NAME]");
+            let kind = ErrorKind::NoEffect { key, without: "bodies", example };
+            Err(document.source.error(&gravity.place, kind))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Something must move: a coordinate, or a quasi-velocity.
 pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     if document.coordinates.is_empty() && document.quasi_velocities.is_empty() {
@@ -31,10 +43,10 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
 
 /// A name stands for one thing only.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
-    let parameters = document.parameters.iter().map(|parameter| (&parameter.name, Role::Parameter));
     let quasi = document.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
-    let mut names: Vec<(&Name, Role)> = parameters.chain(quasi).collect();
+    let mut names: Vec<(&Name, Role)> = quasi.collect();
     for (entries, role) in [
+        (&document.parameters, Role::Parameter),
         (&document.definitions, Role::Definition),
         (&document.coordinates, Role::Coordinate),
         (&document.integrals, Role::Integral),

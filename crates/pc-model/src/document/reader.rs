@@ -209,14 +209,9 @@ impl<'a> Item<'a> {
 
     /// The value as a finite number.
     pub(super) fn number(&self) -> Result<Located<f64>, ModelError> {
-        self.number_or("a number")
-    }
-
-    /// The value as a finite number, `expected` saying in words what was.
-    pub(super) fn number_or(&self, expected: &'static str) -> Result<Located<f64>, ModelError> {
         match self.numeric()? {
             Some(value) => Ok(self.located(value)),
-            None => Err(self.wrong_type(expected, "1.0")),
+            None => Err(self.wrong_type("a number", "1.0")),
         }
     }
 

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::reader::{Item, Table};
 use super::{
     Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
-    NamedExpression, Parameter, QuasiVelocity,
+    NamedExpression, QuasiVelocity,
 };
 use crate::error::{ErrorKind, ModelError};
 
@@ -21,18 +21,6 @@ pub(super) fn heading(table: &Table<'_>) -> Result<Heading, ModelError> {
         *field = Some(item.text()?);
     }
     Ok(heading)
-}
-
-pub(super) fn parameters(table: &Table<'_>) -> Result<Vec<Parameter>, ModelError> {
-    table
-        .items()
-        .map(|item| {
-            Ok(Parameter {
-                name: item.new_name()?,
-                value: item.number_or("a number (expressions belong in [definitions])")?,
-            })
-        })
-        .collect()
 }
 
 pub(super) fn quasi_velocities(table: &Table<'_>, document: &mut Document) -> Result<(), ModelError> {

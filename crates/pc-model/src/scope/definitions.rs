@@ -9,6 +9,15 @@ use super::{Scope, Stage};
 use crate::error::ModelError;
 
 impl<'g> Scope<'g, '_> {
+    /// Looks at the definitions that nothing is made of: they may contain all that an output may.
+    pub(crate) fn look_at_unused(&mut self) -> Result<(), ModelError> {
+        let used: BTreeSet<usize> = self.definitions.keys().map(|&(_, place)| place).collect();
+        for place in (0..self.document.definitions.len()).filter(|place| !used.contains(place)) {
+            self.definition(place, Stage::Observation)?;
+        }
+        Ok(())
+    }
+
     /// The definition at `place`, after those that it is made of: they stand before it, so that in this order a long chain of
     /// them needs no deep recursion.
     pub(super) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
