@@ -55,6 +55,9 @@ pub struct ModelArguments {
     /// kinetic metric
     #[arg(long)]
     pub project_start: bool,
+    /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep the start values of the file
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "project_start")]
+    pub keep: Vec<String>,
 }
 
 /// `NAME=VALUE`, the value as written.

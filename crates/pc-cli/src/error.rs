@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
-use pc_model::{ModelError, UnknownIntegral, UnknownParameter};
+use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
 
 use crate::plot::PlotError;
@@ -41,6 +41,9 @@ pub enum CliError {
     /// `--project` of something that is not an integral.
     #[error("--project: {0}")]
     UnknownIntegral(UnknownIntegral),
+    /// `--keep` of something that has no start value.
+    #[error("--keep: {0}")]
+    UnknownStart(#[from] UnknownStart),
     /// Two `--set` of one parameter.
     #[error("--set: `{name}` is given two values; leave one out")]
     SetTwice {
@@ -133,6 +136,7 @@ impl CliError {
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
             | CliError::UnknownIntegral(_)
+            | CliError::UnknownStart(_)
             | CliError::SetTwice { .. }
             | CliError::BadValue { .. }
             | CliError::NoEnd { .. }

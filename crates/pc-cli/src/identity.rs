@@ -18,6 +18,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     );
     identity.extend([
         entry("--project-start", model.projects_start().to_string()),
+        entry("--keep", model.held_start_names().join(",")),
         entry("--project", model.kept().join(", ")),
         entry("--t-end", plan.t_end.to_string()),
         entry("--rtol", format!("{:e}", plan.rtol)),

@@ -21,6 +21,9 @@ use crate::error::CliError;
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
     model.project_start(arguments.project_start);
+    for name in &arguments.keep {
+        model.hold_start(name)?;
+    }
     for (i, Setting { name, value }) in arguments.set.iter().enumerate() {
         if arguments.set[..i].iter().any(|known| known.name == *name) {
             return Err(CliError::SetTwice { name: name.clone() });

@@ -319,6 +319,7 @@ impl<'g> SystemBuilder<'g> {
     /// # Errors
     /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
     /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed or contradict it;
+    /// [`MechError::FrameOfVelocities`] for a frame that contains velocities;
     /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
     /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
@@ -336,6 +337,7 @@ impl<'g> SystemBuilder<'g> {
             Kinematics::Frame(frame) => frame,
         };
         shape("the list of quasi-velocities", k, frame.operators())?;
+        of_position(&frame, &[&eta[..], &velocities].concat())?;
         let mut near = self.near;
         near.centre.extend(self.parameters.iter().copied());
         let structure = match self.structure {
@@ -395,4 +397,15 @@ impl<'g> SystemBuilder<'g> {
             bodies,
         })
     }
+}
+
+/// That b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be taken for a
+/// constant.
+///
+/// # Errors
+/// [`MechError::FrameOfVelocities`] naming the first that stands there.
+fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
+    let entries = [frame.b().entries(), frame.b0()].concat();
+    let found = frame.graph().symbols_of(&entries).into_iter().find(|symbol| velocities.contains(symbol));
+    found.map_or(Ok(()), |symbol| Err(MechError::FrameOfVelocities { velocity: symbol.to_string() }))
 }

@@ -16,6 +16,12 @@ pub enum MechError {
         /// The length that fits.
         expected: usize,
     },
+    /// b or b_0 of ẋ = b η + b_0 depends on a velocity.
+    #[error("the frame contains `{velocity}`, and b and b_0 are functions of time and coordinates alone")]
+    FrameOfVelocities {
+        /// The quasi-velocity, or velocity of a coordinate.
+        velocity: String,
+    },
     /// Neither a Lagrangian was given nor one that depends on the quasi-velocities.
     #[error("the system has no Lagrangian")]
     NoLagrangian,

@@ -7,7 +7,11 @@ use crate::compiled::fault::Fault;
 use crate::compiled::saddle::Saddle;
 use crate::error::{MechError, shape};
 use crate::multipliers::Multipliers;
+use crate::numeric::least_squares::LeastSquares;
 use crate::system::System;
+
+/// The least singular value against the largest of a matrix that is well solved with.
+const WELL: f64 = 1e-3;
 
 impl<'g> Multipliers<'g> {
     /// The same system in quasi-velocities that are independent, η_D = −C_D⁻¹ (C_I η_I + c_0): its equations (9) are
@@ -137,13 +141,39 @@ impl<'g> Multipliers<'g> {
         })
     }
 
+    /// The same with a preference: the quasi-velocities of the list, k − m of them, are taken for
+    /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
+    #[must_use]
+    pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {
+        let eta = self.equations().system().quasi_velocities();
+        let dependent: Vec<usize> = (0..eta.len()).filter(|&s| !independent.contains(&eta[s])).collect();
+        self.dependent = (dependent.len() == self.constraints().len()).then_some(dependent);
+        self
+    }
+
+    /// Whether C_D, rows of C counted as of length one, is far from singular at these values.
+    fn determines(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> Result<bool, MechError> {
+        let (system, c) = (self.equations().system(), self.coefficients());
+        let values = system.graph().evaluate(c.entries(), &[system.parameters(), at].concat())?;
+        let row = |a: usize| &values[a * c.columns()..(a + 1) * c.columns()];
+        let size = |a: usize| row(a).iter().fold(0.0f64, |size, entry| size.hypot(*entry));
+        let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| row(a)[dependent[d]] / size(a));
+        Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
+    }
+
     /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
-    /// and quasi-velocities, rising; `at` may have other values of parameters.
+    /// and quasi-velocities, rising, or those that [are to](Multipliers::preferring) depend on the others where they do; `at`
+    /// may have other values of parameters.
     ///
     /// # Errors
     /// [`MechError::SingularConstraint`] if the constraints are dependent there;
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) if a value is missing.
     pub fn dependent_at(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<usize>, MechError> {
+        if let Some(dependent) = &self.dependent
+            && self.determines(dependent, at)?
+        {
+            return Ok(dependent.clone());
+        }
         let system = self.equations().system();
         let (graph, k, m) = (system.graph(), system.quasi_velocities().len(), self.constraints().len());
         let (lower, entries) = self.first_order().lower_triangle();

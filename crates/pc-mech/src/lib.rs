@@ -358,6 +358,7 @@ pub use integrals::conserved::{Conservation, Rates};
 pub use integrals::cyclic::CyclicDisplacement;
 pub use legendre::LegendreTransform;
 pub use multipliers::{Constraint, Multipliers};
+pub use numeric::least_squares::LeastSquares;
 pub use pc_algebra::{
     AlgebraError, EulerAngles, Frame, LieAlgebra, LieGroup, Matrix, Neighbourhood, RotationMatrices,
     StructureCoefficients, UnitQuaternions, determinant,

@@ -138,6 +138,8 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
+    /// The indices of the quasi-velocities that are to depend on the others where they can.
+    pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
     observed: bool,
 }
@@ -190,6 +192,7 @@ impl<'g> System<'g> {
             velocities: graph.shorten(&velocities, &order),
             right: graph.shorten(&right, &order),
             reactions: names.into_iter().map(|name| self.unused(name, "λ_")).collect(),
+            dependent: None,
             observed: false,
         };
         let bordered = multipliers.bordered();

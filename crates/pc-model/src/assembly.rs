@@ -3,20 +3,22 @@
 mod bodies;
 mod brackets;
 mod constraints;
+mod definitions;
 mod events;
 mod frame;
 mod resultants;
+mod start;
 mod trial;
 
 use pc_mech::{Expr, Graph, System};
 
 use self::bodies::Body;
-use self::constraints::Written;
+use self::trial::StartHeld;
 use crate::document::NamedExpression;
-use crate::error::{ErrorKind, ModelError};
+use crate::error::ModelError;
 use crate::fault::Fault;
 use crate::model::{Assembly, Model};
-use crate::scope::{Scope, Stage, entry};
+use crate::scope::{Scope, Stage};
 
 /// The mechanical system of a model, its expressions in `graph`, and its start state.
 ///
@@ -33,7 +35,8 @@ pub(crate) fn assemble<'g>(model: &Model, graph: &'g Graph) -> Result<Assembly<'
 pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
     let parameters: Vec<(Expr<'_>, f64)> =
         model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
-    Assembler { model, graph, scope: Scope::new(graph, model.document()) }.start(&parameters)
+    let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
+    Ok(assembler.given_start(&parameters)?.values)
 }
 
 struct Assembler<'g, 'm> {
@@ -47,15 +50,18 @@ impl<'g> Assembler<'g, '_> {
         let document = self.model.document();
         let parameters: Vec<(Expr<'g>, f64)> =
             self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
-        let mut start = self.start(&parameters)?;
+        let given = self.given_start(&parameters)?;
         let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
-        let constraints = self.constraints()?;
-        let frame = self.frame(&constraints)?;
+        let mut constraints = self.constraints()?;
+        let mut at = parameters.clone();
+        at.push((self.graph.symbol("t"), t_start));
+        at.extend(self.scope.coordinates().into_iter().zip(given.values.iter().copied()));
+        let (frame, completing) = self.frame(&mut constraints, &at)?;
         let mut eta =
             if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
         let declared = eta.len();
-        eta.extend(constraints.iter().filter_map(Written::defines));
-        start.resize(frame.coordinates().len() + eta.len(), 0.0);
+        eta.extend(&completing);
+        let mut start = self.start_state(&frame, &eta, &constraints, &at, given)?;
 
         let velocities = frame.velocities(&eta);
         let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self
@@ -117,7 +123,8 @@ impl<'g> Assembler<'g, '_> {
         builder = builder.external_force(self.model.external_forces());
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
         let written_start = self.model.projects_start().then(|| start.clone());
-        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start))?;
+        let held = StartHeld::new(self.model, if completing.is_empty() { 0 } else { declared });
+        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), &held)?;
         let events = self.events(crossings, &x_dot, &bound)?;
         self.scope.look_at_unused()?;
         Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
@@ -126,57 +133,6 @@ impl<'g> Assembler<'g, '_> {
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.
     fn is_lagrangian_form(&self) -> bool {
         self.model.document().quasi_velocities.is_empty()
-    }
-
-    fn start(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<Vec<f64>, ModelError> {
-        let document = self.model.document();
-        let mut start = Vec::new();
-        for coordinate in &document.coordinates {
-            start.push(self.start_value(&coordinate.expression, parameters)?);
-        }
-        for quasi_velocity in &document.quasi_velocities {
-            start.push(match &quasi_velocity.start {
-                Some(expression) => self.start_value(expression, parameters)?,
-                None => 0.0,
-            });
-        }
-        for velocity in &document.start_velocities {
-            let name = &velocity.name;
-            if entry(&document.coordinates, &name.text).is_none() {
-                return Err(self.not_a_coordinate(name));
-            }
-            if !self.is_lagrangian_form() {
-                let what = "start velocities of coordinates beside quasi-velocities are";
-                return Err(self.model.error(&name.place, ErrorKind::Unsupported { what }));
-            }
-        }
-        if self.is_lagrangian_form() {
-            for coordinate in &document.coordinates {
-                start.push(match entry(&document.start_velocities, &coordinate.name.text) {
-                    Some(velocity) => self.start_value(&velocity.expression, parameters)?,
-                    None => 0.0,
-                });
-            }
-        }
-        for &(place, value) in self.model.overridden_starts() {
-            start[place] = value;
-        }
-        Ok(start)
-    }
-
-    fn start_value(
-        &mut self,
-        expression: &crate::document::Expression,
-        parameters: &[(Expr<'g>, f64)],
-    ) -> Result<f64, ModelError> {
-        let value = self.scope.resolve(expression, Stage::Start)?;
-        let values = self.graph.evaluate(&[value], parameters);
-        let value = values.map_or(f64::NAN, |values| values[0]); // parameters are all there can be in it
-        if value.is_finite() {
-            return Ok(value);
-        }
-        let fault = |text| Fault::NotFinite { text, value, state: Vec::new() };
-        Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
     fn not_a_coordinate(&self, name: &crate::document::Name) -> ModelError {

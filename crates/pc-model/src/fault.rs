@@ -148,6 +148,34 @@ pub enum Fault {
         "the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere"
     )]
     DependentDefinitions,
+    /// Velocities that neither definitions nor constraints determine where the motion starts.
+    #[error("at the start the definitions of the quasi-velocities and the constraints leave {} undetermined", listed(velocities))]
+    StartOpen {
+        /// The velocities.
+        velocities: Vec<String>,
+    },
+    /// A start velocity of a coordinate that quasi-velocities contradict.
+    #[error(
+        "the start velocity `{coordinate}'` = {} contradicts the quasi-velocities: by their start it is {}",
+        rounded(*given),
+        rounded(*found)
+    )]
+    StartVelocity {
+        /// The coordinate.
+        coordinate: String,
+        /// The velocity given.
+        given: f64,
+        /// What the others say it is.
+        found: f64,
+    },
+    /// Components of the start that are to be kept where a constraint needs them to move.
+    #[error("with {} kept, nothing is left to move to the constraint `{constraint}`", listed(held))]
+    StartHeld {
+        /// The constraint.
+        constraint: String,
+        /// What is kept.
+        held: Vec<String>,
+    },
     /// A constraint called holonomic that is not.
     #[error(
         "the constraint `{constraint}` is not holonomic: velocities it allows lead off every surface (component {residual:.1e})"
@@ -343,6 +371,9 @@ impl Fault {
             | Fault::Contradiction { .. }
             | Fault::Degenerate { .. }
             | Fault::NotHolonomic { .. }
+            | Fault::StartOpen { .. }
+            | Fault::StartVelocity { .. }
+            | Fault::StartHeld { .. }
             | Fault::OffConstraint { .. }
             | Fault::Contradictory { .. }
             | Fault::Constraint { .. }
@@ -374,9 +405,10 @@ impl Fault {
             Fault::NothingToPush { name, known } => {
                 suggest(name, known, &format!("a force can act on {}", listed(known)))
             }
-            Fault::NotReset { name, known, .. } => {
-                suggest(name, known, &format!("an event can reset {}", listed(known)))
-            }
+            Fault::NotReset { name, what, known } => match *what {
+                "declared nowhere" => suggest(name, known, &format!("an event can reset {}", listed(known))),
+                _ => format!("an event can reset {}", listed(known)),
+            },
             Fault::NotHere { allowed, .. } => format!("use {allowed} only"),
             Fault::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
             Fault::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
@@ -405,6 +437,13 @@ impl Fault {
             Fault::OffConstraint { .. } => {
                 "give a start that satisfies it, or have it moved there by --project-start".into()
             }
+            Fault::StartOpen { .. } => {
+                "start where they are determined, or define other quasi-velocities".into()
+            }
+            Fault::StartVelocity { .. } => {
+                "leave it out, or the `start` of a quasi-velocity, which then follows".into()
+            }
+            Fault::StartHeld { .. } => "keep less".into(),
             Fault::Contradictory { .. } => "no motion satisfies it; mend it or leave it out".into(),
             Fault::Constraint { help, .. } => (*help).into(),
             Fault::UnknownAlgebra { known, .. } => {

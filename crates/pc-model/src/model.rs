@@ -24,6 +24,8 @@ pub struct Model {
     /// Start values that are not those of the document, by their places.
     starts: Vec<(usize, f64)>,
     projects_start: bool,
+    /// The places of start values that are not moved.
+    held_starts: Vec<usize>,
     observes_reactions: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
@@ -135,6 +137,7 @@ impl Model {
             document,
             starts: Vec::new(),
             projects_start: false,
+            held_starts: Vec::new(),
             observes_reactions: false,
             kept,
             external: Vec::new(),
@@ -284,6 +287,19 @@ impl Model {
     /// Says that the start is to be moved to where the constraints are satisfied.
     pub fn project_start(&mut self, yes: bool) {
         self.projects_start = yes;
+    }
+
+    /// Says that start value number `place` is not to be moved.
+    pub(crate) fn hold_start_at(&mut self, place: usize) {
+        if !self.held_starts.contains(&place) {
+            self.held_starts.push(place);
+            self.held_starts.sort_unstable();
+        }
+    }
+
+    /// The places of the start values that are not to be moved, rising.
+    pub(crate) fn held_starts(&self) -> &[usize] {
+        &self.held_starts
     }
 
     /// Says that the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.

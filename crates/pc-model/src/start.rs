@@ -44,8 +44,37 @@ impl Model {
         }
     }
 
+    /// Says that a start [moved to the constraints](Model::project_start) keeps the value of a coordinate or quasi-velocity: the
+    /// others follow.
+    ///
+    /// # Errors
+    /// [`UnknownStart`] with the names there are.
+    pub fn hold_start(&mut self, name: &str) -> Result<(), UnknownStart> {
+        let known = self.start_names();
+        match known.iter().position(|known| known == name) {
+            Some(place) => {
+                self.hold_start_at(place);
+                Ok(())
+            }
+            None => Err(UnknownStart { name: name.to_owned(), known }),
+        }
+    }
+
+    /// The names of the start values that are not to be moved.
+    pub fn held_start_names(&self) -> Vec<String> {
+        let names = self.start_names();
+        self.held_starts().iter().map(|&place| names[place].clone()).collect()
+    }
+
+    /// Whether quasi-velocities may follow from start velocities of coordinates, which stand beside them: then
+    /// [`start`](Model::start) does not know them.
+    pub fn derives_start(&self) -> bool {
+        let document = self.document();
+        !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
+    }
+
     /// The start state (x, η) with the declared η, or (x, x') where none is: the values of [`start_names`](Model::start_names)
-    /// for the parameters as they are, not looked at whether they satisfy the constraints.
+    /// for the parameters as they are, not looked at whether they satisfy the constraints, 0 where none is given.
     ///
     /// # Errors
     /// [`ModelError`] where a start value is not a number.

@@ -173,20 +173,23 @@
 
 mod adapted;
 mod almost_poisson;
+mod binding;
 mod chaplygin;
 mod constrained;
 mod error;
 mod involutive;
 mod measure;
 mod n_trailer;
+mod positions;
 mod sorted;
 mod voronets;
 
 pub use adapted::Adapted;
+pub use binding::{Binding, Redundant};
 pub use chaplygin::ReducingMultiplier;
 pub use constrained::Constrained;
 pub use error::NonholoError;
 pub use measure::{InvariantMeasure, invariant_measure};
 pub use n_trailer::{NTrailer, Wagon};
-pub use sorted::{Kind, Redundant, Sorted};
+pub use sorted::{Kind, Sorted};
 pub use voronets::Voronets;

@@ -1,8 +1,9 @@
 //! Constraints sorted by what they do.
 
-use pc_mech::{Constraint, Expr, Graph, Matrix, MechError, Multipliers, Neighbourhood, System};
+use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
 use crate::adapted::independent;
+use crate::binding::{Binding, Redundant};
 use crate::error::NonholoError;
 use crate::involutive::{Field, involutive_closure};
 
@@ -22,15 +23,6 @@ pub enum Kind {
     Nonlinear,
 }
 
-/// A constraint that says nothing new.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Redundant {
-    /// Its name.
-    pub constraint: String,
-    /// The constraints it follows from.
-    pub follows_from: Vec<String>,
-}
-
 /// Constraints of a system: those that bind it, each with its kind (Frobenius), and those that follow from them.
 #[derive(Clone, Debug)]
 pub struct Sorted<'g> {
@@ -40,7 +32,7 @@ pub struct Sorted<'g> {
 }
 
 impl<'g> Sorted<'g> {
-    /// Sorts the constraints of a system: by rank into binding and redundant ones, and by Frobenius' test into
+    /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by Frobenius' test into
     /// holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the velocities that all constraints allow,
     ///
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
@@ -62,27 +54,9 @@ impl<'g> Sorted<'g> {
         constraints: &[Constraint<'g>],
         at: &[(Expr<'g>, f64)],
     ) -> Result<Sorted<'g>, NonholoError> {
-        let (nonlinear, affine): (Vec<usize>, Vec<usize>) =
-            (0..constraints.len()).partition(|&a| constraints[a].is_nonlinear());
-        let (positions, velocities): (Vec<usize>, Vec<usize>) =
-            affine.into_iter().partition(|&a| constraints[a].is_holonomic(system));
-        let (mut binding, mut redundant) = (nonlinear, Vec::new());
-        let mut rows = Rows::default();
-        for a in positions.into_iter().chain(velocities) {
-            let constraint = &constraints[a];
-            match rows.add(system, constraint)? {
-                Addition::New => binding.push(a),
-                Addition::Follows(follows_from) => {
-                    redundant.push(Redundant { constraint: constraint.name().to_owned(), follows_from });
-                }
-                Addition::Contradicts(others) => {
-                    let constraint = constraint.name().to_owned();
-                    return Err(NonholoError::Contradictory { constraint, others });
-                }
-            }
-        }
-        binding.sort_unstable();
-        let binding: Vec<Constraint<'g>> = binding.into_iter().map(|a| constraints[a].clone()).collect();
+        let found = Binding::new(system, constraints, at)?;
+        let redundant = found.redundant().to_vec();
+        let binding: Vec<Constraint<'g>> = found.binding().iter().map(|&a| constraints[a].clone()).collect();
         if binding.is_empty() {
             return Ok(Sorted { multipliers: None, kinds: Vec::new(), redundant });
         }
@@ -180,51 +154,4 @@ fn allowed<'g>(
     let drift: Vec<Expr<'g>> = independent.iter().map(|_| Expr::ZERO).chain(rests.iter().copied()).collect();
     let change = system.frame().changed_by(&a, &drift).map_err(MechError::from)?;
     Ok((0..=l).map(|s| change.old_components(s)).collect())
-}
-
-/// Constraints so far: C_α and c_α0.
-#[derive(Default)]
-struct Rows<'g> {
-    names: Vec<String>,
-    rows: Vec<Vec<Expr<'g>>>,
-    whole: Vec<Vec<Expr<'g>>>,
-}
-
-enum Addition {
-    New,
-    Follows(Vec<String>),
-    Contradicts(Vec<String>),
-}
-
-impl<'g> Rows<'g> {
-    fn add(&mut self, system: &System<'g>, constraint: &Constraint<'g>) -> Result<Addition, NonholoError> {
-        let graph = system.graph();
-        let (row, rest) = constraint.coefficients(system)?;
-        let whole: Vec<Expr<'g>> = row.iter().copied().chain([rest]).collect();
-        let rank = |known: &[Vec<Expr<'g>>], more: &[Expr<'g>]| {
-            graph.generic_rank(&[known, std::slice::from_ref(&more.to_vec())].concat())
-        };
-        if rank(&self.rows, &row) > self.rows.len() {
-            self.names.push(constraint.name().to_owned());
-            self.rows.push(row);
-            self.whole.push(whole);
-            return Ok(Addition::New);
-        }
-        let others = self.depends_on(graph, &row);
-        Ok(if rank(&self.whole, &whole) > self.whole.len() {
-            Addition::Contradicts(others)
-        } else {
-            Addition::Follows(others)
-        })
-    }
-
-    /// The constraints that `row` is a combination of: without each of them it is not.
-    fn depends_on(&self, graph: &'g Graph, row: &[Expr<'g>]) -> Vec<String> {
-        let independent_without = |a: &usize| {
-            let mut rows = self.rows.clone();
-            rows[*a] = row.to_vec();
-            graph.generic_rank(&rows) == rows.len()
-        };
-        (0..self.rows.len()).filter(independent_without).map(|a| self.names[a].clone()).collect()
-    }
 }

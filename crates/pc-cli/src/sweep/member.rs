@@ -46,9 +46,9 @@ struct Prototype {
 
 impl Prototype {
     /// None where the equations may depend on the start or on the values of the parameters: momenta solved for
-    /// velocities near the start, constraints left out because they follow from others.
+    /// velocities near the start, constraints left out because they follow from others; or where the start has to be solved for.
     fn new(model: &Model, form: RunForm) -> Option<Prototype> {
-        if form != RunForm::Poincare {
+        if form != RunForm::Poincare || model.derives_start() {
             return None;
         }
         let graph = Graph::new();

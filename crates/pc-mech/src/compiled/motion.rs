@@ -11,6 +11,7 @@ use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::staged::Staged;
 use crate::compiled::surface::Surface;
+use crate::compiled::surface::holding::Held;
 use crate::compiled::unrolled::Unrolled;
 use crate::error::MechError;
 use crate::poincare::Equations;
@@ -239,6 +240,24 @@ impl Motion {
             kept.project(t, y, &self.parameters)?;
         }
         Ok(())
+    }
+
+    /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices left as they
+    /// are: the others follow by the shortest way in the kinetic metric.
+    ///
+    /// # Errors
+    /// A [`Failure`] where there is nothing to come to, or what is left to move is not enough.
+    pub fn project_holding(
+        &mut self,
+        t: f64,
+        y: &mut [f64],
+        coordinates: &[usize],
+        quasi_velocities: &[usize],
+    ) -> Result<(), Failure> {
+        let Some(surface) = &mut self.surface else { return Ok(()) };
+        let held = Held { coordinates, quasi_velocities };
+        let projected = surface.project_holding((t, y, &self.parameters), &held);
+        projected.map_err(|fault| self.failure(fault, t, y))
     }
 
     #[cold]

@@ -1,5 +1,7 @@
 //! The surface of the states that satisfy constraints, in numbers.
 
+pub(crate) mod holding;
+
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::fault::{Fault, check_finite};

@@ -4,7 +4,7 @@ use pc_mech::{Constraint, Expr, System};
 use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
 
 use super::Assembler;
-use super::trial::Trial;
+use super::trial::{StartHeld, Trial};
 use crate::bound::{Bound, Form, Held, Verdict};
 use crate::document::{self, ConstraintKind};
 use crate::error::ModelError;
@@ -15,14 +15,21 @@ use crate::scope::Stage;
 pub(super) struct Written<'g> {
     place: usize,
     value: Expr<'g>,
-    /// The quasi-velocity that it is, where it defines one.
+    /// Whether it is called nonlinear.
+    nonlinear: bool,
+    /// The quasi-velocity that it is, where it completes those defined.
     defines: Option<Expr<'g>>,
 }
 
 impl<'g> Written<'g> {
-    /// The quasi-velocity that it defines.
-    pub(super) fn defines(&self) -> Option<Expr<'g>> {
-        self.defines
+    /// Says that it is this quasi-velocity.
+    pub(super) fn define(&mut self, quasi_velocity: Expr<'g>) {
+        self.defines = Some(quasi_velocity);
+    }
+
+    /// Whether it is called nonlinear in the velocities.
+    pub(super) fn is_nonlinear(&self) -> bool {
+        self.nonlinear
     }
 
     /// Its place in the section.
@@ -37,25 +44,18 @@ impl<'g> Written<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The entries of `[constraints]`. Where quasi-velocities are defined by `is`, each constraint that is affine in some x'
-    /// defines one more.
+    /// The entries of `[constraints]`.
     pub(super) fn constraints(&mut self) -> Result<Vec<Written<'g>>, ModelError> {
-        let document = self.model.document();
-        let defining = document.quasi_velocities.iter().any(|q| q.is.is_some());
-        let velocities = self.scope.velocities();
         let mut written = Vec::new();
-        for (place, constraint) in document.constraints.iter().enumerate() {
+        for (place, constraint) in self.model.document().constraints.iter().enumerate() {
             let value = self.scope.resolve(&constraint.expression, Stage::Constraint)?;
-            let linear = !is_called_nonlinear(constraint);
-            let moves = linear && defining && velocities.iter().any(|&v| value.depends_on(v));
-            let defines = moves.then(|| self.graph.symbol(&self.unused(&constraint.name.text)));
-            written.push(Written { place, value, defines });
+            written.push(Written { place, value, nonlinear: is_called_nonlinear(constraint), defines: None });
         }
         Ok(written)
     }
 
     /// The name of a constraint, made longer where it is that of something else.
-    fn unused(&self, label: &str) -> String {
+    pub(super) fn unused(&self, label: &str) -> String {
         let document = self.model.document();
         let parameters = document.parameters.iter().map(|p| &p.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
@@ -76,6 +76,7 @@ impl<'g> Assembler<'g, '_> {
         x_dot: &[(Expr<'g>, Expr<'g>)],
         at: &[(Expr<'g>, f64)],
         (t_start, start): (f64, &mut Vec<f64>),
+        held: &StartHeld,
     ) -> Result<Bound<'g>, ModelError> {
         if written.is_empty() {
             return Ok(Bound::free());
@@ -89,7 +90,7 @@ impl<'g> Assembler<'g, '_> {
         let verdicts = self.verdicts(&sorted)?;
         let projects = self.model.projects_start();
         if projects || !sorted.redundant().is_empty() {
-            let nearest = trial.nearest(&sorted, start);
+            let nearest = trial.nearest(&sorted, start, held);
             if let Ok(nearest) = &nearest {
                 trial.check_redundant(&sorted, nearest)?;
             }
@@ -113,6 +114,8 @@ impl<'g> Assembler<'g, '_> {
         let (system, undetermined) = self.with_resultants(system, multipliers, &redundant)?;
         let multipliers =
             system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
+        // As many as are declared where these are completed, and independent then.
+        let multipliers = multipliers.preferring(&system.quasi_velocities()[..self.scope.quasi_velocities().len()]);
         let Some(vanishing) = vanishing else {
             let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
             let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);

@@ -3,7 +3,7 @@
 use pc_expr::{Direction, Expr};
 
 use super::Assembler;
-use crate::bound::{Bound, Form};
+use crate::bound::Bound;
 use crate::document::{self, NamedExpression};
 use crate::error::ModelError;
 use crate::event::Event;
@@ -66,20 +66,16 @@ impl<'g> Assembler<'g, '_> {
             };
             return match self.is_lagrangian_form() {
                 true => Ok(n + place),
-                false => refuse(self.not_reset(name, "a velocity that quasi-velocities give")),
+                false => refuse(self.not_reset(name, "a velocity that quasi-velocities give", bound)),
             };
         }
         if let Some(place) = place_of(name) {
             return Ok(place);
         }
         if let Some(place) = document.quasi_velocities.iter().position(|eta| eta.name.text == name) {
-            return match bound.form() {
-                Form::Vanishing(constrained)
-                    if constrained.vanishing().contains(&self.graph.symbol(name)) =>
-                {
-                    refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero"))
-                }
-                Form::Free | Form::Vanishing(_) | Form::Held(_) => Ok(n + place),
+            return match vanishes(bound, self.graph.symbol(name)) {
+                true => refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero", bound)),
+                false => Ok(n + place),
             };
         }
         let what = match () {
@@ -90,16 +86,25 @@ impl<'g> Assembler<'g, '_> {
             () if entry(&document.outputs, name).is_some() => "an output",
             () => "declared nowhere",
         };
-        refuse(self.not_reset(name, what))
+        refuse(self.not_reset(name, what, bound))
     }
 
-    fn not_reset(&self, name: &str, what: &'static str) -> Fault {
+    fn not_reset(&self, name: &str, what: &'static str, bound: &Bound<'g>) -> Fault {
         let document = self.model.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
         let velocities: Vec<String> = match self.is_lagrangian_form() {
             true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).collect(),
-            false => document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
+            false => {
+                let moving = |name: &&String| !vanishes(bound, self.graph.symbol(name.as_str()));
+                document.quasi_velocities.iter().map(|eta| &eta.name.text).filter(moving).cloned().collect()
+            }
         };
         Fault::NotReset { name: name.to_owned(), what, known: coordinates.chain(velocities).collect() }
     }
+}
+
+/// Whether a constraint says that this quasi-velocity vanishes, and no more.
+fn vanishes<'g>(bound: &Bound<'g>, eta: Expr<'g>) -> bool {
+    let constraints = bound.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
+    constraints.iter().any(|constraint| constraint.expression() == eta)
 }

@@ -4,14 +4,21 @@ use pc_mech::{AlgebraError, Expr, Frame};
 
 use super::Assembler;
 use super::constraints::Written;
-use crate::document::{Expression, NamedExpression};
+use crate::document::NamedExpression;
 use crate::error::ModelError;
 use crate::fault::Fault;
 use crate::scope::{Stage, entry};
 
 impl<'g> Assembler<'g, '_> {
     /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.
-    pub(super) fn frame(&mut self, constraints: &[Written<'g>]) -> Result<Frame<'g>, ModelError> {
+    ///
+    /// Definitions are completed by constraints, or by velocities, `at` the start: these are quasi-velocities after those that
+    /// are declared.
+    pub(super) fn frame(
+        &mut self,
+        constraints: &mut [Written<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<(Frame<'g>, Vec<Expr<'g>>), ModelError> {
         let document = self.model.document();
         let (time, x) = (self.graph.symbol("t"), self.scope.coordinates());
         if let Some(stray) =
@@ -20,11 +27,11 @@ impl<'g> Assembler<'g, '_> {
             return Err(self.not_a_coordinate(&stray.name));
         }
         let defined = document.quasi_velocities.iter().find(|q| q.is.is_some());
-        match (defined, document.kinematics.first()) {
+        let frame = match (defined, document.kinematics.first()) {
             (Some(defined), Some(_)) => Err(self
                 .model
                 .error(&defined.name.place, Fault::TwoKinematics { name: defined.name.text.clone() })),
-            (Some(_), None) => self.frame_of_definitions(time, x, constraints),
+            (Some(_), None) => return self.frame_of_definitions(time, x, constraints, at),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
             (None, None) if self.is_lagrangian_form() => Ok(Frame::coordinate(self.graph, time, x)),
             (None, None) if x.is_empty() => {
@@ -36,7 +43,8 @@ impl<'g> Assembler<'g, '_> {
                 let name = &document.quasi_velocities[0].name;
                 Err(self.model.error(&name.place, Fault::Undefined { name: name.text.clone() }))
             }
-        }
+        };
+        Ok((frame?, Vec::new()))
     }
 
     fn frame_of_kinematics(&mut self, time: Expr<'g>, x: Vec<Expr<'g>>) -> Result<Frame<'g>, ModelError> {
@@ -64,72 +72,5 @@ impl<'g> Assembler<'g, '_> {
             },
             other => self.model.algebra_error(other),
         })
-    }
-
-    fn frame_of_definitions(
-        &mut self,
-        time: Expr<'g>,
-        x: Vec<Expr<'g>>,
-        constraints: &[Written<'g>],
-    ) -> Result<Frame<'g>, ModelError> {
-        let document = self.model.document();
-        let mut definitions = Vec::new();
-        for quasi_velocity in &document.quasi_velocities {
-            let Some(is) = &quasi_velocity.is else {
-                let name = quasi_velocity.name.text.clone();
-                return Err(self.model.error(&quasi_velocity.name.place, Fault::Undefined { name }));
-            };
-            definitions.push(self.scope.resolve(is, Stage::Definition)?);
-        }
-        definitions.extend(constraints.iter().filter(|c| c.defines().is_some()).map(Written::value));
-        let place = &document.quasi_velocities[0].name.place;
-        if definitions.len() != x.len() {
-            let (definitions, coordinates) = (definitions.len(), x.len());
-            return Err(self.model.error(place, Fault::DefinitionCount { definitions, coordinates }));
-        }
-        let velocities = self.scope.velocities();
-        Frame::from_definitions(self.graph, time, x, &velocities, &definitions).map_err(|error| match error {
-            AlgebraError::DefinitionNotAffine { row, .. } => match self.definition(row - 1, constraints) {
-                Some((is, None)) => {
-                    let fault = |text| Fault::NotAffine { text, variables: "velocities" };
-                    self.scope.error(is, is.ast.span, fault)
-                }
-                Some((is, Some(constraint))) => {
-                    let fault = |text| Fault::ConstraintNotAffine { constraint: constraint.to_owned(), text };
-                    self.scope.error(is, is.ast.span, fault)
-                }
-                None => self.model.error(place, Fault::DependentDefinitions),
-            },
-            AlgebraError::SingularDefinitions => self.dependent(&definitions, constraints),
-            other => self.model.algebra_error(other),
-        })
-    }
-
-    /// The first definition that adds nothing to those before it: it may contain no velocity.
-    fn dependent(&self, definitions: &[Expr<'g>], constraints: &[Written<'g>]) -> ModelError {
-        let velocities = self.scope.velocities();
-        let slopes = |&definition: &Expr<'g>| self.graph.gradient(definition, &velocities);
-        let rows: Vec<Vec<Expr<'g>>> = definitions.iter().map(slopes).collect();
-        let row = (0..rows.len()).find(|&r| self.graph.generic_rank(&rows[..=r]) <= r).unwrap_or(0);
-        let at_rest = rows[row].iter().all(|slope| slope.is_zero());
-        let fault = |text| if at_rest { Fault::NoVelocity { text } } else { Fault::DependentDefinitions };
-        match self.definition(row, constraints) {
-            Some((is, _)) => self.scope.error(is, is.ast.span, fault),
-            None => self.model.error(&self.model.document().end(), Fault::DependentDefinitions),
-        }
-    }
-
-    /// The text of a definition: of a quasi-velocity, or after these of a constraint that defines one, with its name.
-    fn definition(&self, row: usize, constraints: &[Written<'g>]) -> Option<(&Expression, Option<&str>)> {
-        let document = self.model.document();
-        let defined = document.quasi_velocities.len();
-        match document.quasi_velocities.get(row) {
-            Some(quasi_velocity) => quasi_velocity.is.as_ref().map(|is| (is, None)),
-            None => {
-                let defining = constraints.iter().filter(|c| c.defines().is_some()).nth(row - defined)?;
-                let constraint = &document.constraints[defining.place()];
-                Some((&constraint.expression, Some(constraint.name.text.as_str())))
-            }
-        }
     }
 }

@@ -11,6 +11,36 @@ use crate::model::Model;
 /// whichever is larger, is rounding of the numbers it is written with.
 const OFF: f64 = 1e-8;
 
+/// The components of the start that are not moved to the constraints, by their indices.
+pub(super) struct StartHeld {
+    coordinates: Vec<usize>,
+    quasi_velocities: Vec<usize>,
+}
+
+impl StartHeld {
+    /// What is to be held of a model, and the first `prescribed` quasi-velocities.
+    pub(super) fn new(model: &Model, prescribed: usize) -> StartHeld {
+        let n = model.document().coordinates.len();
+        let (coordinates, named): (Vec<usize>, Vec<usize>) =
+            model.held_starts().iter().partition(|&&place| place < n);
+        let named = named.into_iter().map(|place| place - n);
+        let mut quasi_velocities: Vec<usize> = named.chain(0..prescribed).collect();
+        quasi_velocities.sort_unstable();
+        quasi_velocities.dedup();
+        StartHeld { coordinates, quasi_velocities }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.coordinates.is_empty() && self.quasi_velocities.is_empty()
+    }
+
+    fn names(&self, system: &System<'_>) -> Vec<String> {
+        let coordinates = self.coordinates.iter().map(|&i| system.frame().coordinates()[i]);
+        let eta = self.quasi_velocities.iter().map(|&s| system.quasi_velocities()[s]);
+        coordinates.chain(eta).map(|symbol| symbol.to_string()).collect()
+    }
+}
+
 /// The constraints of a model, to be tried at states of time `t`.
 pub(super) struct Trial<'a, 'g> {
     pub(super) model: &'a Model,
@@ -20,17 +50,35 @@ pub(super) struct Trial<'a, 'g> {
 }
 
 impl<'g> Trial<'_, 'g> {
-    /// The nearest state that satisfies the constraints that bind.
+    /// The nearest state that satisfies the constraints that bind, of those with the components that are held.
     ///
     /// # Errors
     /// [`ModelError`] if none is found.
-    pub(super) fn nearest(&self, sorted: &Sorted<'g>, state: &[f64]) -> Result<Vec<f64>, ModelError> {
+    pub(super) fn nearest(
+        &self,
+        sorted: &Sorted<'g>,
+        state: &[f64],
+        held: &StartHeld,
+    ) -> Result<Vec<f64>, ModelError> {
         let mut nearest = state.to_vec();
         let refused = |error: MechError| self.model.constraint_error(error.into());
         if let Some(multipliers) = sorted.multipliers() {
             let options = CompileOptions::default().jacobian(false);
             let mut motion = multipliers.compile_for(options).map_err(refused)?;
-            motion.project(self.t, &mut nearest).map_err(|failure| refused(failure.into()))?;
+            if held.is_empty() {
+                motion.project(self.t, &mut nearest).map_err(|failure| refused(failure.into()))?;
+            } else {
+                let (coordinates, eta) = (&held.coordinates, &held.quasi_velocities);
+                let moved = motion.project_holding(self.t, &mut nearest, coordinates, eta);
+                moved.map_err(|failure| match MechError::from(failure) {
+                    MechError::SingularConstraint { constraint, .. } => {
+                        let held = held.names(self.system);
+                        let fault = Fault::StartHeld { constraint: constraint.clone(), held };
+                        self.model.constraint_fault(&constraint, fault)
+                    }
+                    other => refused(other),
+                })?;
+            }
         }
         Ok(nearest)
     }

@@ -22,6 +22,8 @@ pub struct FlowEvents {
     resets: Vec<Reset>,
     /// The motion under constraints, which knows where they are satisfied.
     constraints: Option<Motion>,
+    /// The quasi-velocities that determine the others, and keep the values that resets give them.
+    determining: Vec<usize>,
 }
 
 /// Components of (x, η) and their new values.
@@ -67,7 +69,10 @@ impl FlowEvents {
             Ok(Reset { places, values: compiled(&values)? })
         });
         let held = matches!(assembly.bound.form(), Form::Held(_)) && !declared.is_empty();
+        // Those declared, where others were needed to complete them to a frame.
+        let completed = assembly.declared < system.quasi_velocities().len();
         Ok(FlowEvents {
+            determining: if completed { (0..assembly.declared).collect() } else { Vec::new() },
             events: declared.iter().map(event).collect(),
             reading: reading.clone(),
             functions: compiled(&functions)?,
@@ -121,7 +126,10 @@ impl Events for FlowEvents {
         if let Some(motion) = self.constraints.as_mut().filter(|_| all.iter().all(|value| value.is_finite()))
         {
             let given = all.clone();
-            motion.project(t, &mut all)?;
+            match self.determining.as_slice() {
+                [] => motion.project(t, &mut all)?,
+                determining => motion.project_holding(t, &mut all, &[], determining)?,
+            }
             for i in 0..motion.coordinates() {
                 let (given, allowed) = (given[i], all[i]);
                 if (given - allowed).abs() > OFF * given.abs().max(1.0) {

@@ -1,0 +1,161 @@
+//! The way to the surface on which some components of the state stay as they are.
+
+use pc_algebra::Matrix;
+
+use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::surface::{MOST_STEPS, Part, Surface};
+use crate::numeric::least_squares::LeastSquares;
+
+/// A combination of rows this small against them is rounding.
+const DEPENDENT: f64 = 1e-12;
+
+/// A step so short against the state is rounding.
+const SHORT: f64 = 1e-13;
+
+/// The components of a state (x, η) that are not to be moved, by their indices among the x and among the η.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Held<'a> {
+    pub(crate) coordinates: &'a [usize],
+    pub(crate) quasi_velocities: &'a [usize],
+}
+
+impl Surface {
+    /// Moves what is not `held` of `y` to the surface, x and then η, by the shortest steps δπ in the kinetic metric with
+    ///
+    ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 of the x_i held,   and   C δη = −g,   δη_s = 0 of the η_s held.
+    ///
+    /// # Errors
+    /// [`Fault::NoProjection`] if the way leads nowhere; [`Fault::Constraint`] for a constraint that what is held leaves
+    /// nothing to restrict.
+    pub(crate) fn project_holding(
+        &mut self,
+        (t, y, p): (f64, &mut [f64], &[f64]),
+        held: &Held<'_>,
+    ) -> Result<(), Fault> {
+        if !self.places.is_empty() {
+            self.project_part_holding(Part::Position, (t, y, p), held)?;
+        }
+        self.project_part_holding(Part::Velocity, (t, y, p), held)
+    }
+
+    fn project_part_holding(
+        &mut self,
+        part: Part,
+        (t, y, p): (f64, &mut [f64], &[f64]),
+        held: &Held<'_>,
+    ) -> Result<(), Fault> {
+        let n = self.coordinates;
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
+        for _ in 0..MOST_STEPS {
+            self.measured(part).try_eval((t, y, p))?;
+            if self.measured(part).in_errors() <= 1.0 {
+                return Ok(());
+            }
+            self.bordered.eval(t, y, p, &mut self.entries);
+            check_finite(&self.entries, &self.bordered, (t, y, p))?;
+            let fixed = match part {
+                Part::Position => self.displacements_of(held.coordinates, (t, y, p)),
+                Part::Velocity => self.units(held.quasi_velocities),
+            };
+            let step = self.shortest(part, fixed)?;
+            self.change[..self.k].copy_from_slice(&step);
+            let (range, moved) = match part {
+                Part::Position => (0..n, self.moved(part, t, y, p)),
+                Part::Velocity => (n..y.len(), step),
+            };
+            let still: &[usize] = if part == Part::Position { held.coordinates } else { &[] };
+            for (i, (y, moved)) in y[range.clone()].iter_mut().zip(&moved).enumerate() {
+                *y += if still.contains(&i) { 0.0 } else { *moved };
+            }
+            if largest(&moved) <= SHORT * largest(&y[range]) {
+                return Ok(());
+            }
+        }
+        Err(Fault::NoProjection { unknowns: self.k })
+    }
+
+    /// The rows b_i of some coordinates.
+    fn displacements_of(
+        &mut self,
+        coordinates: &[usize],
+        (t, y, p): (f64, &[f64], &[f64]),
+    ) -> Vec<Vec<f64>> {
+        let n = self.coordinates;
+        let mut rows = vec![vec![0.0; self.k]; coordinates.len()];
+        let mut column = vec![0.0; n];
+        for s in 0..if coordinates.is_empty() { 0 } else { self.k } {
+            self.displaced[..n].copy_from_slice(&y[..n]);
+            self.displaced[n..].fill(0.0);
+            self.displaced[n + s] = 1.0;
+            self.displacements.eval(t, &self.displaced, p, &mut column);
+            rows.iter_mut().zip(coordinates).for_each(|(row, &i)| row[s] = column[i]);
+        }
+        rows
+    }
+
+    fn units(&self, held: &[usize]) -> Vec<Vec<f64>> {
+        held.iter().map(|&held| (0..self.k).map(|s| f64::from(u8::from(s == held))).collect()).collect()
+    }
+
+    /// The δ with the least ½ δᵀ M δ that the values of a part call for and that leaves `fixed` · δ = 0, from
+    ///
+    ///   M δ + Aᵀ μ = 0,   A δ = α,
+    ///
+    /// measured in units in which the diagonal of M, and the rows of A, have length one.
+    fn shortest(&self, part: Part, fixed: Vec<Vec<f64>>) -> Result<Vec<f64>, Fault> {
+        let k = self.k;
+        let mut mass = vec![vec![0.0; k]; k];
+        let mut c = vec![vec![0.0; k]; self.velocities.values().len()];
+        for ((i, j), &entry) in self.lower.entries().zip(&self.entries) {
+            match i.checked_sub(k) {
+                Some(a) if j < k => c[a][j] = -entry,
+                Some(_) => {}
+                None => (mass[i][j], mass[j][i]) = (entry, entry),
+            }
+        }
+        let diagonal = || (0..k).map(|s| mass[s][s].abs());
+        let lightest = diagonal().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
+        let lightest = if lightest.is_finite() { lightest } else { 1.0 };
+        let units: Vec<f64> =
+            diagonal().map(|mass| if mass > 0.0 { mass } else { lightest }.sqrt().recip()).collect();
+        let (indices, values) = match part {
+            Part::Position => (self.places.clone(), self.positions.values()),
+            Part::Velocity => ((0..c.len()).collect(), self.velocities.values()),
+        };
+        let demanded = indices.iter().map(|&a| c[a].clone()).zip(values.iter().map(|value| -value));
+        let held = fixed.len();
+        let (mut rows, mut right) = (Vec::new(), Vec::new());
+        for (row, value) in fixed.into_iter().zip(std::iter::repeat(0.0)).chain(demanded) {
+            let row: Vec<f64> = row.iter().zip(&units).map(|(entry, unit)| entry * unit).collect();
+            let size = row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
+            let size = if size > 0.0 { size } else { 1.0 };
+            rows.push(row.iter().map(|entry| entry / size).collect::<Vec<_>>());
+            right.push(value / size);
+        }
+        let failed = |_| Fault::NoProjection { unknowns: k };
+        let rank = |count: usize| -> Result<usize, Fault> {
+            let first = Matrix::from_fn(count, k, |a, s| rows[a][s]);
+            Ok(LeastSquares::of(&first).map_err(failed)?.rank(DEPENDENT))
+        };
+        let of_held = rank(held)?;
+        if rank(rows.len())? < of_held + indices.len() {
+            let mut before = of_held;
+            for (place, &index) in indices.iter().enumerate() {
+                let now = rank(held + place + 1)?;
+                if now == before {
+                    return Err(Fault::Constraint { index: k + index });
+                }
+                before = now;
+            }
+        }
+        let bordered = Matrix::from_fn(k + rows.len(), k + rows.len(), |i, j| match (i < k, j < k) {
+            (true, true) => mass[i][j] * units[i] * units[j],
+            (false, true) => rows[i - k][j],
+            (true, false) => rows[j - k][i],
+            (false, false) => 0.0,
+        });
+        let right: Vec<f64> = std::iter::repeat_n(0.0, k).chain(right).collect();
+        let solved = LeastSquares::of(&bordered).map_err(failed)?.shortest(&right, DEPENDENT);
+        Ok(solved[..k].iter().zip(&units).map(|(step, unit)| step * unit).collect())
+    }
+}

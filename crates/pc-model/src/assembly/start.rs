@@ -1,0 +1,219 @@
+//! The start of a motion from what is given of it.
+
+use pc_algebra::affine;
+use pc_mech::{Expr, Frame};
+
+use super::Assembler;
+use super::constraints::Written;
+use crate::document::Expression;
+use crate::error::ModelError;
+use crate::fault::Fault;
+use crate::scope::{Stage, entry};
+
+/// What is left of a unit vector that depends on others, beside rounding.
+const DEPENDENT: f64 = 1e-9;
+
+/// A velocity that misses another by less than this, absolute or relative whichever is larger, is that one.
+const OFF: f64 = 1e-8;
+
+/// The start as it is given.
+pub(super) struct Given {
+    /// Coordinates, then declared quasi-velocities, or velocities where none is; zero where nothing is given.
+    pub(super) values: Vec<f64>,
+    /// Whether a value is given for each.
+    is_given: Vec<bool>,
+    /// Velocities of coordinates beside quasi-velocities, by their places among `start_velocities`.
+    velocities: Vec<f64>,
+}
+
+impl<'g> Assembler<'g, '_> {
+    /// The start values of the text, or those that replace them.
+    pub(super) fn given_start(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<Given, ModelError> {
+        let document = self.model.document();
+        let (mut values, mut is_given, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+        for coordinate in &document.coordinates {
+            values.push(self.start_value(&coordinate.expression, parameters)?);
+            is_given.push(true);
+        }
+        for quasi_velocity in &document.quasi_velocities {
+            let start = quasi_velocity.start.as_ref();
+            values.push(start.map_or(Ok(0.0), |start| self.start_value(start, parameters))?);
+            is_given.push(start.is_some());
+        }
+        for velocity in &document.start_velocities {
+            if entry(&document.coordinates, &velocity.name.text).is_none() {
+                return Err(self.not_a_coordinate(&velocity.name));
+            }
+            velocities.push(self.start_value(&velocity.expression, parameters)?);
+        }
+        if self.is_lagrangian_form() {
+            let names = || document.start_velocities.iter().map(|velocity| &velocity.name.text);
+            for coordinate in &document.coordinates {
+                let place = names().position(|name| *name == coordinate.name.text);
+                values.push(place.map_or(0.0, |place| velocities[place]));
+                is_given.push(true);
+            }
+            velocities.clear();
+        }
+        for &(place, value) in self.model.overridden_starts() {
+            (values[place], is_given[place]) = (value, true);
+        }
+        Ok(Given { values, is_given, velocities })
+    }
+
+    fn start_value(
+        &mut self,
+        expression: &Expression,
+        parameters: &[(Expr<'g>, f64)],
+    ) -> Result<f64, ModelError> {
+        let value = self.scope.resolve(expression, Stage::Start)?;
+        let values = self.graph.evaluate(&[value], parameters);
+        let value = values.map_or(f64::NAN, |values| values[0]); // parameters are all there can be in it
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let fault = |text| Fault::NotFinite { text, value, state: Vec::new() };
+        Err(self.scope.error(expression, expression.ast.span, fault))
+    }
+
+    /// Coordinates and all quasi-velocities `eta` of the frame at the start. Those that are not given follow from given
+    /// velocities, b η + b_0 = x', and from the constraints; where these leave them open, those declared are zero.
+    ///
+    /// # Errors
+    /// [`Fault::StartVelocity`] for a velocity that the others contradict; [`Fault::StartOpen`] where those that complete the
+    /// definitions are left open.
+    pub(super) fn start_state(
+        &self,
+        frame: &Frame<'g>,
+        eta: &[Expr<'g>],
+        constraints: &[Written<'g>],
+        at: &[(Expr<'g>, f64)],
+        given: Given,
+    ) -> Result<Vec<f64>, ModelError> {
+        let (n, declared) = (frame.coordinates().len(), given.values.len() - frame.coordinates().len());
+        let mut start = given.values.clone();
+        start.resize(n + eta.len(), 0.0);
+        let velocities = self.scope.velocities();
+        let is_complete = eta[declared..].iter().all(|extra| !velocities.contains(extra));
+        if self.is_lagrangian_form() || (is_complete && given.velocities.is_empty()) {
+            return Ok(start);
+        }
+        let unit = |s: usize| (0..eta.len()).map(|r| f64::from(u8::from(r == s))).collect::<Vec<f64>>();
+        let mut equations = Equations::default();
+        for s in (0..declared).filter(|&s| given.is_given[n + s]) {
+            equations.add(&unit(s), start[n + s]);
+        }
+        for (row, rest) in constraints.iter().filter_map(|c| self.condition(c, frame, eta)) {
+            let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
+            if let Some((rest, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite())) {
+                equations.add(row, -rest); // one that is contradicted is off at the start, which is looked at later
+            }
+        }
+        self.add_velocities(&mut equations, frame, at, &given.velocities)?;
+        for s in (0..declared).filter(|&s| !given.is_given[n + s]) {
+            equations.add(&unit(s), 0.0);
+        }
+        let open: Vec<String> =
+            (0..eta.len()).filter(|&s| equations.leaves_open(&unit(s))).map(|s| eta[s].to_string()).collect();
+        if !open.is_empty() {
+            let place = &self.model.document().quasi_velocities[0].name.place;
+            return Err(self.model.error(place, Fault::StartOpen { velocities: open }));
+        }
+        let solution = equations.solution(eta.len());
+        for (s, value) in solution.into_iter().enumerate() {
+            if s >= declared || !given.is_given[n + s] {
+                start[n + s] = value;
+            }
+        }
+        Ok(start)
+    }
+
+    /// b η = x' − b_0 of the velocities given.
+    fn add_velocities(
+        &self,
+        equations: &mut Equations,
+        frame: &Frame<'g>,
+        at: &[(Expr<'g>, f64)],
+        velocities: &[f64],
+    ) -> Result<(), ModelError> {
+        let document = self.model.document();
+        for (velocity, &given) in document.start_velocities.iter().zip(velocities) {
+            let Some(i) = document.coordinates.iter().position(|x| x.name.text == velocity.name.text) else {
+                continue;
+            };
+            let row = [frame.b().row(i), &frame.b0()[i..=i]].concat();
+            let values = self.graph.evaluate(&row, at).unwrap_or_default();
+            let Some((drift, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite())) else {
+                continue;
+            };
+            if let Some(found) = equations.add(row, given - drift) {
+                let (coordinate, found) = (velocity.name.text.clone(), found + drift);
+                let fault = Fault::StartVelocity { coordinate, given, found };
+                return Err(self.model.error(&velocity.expression.whole(), fault));
+            }
+        }
+        Ok(())
+    }
+
+    /// C and c_0 of a constraint in the quasi-velocities of the frame; none of what is not affine.
+    fn condition(
+        &self,
+        written: &Written<'g>,
+        frame: &Frame<'g>,
+        eta: &[Expr<'g>],
+    ) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
+        let graph = self.graph;
+        let rates = frame.velocities(eta);
+        let put: Vec<_> = self.scope.velocities().into_iter().zip(rates.iter().copied()).collect();
+        let value = graph.substitute(&[written.value()], &put)[0];
+        let along: Vec<_> =
+            frame.coordinates().iter().copied().zip(rates).chain([(frame.time(), Expr::ONE)]).collect();
+        let on_velocities = eta.iter().any(|&eta| value.depends_on(eta));
+        let velocity = if on_velocities { value } else { graph.directional(&[value], &along)[0] };
+        if written.is_nonlinear() { None } else { affine(graph, velocity, eta) }
+    }
+}
+
+/// Linear equations, each freed of those before it and of length one.
+#[derive(Default)]
+struct Equations {
+    rows: Vec<(Vec<f64>, f64)>,
+}
+
+impl Equations {
+    /// Adds row · η = value. Where those before it say what row · η is, and that is another value: that value.
+    fn add(&mut self, row: &[f64], value: f64) -> Option<f64> {
+        let length = norm(row);
+        let (rest, missing) = self.rest(row, value);
+        let left = norm(&rest);
+        if left > DEPENDENT * length {
+            self.rows.push((rest.iter().map(|entry| entry / left).collect(), missing / left));
+            return None;
+        }
+        (missing.abs() > OFF * value.abs().max(length).max(1.0)).then_some(value - missing)
+    }
+
+    /// What is left of an equation beside those there are.
+    fn rest(&self, row: &[f64], value: f64) -> (Vec<f64>, f64) {
+        let (mut rest, mut missing) = (row.to_vec(), value);
+        // Twice is enough.
+        for (known, right) in self.rows.iter().chain(&self.rows) {
+            let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
+            rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
+            missing -= along * right;
+        }
+        (rest, missing)
+    }
+
+    fn leaves_open(&self, row: &[f64]) -> bool {
+        norm(&self.rest(row, 0.0).0) > DEPENDENT
+    }
+
+    fn solution(&self, unknowns: usize) -> Vec<f64> {
+        (0..unknowns).map(|s| self.rows.iter().map(|(row, right)| row[s] * right).sum()).collect()
+    }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().fold(0.0f64, |size, value| size.hypot(*value))
+}

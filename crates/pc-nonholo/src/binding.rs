@@ -1,0 +1,342 @@
+//! Which constraints bind a system, and which follow from these.
+
+use pc_mech::{Constraint, Expr, Graph, System};
+
+use crate::error::NonholoError;
+use crate::positions::{Place, Positions, norm};
+
+/// What is left of a unit vector that depends on others, at a place where constraints hold to rounding: the root of it.
+const DEPENDENT: f64 = 1e-7;
+
+/// What is left, in units of displacements, of a condition on positions that follows from others.
+const FOLLOWS: f64 = 1e-9;
+
+/// The number of places at which constraints are looked at that are dependent where the motion starts.
+const PLACES: u64 = 6;
+
+/// A constraint that says nothing new.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Redundant {
+    /// Its name.
+    pub constraint: String,
+    /// The constraints it follows from.
+    pub follows_from: Vec<String>,
+}
+
+/// Constraints told apart by rank: those that bind a system, and those that follow from them.
+///
+/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 = X_0 f. What is
+/// dependent at almost all states is found exactly. A mechanism with more members than it needs has conditions that are
+/// dependent only where all of them hold: where the start shows this, it is looked at in numbers at places around it that
+/// satisfy all conditions on positions, and one of these follows if it vanishes wherever, near the start, those before it
+/// do.
+///
+/// ```
+/// use pc_mech::{Constraint, Graph, System};
+/// use pc_nonholo::Binding;
+///
+/// // Two cranks on one pin (x, y): the second is as good as a bar that keeps a = b, and one condition is too many.
+/// let graph = Graph::new();
+/// let cranks = System::builder(&graph)
+///     .coordinates(["a", "b", "x", "y"])
+///     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square() + v[3].square()) / 2.0)
+///     .build()?;
+/// let [t, a, b, x, y] = graph.symbols(["t", "a", "b", "x", "y"]);
+/// let pin = [
+///     Constraint::new("x of a", x - a.sin()),
+///     Constraint::new("y of a", y + a.cos()),
+///     Constraint::new("x of b", x - b.sin()),
+///     Constraint::new("y of b", y + b.cos()),
+/// ];
+/// let start = [(t, 0.0), (a, 0.5), (b, 0.5), (x, 0.5f64.sin()), (y, -0.5f64.cos())];
+/// let binding = Binding::new(&cranks, &pin, &start)?;
+/// assert_eq!(binding.binding(), [0, 1, 2]);
+/// assert_eq!(binding.redundant()[0].constraint, "y of b");
+/// # Ok::<(), pc_nonholo::NonholoError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Binding {
+    binding: Vec<usize>,
+    redundant: Vec<Redundant>,
+}
+
+impl Binding {
+    /// That of the constraints of a system; positions come first: a condition on velocities may follow from them, but never
+    /// the other way round. [Nonlinear](Constraint::nonlinear) ones bind and count for no other.
+    ///
+    /// `at` are values of time and coordinates where the motion starts, and may be of more.
+    ///
+    /// # Errors
+    /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others;
+    /// [`MechError::ConstraintNotAffine`](pc_mech::MechError::ConstraintNotAffine).
+    pub fn new<'g>(
+        system: &System<'g>,
+        constraints: &[Constraint<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Binding, NonholoError> {
+        let (nonlinear, affine): (Vec<usize>, Vec<usize>) =
+            (0..constraints.len()).partition(|&a| constraints[a].is_nonlinear());
+        let (positions, velocities): (Vec<usize>, Vec<usize>) =
+            affine.into_iter().partition(|&a| constraints[a].is_holonomic(system));
+        let mut found = Found { system, constraints, rows: Rows::default(), redundant: Vec::new(), open: Vec::new() };
+        for a in positions.into_iter().chain(velocities) {
+            found.add(a)?;
+        }
+        found.look_where_they_hold(at)?;
+        if let Some((a, others)) = found.open.into_iter().next() {
+            return Err(NonholoError::Contradictory { constraint: constraints[a].name().to_owned(), others });
+        }
+        let mut binding = [nonlinear, found.rows.places].concat();
+        binding.sort_unstable();
+        Ok(Binding { binding, redundant: found.redundant })
+    }
+
+    /// The indices of those that bind, rising.
+    pub fn binding(&self) -> &[usize] {
+        &self.binding
+    }
+
+    /// Those that follow from others.
+    pub fn redundant(&self) -> &[Redundant] {
+        &self.redundant
+    }
+}
+
+/// Constraints that are independent at almost all states: C_α and c_α0.
+#[derive(Default)]
+struct Rows<'g> {
+    places: Vec<usize>,
+    rows: Vec<Vec<Expr<'g>>>,
+    whole: Vec<Vec<Expr<'g>>>,
+}
+
+struct Found<'a, 'g> {
+    system: &'a System<'g>,
+    constraints: &'a [Constraint<'g>],
+    rows: Rows<'g>,
+    redundant: Vec<Redundant>,
+    /// Those on velocities that, at almost all states, none satisfies together with others, and these.
+    open: Vec<(usize, Vec<String>)>,
+}
+
+impl<'g> Found<'_, 'g> {
+    /// Adds a constraint by its rank at almost all states.
+    fn add(&mut self, a: usize) -> Result<(), NonholoError> {
+        let (graph, constraint) = (self.system.graph(), &self.constraints[a]);
+        let (row, whole) = self.coefficients(a)?;
+        let rank = |known: &[Vec<Expr<'g>>], more: &[Expr<'g>]| {
+            graph.generic_rank(&[known, std::slice::from_ref(&more.to_vec())].concat())
+        };
+        if rank(&self.rows.rows, &row) > self.rows.rows.len() {
+            self.rows.places.push(a);
+            self.rows.rows.push(row);
+            self.rows.whole.push(whole);
+            return Ok(());
+        }
+        let name = constraint.name().to_owned();
+        let others = self.named(self.rows.depends_on(graph, &row));
+        if rank(&self.rows.whole, &whole) == self.rows.whole.len() {
+            self.redundant.push(Redundant { constraint: name, follows_from: others });
+        } else if constraint.is_holonomic(self.system) || !self.has_positions() {
+            return Err(NonholoError::Contradictory { constraint: name, others });
+        } else {
+            self.open.push((a, others));
+        }
+        Ok(())
+    }
+
+    /// C, and C and c_0.
+    fn coefficients(&self, a: usize) -> Result<(Vec<Expr<'g>>, Vec<Expr<'g>>), NonholoError> {
+        let (row, rest) = self.constraints[a].coefficients(self.system)?;
+        let whole = row.iter().copied().chain([rest]).collect();
+        Ok((row, whole))
+    }
+
+    fn has_positions(&self) -> bool {
+        self.rows.places.iter().any(|&a| self.constraints[a].is_holonomic(self.system))
+    }
+
+    fn named(&self, places: Vec<usize>) -> Vec<String> {
+        places.into_iter().map(|a| self.constraints[a].name().to_owned()).collect()
+    }
+
+    /// Looks for those that depend on others where all conditions on positions hold, if there are such at the start.
+    fn look_where_they_hold(&mut self, at: &[(Expr<'g>, f64)]) -> Result<(), NonholoError> {
+        let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
+            return Ok(());
+        };
+        let holonomic: Vec<usize> =
+            self.rows.places.iter().copied().filter(|&a| self.constraints[a].is_holonomic(self.system)).collect();
+        let positions = self.positions(&holonomic);
+        let on = |place: &Place| if positions.off(place) <= FOLLOWS { Some(place.clone()) } else { positions.near(place) };
+        let Some(start) = on(&start) else { return Ok(()) };
+        let Some(here) = self.at(&positions, std::slice::from_ref(&start)) else { return Ok(()) };
+        let mut span = Span::default();
+        if self.open.is_empty() && here[0].iter().all(|whole| span.add(&whole[..whole.len() - 1])) {
+            return Ok(());
+        }
+        let places: Vec<Place> =
+            (0..PLACES).filter_map(|index| positions.near(&start.varied(index))).collect();
+        let Some(values) = self.at(&positions, &places).filter(|values| values.len() > 1) else { return Ok(()) };
+        self.drop_dependent(&values, &start)
+    }
+
+    /// Time and coordinates of `at`.
+    fn start(&self, at: &[(Expr<'g>, f64)]) -> Option<Place> {
+        let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol).map(|&(_, value)| value);
+        let frame = self.system.frame();
+        let x = frame.coordinates().iter().map(|&x| value(x)).collect::<Option<Vec<f64>>>()?;
+        Some(Place { t: value(frame.time()).unwrap_or(0.0), x })
+    }
+
+    fn positions(&self, places: &[usize]) -> Positions<'g> {
+        let functions: Vec<Expr<'g>> = places.iter().map(|&a| self.constraints[a].expression()).collect();
+        Positions::new(self.system, &functions)
+    }
+
+    /// C and c_0 of the independent constraints, then of the open ones, at each of the places.
+    fn at(&self, positions: &Positions<'g>, places: &[Place]) -> Option<Vec<Vec<Vec<f64>>>> {
+        let width = self.system.quasi_velocities().len() + 1;
+        let mut whole: Vec<Expr<'g>> = self.rows.whole.iter().flatten().copied().collect();
+        for (a, _) in &self.open {
+            whole.extend(self.coefficients(*a).ok()?.1);
+        }
+        places
+            .iter()
+            .map(|place| Some(positions.evaluate(&whole, place)?.chunks(width).map(<[f64]>::to_vec).collect()))
+            .collect()
+    }
+
+    /// Keeps those that are independent at some of the places, and those that do not vanish where the ones before them do.
+    fn drop_dependent(&mut self, values: &[Vec<Vec<f64>>], start: &Place) -> Result<(), NonholoError> {
+        let rows = std::mem::take(&mut self.rows);
+        let (mut spans, mut kept) = (Spans::at(values.len()), Vec::new());
+        let coefficients = rows.rows.into_iter().zip(rows.whole);
+        for (index, (&a, (row, whole))) in rows.places.iter().zip(coefficients).enumerate() {
+            let of_index: Vec<&[f64]> = values.iter().map(|place| place[index].as_slice()).collect();
+            let holonomic = self.constraints[a].is_holonomic(self.system);
+            let is_new = spans.is_new(&of_index);
+            if is_new || (holonomic && !self.vanishes(a, start)) {
+                spans.add(&of_index);
+                kept.push(index);
+                self.rows.places.push(a);
+                self.rows.rows.push(row);
+                self.rows.whole.push(whole);
+                continue;
+            }
+            self.settle(a, values, &kept, &of_index)?;
+        }
+        let first = rows.places.len();
+        for (offset, (a, others)) in std::mem::take(&mut self.open).into_iter().enumerate() {
+            let of_open: Vec<&[f64]> = values.iter().map(|place| place[first + offset].as_slice()).collect();
+            if spans.is_new(&of_open) {
+                self.open.push((a, others));
+            } else {
+                self.settle(a, values, &kept, &of_open)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Drops a constraint whose coefficients depend on those `kept`, if its rest does.
+    fn settle(
+        &mut self,
+        a: usize,
+        values: &[Vec<Vec<f64>>],
+        kept: &[usize],
+        of_it: &[&[f64]],
+    ) -> Result<(), NonholoError> {
+        let depends = |indices: &[usize], whole: bool| {
+            values.iter().zip(of_it).all(|(place, row)| {
+                let width = row.len() - usize::from(!whole);
+                let mut span = Span::default();
+                indices.iter().for_each(|&index| {
+                    span.add(&place[index][..width]);
+                });
+                !span.is_new(&row[..width])
+            })
+        };
+        let needed = kept.iter().enumerate().filter(|&(place, _)| {
+            let others: Vec<usize> = [&kept[..place], &kept[place + 1..]].concat();
+            !depends(&others, false)
+        });
+        let needed: Vec<usize> = needed.map(|(place, _)| self.rows.places[place]).collect();
+        let (constraint, others) = (self.constraints[a].name().to_owned(), self.named(needed));
+        if !depends(kept, true) {
+            return Err(NonholoError::Contradictory { constraint, others });
+        }
+        self.redundant.push(Redundant { constraint, follows_from: others });
+        Ok(())
+    }
+
+    /// Whether a condition on positions vanishes wherever, around the start, those kept do.
+    fn vanishes(&self, a: usize, start: &Place) -> bool {
+        let holonomic = self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
+        let (kept, own) = (self.positions(&holonomic.collect::<Vec<_>>()), self.positions(&[a]));
+        let places: Vec<Place> = (0..PLACES).filter_map(|index| kept.near(&start.varied(index))).collect();
+        places.len() > 1 && places.iter().all(|place| own.off(place) <= FOLLOWS)
+    }
+}
+
+impl<'g> Rows<'g> {
+    /// The constraints that `row` is a combination of: without each of them it is not.
+    fn depends_on(&self, graph: &'g Graph, row: &[Expr<'g>]) -> Vec<usize> {
+        let independent_without = |a: &usize| {
+            let mut rows = self.rows.clone();
+            rows[*a] = row.to_vec();
+            graph.generic_rank(&rows) == rows.len()
+        };
+        (0..self.rows.len()).filter(independent_without).map(|a| self.places[a]).collect()
+    }
+}
+
+/// What vectors span, by an orthonormal basis.
+#[derive(Clone, Default)]
+struct Span(Vec<Vec<f64>>);
+
+impl Span {
+    /// What of a vector, as of length one, is orthogonal to all; none if that is rounding.
+    fn rest(&self, vector: &[f64]) -> Option<Vec<f64>> {
+        let unit = |vector: &[f64]| {
+            let length = norm(vector);
+            (length > 0.0).then(|| vector.iter().map(|entry| entry / length).collect::<Vec<f64>>())
+        };
+        let mut rest = unit(vector)?;
+        // Twice is enough [W. Kahan, B. N. Parlett].
+        for known in self.0.iter().chain(&self.0) {
+            let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
+            rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
+        }
+        if norm(&rest) > DEPENDENT { unit(&rest) } else { None }
+    }
+
+    fn is_new(&self, vector: &[f64]) -> bool {
+        self.rest(vector).is_some()
+    }
+
+    fn add(&mut self, vector: &[f64]) -> bool {
+        let rest = self.rest(vector);
+        let is_new = rest.is_some();
+        self.0.extend(rest);
+        is_new
+    }
+}
+
+/// The spans of the coefficients C, without c_0, at several places.
+struct Spans(Vec<Span>);
+
+impl Spans {
+    fn at(places: usize) -> Spans {
+        Spans(vec![Span::default(); places])
+    }
+
+    fn is_new(&self, rows: &[&[f64]]) -> bool {
+        self.0.iter().zip(rows).any(|(span, row)| span.is_new(&row[..row.len() - 1]))
+    }
+
+    fn add(&mut self, rows: &[&[f64]]) {
+        for (span, row) in self.0.iter_mut().zip(rows) {
+            span.add(&row[..row.len() - 1]);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! States near one given that satisfy conditions on positions, in numbers.
+
+use pc_mech::{Expr, Graph, LeastSquares, Matrix, System};
+
+/// The steps by which a condition that can be satisfied nearby is satisfied, quadratic convergence once near.
+const MOST_STEPS: usize = 60;
+
+/// How often a step that leads nowhere is shortened.
+const SHORTENINGS: usize = 12;
+
+/// What rounding leaves of conditions that are satisfied, in units of the displacements that would do it.
+const SATISFIED: f64 = 1e-11;
+
+/// The part of themselves by which coordinates are varied.
+const VARIED: f64 = 0.01;
+
+/// Conditions f(t, x) = 0 on the positions of a system, none of which need be independent of the others.
+pub(crate) struct Positions<'g> {
+    graph: &'g Graph,
+    time: Expr<'g>,
+    x: Vec<Expr<'g>>,
+    /// f, then the ∂f/∂x, row after row.
+    values: Vec<Expr<'g>>,
+    count: usize,
+    parameters: Vec<(Expr<'g>, f64)>,
+}
+
+/// A time and the coordinates at it.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) t: f64,
+    pub(crate) x: Vec<f64>,
+}
+
+impl Place {
+    /// A place near this one, another for each `index`; the same in each run.
+    pub(crate) fn varied(&self, index: u64) -> Place {
+        let scale = self.scale();
+        let mut random = Random(index.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
+        let mut vary = |x: f64| x + VARIED * x.abs().clamp(VARIED * scale, 1.0) * random.next();
+        Place { t: vary(self.t), x: self.x.iter().map(|&x| vary(x)).collect() }
+    }
+
+    /// The largest of the coordinates, up to 1; 1 where all are zero.
+    fn scale(&self) -> f64 {
+        let largest = self.x.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        if largest == 0.0 { 1.0 } else { largest.min(1.0) }
+    }
+}
+
+impl<'g> Positions<'g> {
+    pub(crate) fn new(system: &System<'g>, functions: &[Expr<'g>]) -> Positions<'g> {
+        let (graph, frame) = (system.graph(), system.frame());
+        let x = frame.coordinates().to_vec();
+        let slopes = functions.iter().flat_map(|&f| graph.gradient(f, &x));
+        let values = functions.iter().copied().chain(slopes.collect::<Vec<_>>()).collect();
+        let parameters = system.parameters().to_vec();
+        Positions { graph, time: frame.time(), x, values, count: functions.len(), parameters }
+    }
+
+    /// Expressions of time, coordinates and parameters at a place; none where one is not finite.
+    pub(crate) fn evaluate(&self, expressions: &[Expr<'g>], at: &Place) -> Option<Vec<f64>> {
+        let state = self.x.iter().copied().zip(at.x.iter().copied());
+        let values: Vec<_> =
+            self.parameters.iter().copied().chain([(self.time, at.t)]).chain(state).collect();
+        let found = self.graph.evaluate(expressions, &values).ok()?;
+        found.iter().all(|value| value.is_finite()).then_some(found)
+    }
+
+    /// f and ∂f/∂x, each row divided by its size in `sizes`.
+    fn at(&self, place: &Place, sizes: &[f64]) -> Option<(Vec<f64>, Matrix<f64>)> {
+        let values = self.evaluate(&self.values, place)?;
+        let (f, slopes) = values.split_at(self.count);
+        let n = self.x.len();
+        Some((
+            f.iter().zip(sizes).map(|(f, size)| f / size).collect(),
+            Matrix::from_fn(self.count, n, |a, i| slopes[a * n + i] / sizes[a]),
+        ))
+    }
+
+    /// The lengths of the ∂f/∂x at a place, 1 where one vanishes.
+    fn sizes(&self, place: &Place) -> Option<Vec<f64>> {
+        let values = self.evaluate(&self.values, place)?;
+        let length = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
+        let sizes = values[self.count..].chunks(self.x.len().max(1)).map(length);
+        Some(sizes.map(|size| if size > 0.0 { size } else { 1.0 }).collect())
+    }
+
+    /// How far f is from zero, in units of displacements; infinite where it has no value.
+    pub(crate) fn off(&self, place: &Place) -> f64 {
+        let found = self.sizes(place).and_then(|sizes| self.at(place, &sizes));
+        found.map_or(f64::INFINITY, |(f, _)| norm(&f) / place.scale())
+    }
+
+    /// A place near `start`, at its time, where f = 0, by the method of Levenberg and Marquardt with μ = |f|²: it comes near by
+    /// the square of the distance though ∂f/∂x lose rank where f = 0 [N. Yamashita, M. Fukushima, Computing Suppl. 15 (2001)
+    /// 239–249]. None if it leads to no such place.
+    pub(crate) fn near(&self, start: &Place) -> Option<Place> {
+        let (scale, sizes) = (start.scale(), self.sizes(start)?);
+        let mut place = start.clone();
+        let (mut f, mut slopes) = self.at(&place, &sizes)?;
+        for _ in 0..MOST_STEPS {
+            let residual = norm(&f);
+            if residual == 0.0 {
+                break;
+            }
+            let equations = LeastSquares::of(&slopes).ok()?;
+            let mut mu = (residual / scale).powi(2);
+            let shorter = (0..SHORTENINGS).find_map(|_| {
+                let step = equations.damped(&f, mu);
+                let x = place.x.iter().zip(&step).map(|(x, step)| x - step).collect();
+                let next = Place { x, ..place };
+                mu = 10.0 * mu;
+                let (f, slopes) = self.at(&next, &sizes)?;
+                (norm(&f) < residual).then_some((next, f, slopes))
+            });
+            let Some(next) = shorter else { break };
+            (place, f, slopes) = next;
+        }
+        (norm(&f) <= SATISFIED * scale).then_some(place)
+    }
+}
+
+pub(crate) fn norm(values: &[f64]) -> f64 {
+    values.iter().fold(0.0f64, |size, value| size.hypot(*value))
+}
+
+/// splitmix64, uniform in (−1, 1).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
