@@ -70,6 +70,6 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, Fault> 
     let value = bracket.of(in_momenta(f)?, in_momenta(g)?);
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = model.equations_in(&assembly, inventory.variables)?;
+    let equations = model.equations_in(&assembly)?;
     compile(&equations, &[value], &[]).map_err(|error| model.derivation_error(error).into())
 }

@@ -14,9 +14,7 @@ impl Inner {
             let model = &inventory.model;
             let graph = Graph::new();
             let assembly = model.assemble(&graph)?;
-            let canonical = model.canonical_in(&assembly, inventory.variables)?;
-            let mut transform =
-                canonical.legendre_transform().map_err(|error| model.derivation_error(error))?;
+            let mut transform = model.legendre_transform(&assembly, inventory.variables)?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }

@@ -29,7 +29,7 @@ impl Mechanics {
     fn of(model: &Model, variables: Variables) -> Result<Mechanics, Fault> {
         let graph = Graph::new();
         let assembly = model.assemble(&graph)?;
-        let equations = model.equations_in(&assembly, variables)?;
+        let equations = model.equations_in(&assembly)?;
         let structure = equations.system().structure();
         let operators = structure.operators();
         let all = || 0..=operators;

@@ -8,7 +8,7 @@ use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
 
 use crate::args::{Outputs, RunArguments, RunForm};
-use crate::binding::{choice, dropped, say_choice, say_moved, say_negative_energy, say_undetermined};
+use crate::binding::{dropped, say_moved, say_negative_energy, say_undetermined};
 use crate::error::CliError;
 use crate::follow::follow;
 use crate::output::Destination;
@@ -138,10 +138,6 @@ pub fn integrate_saved(
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
     let mut saving = Saving::new(saving, model, &plan, form)?;
-    let free = assembly.free_system().map_err(|error| model.constraint_error(error));
-    if let (RunForm::Canonical, Ok(free)) = (form, &free) {
-        choice(&assembly, free).iter().for_each(|choice| say_choice(choice));
-    }
 
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);

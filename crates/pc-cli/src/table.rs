@@ -17,7 +17,7 @@ pub struct Table {
 impl Table {
     /// The states of a trajectory, in quasi-velocities, with the observables of its motion.
     pub fn new(flow: &mut Flow, trajectory: &Trajectory) -> Table {
-        let names = flow.names.iter().chain(flow.observed().observable_names()).cloned();
+        let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
         let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).collect();
         let mut values = Vec::with_capacity(columns.len() * trajectory.len());
         for (t, y) in trajectory.iter() {
@@ -28,7 +28,7 @@ impl Table {
             columns,
             coordinates: flow.motion.coordinates(),
             quasi_velocities: flow.quasi_velocities(),
-            conserved: flow.observed().conserved_len(),
+            conserved: flow.motion.conserved_len(),
             values,
         }
     }

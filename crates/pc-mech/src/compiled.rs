@@ -4,7 +4,8 @@
 //! matrix is eliminated in expressions ([`unrolled`], by [`ldl`]) or in numbers ([`staged`], by [`dense_ldl`]), as
 //! [`elimination`] finds cheaper. Where the equations of w are not linear, they are solved in numbers by Newton's
 //! method ([`implicit`]). Under constraints w has multipliers, the matrix is [`saddle`]-shaped, and the states lie on a
-//! [`surface`]; first integrals may be [`kept`].
+//! [`surface`]; first integrals may be [`kept`]. Momenta of such states are [changed](in_momenta) into their
+//! quasi-velocities and back.
 
 pub(crate) mod columns;
 pub(crate) mod dense_ldl;
@@ -12,6 +13,7 @@ pub(crate) mod elimination;
 pub(crate) mod fault;
 pub(crate) mod first_order;
 pub(crate) mod implicit;
+pub(crate) mod in_momenta;
 pub(crate) mod kept;
 pub(crate) mod ldl;
 pub(crate) mod machine_code;

@@ -161,6 +161,54 @@ impl<'g> Multipliers<'g> {
         Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
     }
 
+    /// The reactions λ in terms of (t, x) and independent quasi-velocities, which have the accelerations beside them: with the
+    /// dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ λ,
+    ///
+    ///   C_αD λ_α = (M η̇ − r)_D,
+    ///
+    /// length m.
+    ///
+    /// # Errors
+    /// As for [`solved_for`](Multipliers::solved_for).
+    pub fn reactions_of_independent(
+        &self,
+        accelerations: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Vec<Expr<'g>>, MechError> {
+        let (system, c) = (self.equations().system(), self.coefficients());
+        let (graph, eta) = (system.graph(), system.quasi_velocities());
+        let is_free = |s: &usize| accelerations.iter().any(|&(free, _)| free == eta[*s]);
+        let dependent: Vec<usize> = (0..eta.len()).filter(|s| !is_free(s)).collect();
+        let solved = self.solved_for(&dependent)?;
+        let put = |list: &[Expr<'g>]| graph.substitute(list, &solved);
+        let x = system.frame().coordinates().iter().copied();
+        let along: Vec<_> = x
+            .zip(put(self.equations().velocities()))
+            .chain(accelerations.iter().copied())
+            .chain([(system.frame().time(), Expr::ONE)])
+            .collect();
+        let values: Vec<Expr<'g>> = solved.iter().map(|&(_, value)| value).collect();
+        let rates = graph.directional(&values, &along);
+        let rate = |s: usize| {
+            let of_dependent = || dependent.iter().zip(&rates).find(|(d, _)| **d == s);
+            let free = accelerations.iter().find(|&&(free, _)| free == eta[s]).map(|&(_, rate)| rate);
+            free.or_else(|| of_dependent().map(|(_, &rate)| rate)).unwrap_or(Expr::ZERO)
+        };
+        let (mass, right) = (self.equations().mass_matrix(), put(self.equations().right_hand_side()));
+        let rests = dependent.iter().map(|&d| {
+            let row = put(&mass.row(d).to_vec());
+            graph.dot(row, (0..eta.len()).map(rate)) - right[d]
+        });
+        let rests: Vec<Expr<'g>> = rests.collect();
+        let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| put(&[c[(a, dependent[d])]])[0]);
+        let name = || self.constraints().last().map_or_else(String::new, |c| c.name().to_owned());
+        let inverse =
+            inverse(graph, &square).ok_or_else(|| MechError::DependentConstraint { constraint: name() })?;
+        let reactions: Vec<Expr<'g>> =
+            (0..c.rows()).map(|a| graph.dot(inverse.column(a), rests.iter().copied())).collect();
+        graph.check(&reactions)?;
+        Ok(graph.shorten(&reactions, &system.collecting_order()))
+    }
+
     /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
     /// and quasi-velocities, rising, or those that [are to](Multipliers::preferring) depend on the others where they do; `at`
     /// may have other values of parameters.

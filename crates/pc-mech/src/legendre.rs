@@ -1,10 +1,11 @@
 //! From quasi-velocities to momenta and back: y = ∂L/∂η.
 
 use pc_algebra::{Matrix, Quadratic, quadratic};
-use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::canonical::Canonical;
 use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
 use crate::compiled::solver::Solver;
 use crate::error::MechError;
@@ -90,7 +91,19 @@ pub struct LegendreTransform {
 #[derive(Clone, Debug)]
 enum QuasiVelocities {
     Closed(Evaluator),
-    Implicit(Box<(Newton, Solver)>),
+    Linear(Box<Linear>),
+    /// With the number of unknowns.
+    Implicit(Box<(Newton, Solver)>, usize),
+}
+
+/// M w = r with w = (η, μ), in numbers.
+#[derive(Clone, Debug)]
+struct Linear {
+    /// Of (t, (x, y)): what is not zero of the lower triangle of M, then r.
+    equations: Evaluator,
+    lower: Pattern,
+    values: Vec<f64>,
+    solver: Solver,
 }
 
 impl Canonical<'_> {
@@ -100,35 +113,98 @@ impl Canonical<'_> {
     /// [`ExprError::UnboundSymbol`](pc_expr::ExprError::UnboundSymbol) for a symbol that is neither state nor
     /// declared parameter.
     pub fn legendre_transform(&self) -> Result<LegendreTransform, MechError> {
-        let system = self.system();
-        let (x, graph) = (system.frame().coordinates(), system.graph());
-        let program = |moving: &[Expr<'_>], values: &[Expr<'_>]| -> Result<Evaluator, MechError> {
-            let inputs = Inputs {
-                time: Some(system.frame().time()),
-                state: x.iter().chain(moving).copied().collect(),
-                parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
-            };
-            Ok(Evaluator::new(Program::new(graph, &inputs, values)?, Backend::Interpreter))
-        };
-        let equations = self.first_order();
+        // External forces are in none of what is solved here.
+        let equations =
+            FirstOrder { parameters: self.system().parameters().to_vec(), ..self.first_order() };
         let quasi_velocities = match &equations.implicit {
-            None => QuasiVelocities::Closed(program(self.momenta(), self.quasi_velocities())?),
-            Some(implicit) => {
-                let newton = Newton::new(&equations, implicit, Backend::Interpreter)?;
-                QuasiVelocities::Implicit(Box::new((newton, Solver::new(self.momenta().len(), 0))))
+            None => {
+                let program =
+                    Program::new(equations.graph, &equations.inputs(&[]), self.quasi_velocities())?;
+                QuasiVelocities::Closed(Evaluator::new(program, Backend::Interpreter))
             }
+            Some(_) => QuasiVelocities::solved(&equations)?,
         };
-        Ok(LegendreTransform {
-            names: [x, system.quasi_velocities(), self.momenta()]
-                .map(|symbols| symbols.iter().map(Expr::to_string).collect()),
-            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
-            momenta: program(system.quasi_velocities(), self.momenta_of_velocities())?,
-            quasi_velocities,
-        })
+        LegendreTransform::new(self.system(), self.momenta(), self.momenta_of_velocities(), quasi_velocities)
+    }
+}
+
+impl QuasiVelocities {
+    /// η, the first unknowns of these equations, in numbers.
+    fn solved(equations: &FirstOrder<'_>) -> Result<QuasiVelocities, ExprError> {
+        let (size, backend) = (equations.unknowns.len(), Backend::Interpreter);
+        let solver = Solver::new(size, equations.multipliers);
+        if let Some(implicit) = &equations.implicit {
+            let newton = Newton::new(equations, implicit, backend)?;
+            return Ok(QuasiVelocities::Implicit(Box::new((newton, solver)), size));
+        }
+        let (lower, mut entries) = equations.lower_triangle();
+        entries.extend(&equations.right);
+        let program = Program::new(equations.graph, &equations.inputs(&[]), &entries)?;
+        let (equations, values) = (Evaluator::new(program, backend), vec![0.0; entries.len()]);
+        Ok(QuasiVelocities::Linear(Box::new(Linear { equations, lower, values, solver })))
+    }
+}
+
+impl Linear {
+    /// w, and M factorised.
+    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, Fault> {
+        self.equations.eval(t, state, p, &mut self.values);
+        check_finite(&self.values, &self.equations, at)?;
+        let (matrix, right) = self.values.split_at(self.lower.len());
+        self.solver.factorise(&self.lower, matrix)?;
+        let mut solution = right.to_vec();
+        self.solver.solve(&mut solution);
+        Ok(solution)
     }
 }
 
 impl LegendreTransform {
+    /// The change of the states of `system`, whose momenta are called `momenta`; η are the first unknowns of `equations`,
+    /// which are in (t, x, y).
+    ///
+    /// # Errors
+    /// As [`Canonical::legendre_transform`].
+    pub(crate) fn solving<'g>(
+        system: &System<'g>,
+        momenta: &[Expr<'g>],
+        equations: &FirstOrder<'g>,
+    ) -> Result<LegendreTransform, MechError> {
+        let solved = QuasiVelocities::solved(equations)?;
+        LegendreTransform::new(system, momenta, &system.momenta(), solved)
+    }
+
+    fn new<'g>(
+        system: &System<'g>,
+        symbols: &[Expr<'g>],
+        momenta: &[Expr<'g>],
+        quasi_velocities: QuasiVelocities,
+    ) -> Result<LegendreTransform, MechError> {
+        let (x, eta) = (system.frame().coordinates(), system.quasi_velocities());
+        let inputs = Inputs {
+            time: Some(system.frame().time()),
+            state: [x, eta].concat(),
+            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+        };
+        let momenta = Program::new(system.graph(), &inputs, momenta)?;
+        Ok(LegendreTransform {
+            names: [x, eta, symbols].map(|symbols| symbols.iter().map(Expr::to_string).collect()),
+            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            momenta: Evaluator::new(momenta, Backend::Interpreter),
+            quasi_velocities,
+        })
+    }
+
+    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M = ∂²L/∂η∂η, bordered by
+    /// the constraints if there are any, of the state that was changed into quasi-velocities last. Not of closed expressions,
+    /// which have none.
+    pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
+        match &mut self.quasi_velocities {
+            QuasiVelocities::Closed(_) => columns.fill(f64::NAN),
+            QuasiVelocities::Linear(linear) => linear.solver.solve(columns),
+            QuasiVelocities::Implicit(solver, _) => solver.1.solve(columns),
+        }
+    }
+
     /// The values of the parameters, to be changed.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.parameters
@@ -158,11 +234,14 @@ impl LegendreTransform {
         let moving = &mut result[self.names[0].len()..];
         let outcome = match &mut self.quasi_velocities {
             QuasiVelocities::Closed(program) => evaluate(program, (t, state, &self.parameters), moving),
-            QuasiVelocities::Implicit(solver) => {
+            QuasiVelocities::Linear(linear) => linear.solve((t, state, &self.parameters)).map(|solution| {
+                moving.copy_from_slice(&solution[..moving.len()]);
+            }),
+            QuasiVelocities::Implicit(solver, size) => {
                 let (newton, factors) = &mut **solver;
-                let mut known = [state, moving].concat();
+                let mut known = [state, &vec![0.0; *size]].concat();
                 let outcome = newton.solve(t, &mut known, &self.parameters, factors);
-                moving.copy_from_slice(&known[state.len()..]);
+                moving.copy_from_slice(&known[state.len()..state.len() + moving.len()]);
                 outcome
             }
         };

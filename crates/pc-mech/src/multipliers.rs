@@ -1,14 +1,17 @@
 //! Constraints held by multipliers, in whatever coordinates.
 
-use pc_algebra::{Matrix, affine};
+use pc_algebra::{Matrix, Quadratic, affine, quadratic};
 use pc_expr::Expr;
 
-use crate::compiled::first_order::FirstOrder;
+use crate::compiled::first_order::{FirstOrder, Implicit};
+use crate::compiled::in_momenta::InMomenta;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
 use crate::compiled::surface::{Conditions, Surface};
 use crate::error::MechError;
+use crate::legendre::LegendreTransform;
 use crate::poincare::Equations;
+use crate::stability::steady::check_length;
 use crate::system::System;
 
 /// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities.
@@ -285,6 +288,111 @@ impl<'g> Multipliers<'g> {
         let motion = first_order.compile(&options.into(), LONGEST_ELIMINATION)?;
         let names = self.constraints.iter().map(|constraint| constraint.name.clone()).collect();
         Ok(motion.on_surface(names, self.surface(&first_order)?))
+    }
+
+    /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
+    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`]:
+    ///
+    ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
+    ///
+    /// No velocities are chosen for independent ones, so that no position is singular but those of the constraints
+    /// themselves. States are projected as those of [`compile_for`](Multipliers::compile_for) are, and what is observed or
+    /// [kept](Motion::keep) is the same; to keep integrals, those of these multipliers are to be given. There is no product with
+    /// the Jacobian.
+    ///
+    /// `guess` are η from which solutions of y = ∂L/∂η are looked for where L is not quadratic in η, or a constraint is not
+    /// affine.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System, VectorField};
+    ///
+    /// // A pendulum of mass 2 in Cartesian coordinates, where it is level.
+    /// let graph = Graph::new();
+    /// let pendulum = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| v[0].square() + v[1].square() - 20.0 * x[1])
+    ///     .build()?;
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// let circle = Constraint::new("length", x.square() + y.square() - 1.0);
+    /// let held = pendulum.with_multipliers(&[circle])?;
+    /// let mut motion = held.compile_in_momenta(Default::default(), &[0.0, 0.0])?;
+    /// let mut rates = [0.0; 4];
+    /// motion.rhs(0.0, &[1.0, 0.0, 0.0, 4.0], &mut rates)?; // ẏ = 2: ẍ = −|ṙ|²
+    /// assert_eq!(rates, [0.0, 2.0, -8.0, -20.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`compile_for`](Multipliers::compile_for); [`MechError::Shape`] for a guess of another length.
+    pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
+        let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
+        let momenta = self.equations.system.momentum_symbols();
+        Ok(Motion::of_momenta(motion, momenta.iter().map(Expr::to_string)))
+    }
+
+    /// The change between (x, η) and (x, y) with the momenta of all quasi-velocities, where the constraints hold:
+    ///
+    ///   ∂L/∂η − Cᵀ μ = y,   C η + c_0 = 0
+    ///
+    /// is solved for η and μ, which is regular also where L determines no η without the constraints; of momenta of which
+    /// the constraints hold, μ = 0. `guess` is as for [`compile_in_momenta`](Multipliers::compile_in_momenta).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn legendre_transform(&self, guess: &[f64]) -> Result<LegendreTransform, MechError> {
+        let system = &self.equations.system;
+        check_length("the guess of the quasi-velocities", guess, system.quasi_velocities.len())?;
+        let momenta = system.momentum_symbols();
+        LegendreTransform::solving(system, &momenta, &self.legendre_equations(&momenta, guess)?)
+    }
+
+    /// The equations with w = (η, μ); nothing changes by them.
+    fn legendre_equations(
+        &self,
+        momenta: &[Expr<'g>],
+        guess: &[f64],
+    ) -> Result<FirstOrder<'g>, MechError> {
+        let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
+        let (k, m) = (eta.len(), self.reactions.len());
+        let unknowns = [eta, &self.reactions].concat();
+        let quadratic = quadratic(graph, system.lagrangian, eta).filter(|_| !self.is_nonlinear());
+        let (mass, right, implicit) = if let Some(Quadratic { linear: at_rest, .. }) = quadratic {
+            let drifts = self.constraints.iter().map(|constraint| Ok(constraint.coefficients(system)?.1));
+            let drifts = drifts.collect::<Result<Vec<_>, MechError>>()?;
+            let impulse = momenta.iter().zip(&at_rest).map(|(&y, &p)| y - p);
+            (self.bordered(), impulse.chain(drifts).collect(), None)
+        } else {
+            let pushed = |s: usize| graph.dot(self.coefficients.column(s), self.reactions.iter().copied());
+            let left: Vec<Expr<'g>> = (system.momenta().into_iter().enumerate())
+                .map(|(s, p)| p - pushed(s))
+                .chain(self.velocities.iter().map(|&g| -g))
+                .collect();
+            let rows: Vec<Vec<Expr<'g>>> = left.iter().map(|&f| graph.gradient(f, &unknowns)).collect();
+            let right = momenta.iter().copied().chain(vec![Expr::ZERO; m]).collect();
+            let guess = guess.iter().copied().chain(vec![0.0; m]).collect();
+            (Matrix::from_fn(k + m, k + m, |i, j| rows[i][j]), right, Some(Implicit { left, guess }))
+        };
+        let x = system.frame.coordinates();
+        Ok(FirstOrder {
+            state: x.iter().chain(momenta).copied().collect(),
+            parameters: system.parameters.clone(),
+            unknowns,
+            mass,
+            implicit,
+            right,
+            rates: Vec::new(),
+            observables: Vec::new(),
+            conserved: 0,
+            ..self.first_order()
+        })
+    }
+
+    fn graph(&self) -> &'g pc_expr::Graph {
+        self.equations.system.graph()
+    }
+
+    fn quasi_velocities(&self) -> &[Expr<'g>] {
+        &self.equations.system.quasi_velocities
     }
 
     /// f(t, x) of the constraints that have a position, then g(t, x, η) of all.

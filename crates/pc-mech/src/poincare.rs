@@ -142,6 +142,12 @@ impl<'g> Equations<'g> {
         self.first_order().solve(&Factors::of(self.system.graph(), &self.mass))
     }
 
+    /// The same equations with symbols in integrals and outputs replaced, such as those of reactions.
+    #[must_use]
+    pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> Equations<'g> {
+        Equations { system: self.system.with_observed(known), ..self.clone() }
+    }
+
     /// The same equations with the parameters replaced by their numbers.
     #[must_use]
     pub fn with_parameters_bound(&self) -> Equations<'g> {

@@ -136,8 +136,8 @@ impl<'g> Bound<'g> {
     }
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by
-    /// multipliers are for the choice of independent ones that is best at `at`. Where a constraint is not affine in
-    /// the velocities, those of all of them, with the reactions put in.
+    /// multipliers are for the choice of independent ones that is best at `at`, and what is observed has the reactions put in.
+    /// Where a constraint is not affine in the velocities, those of all of them, with the reactions put in.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.
@@ -146,10 +146,21 @@ impl<'g> Bound<'g> {
         system: &System<'g>,
         at: &[(Expr<'g>, f64)],
     ) -> Result<Equations<'g>, NonholoError> {
-        match self.constrained(at)? {
-            Some(constrained) => Ok(constrained.equations().clone()),
-            None => Ok(self.independent(system, at)?.poincare()?),
+        let equations = match self.constrained(at)? {
+            Some(constrained) => constrained.equations().clone(),
+            None => self.independent(system, at)?.poincare()?,
+        };
+        let Form::Held(held) = &self.form else { return Ok(equations) };
+        let (multipliers, observing) = (&held.multipliers, equations.system());
+        let mut observed = observing.integrals().iter().chain(observing.outputs());
+        if !observed.any(|(_, f)| multipliers.reactions().iter().any(|&reaction| f.depends_on(reaction))) {
+            return Ok(equations);
         }
+        let free = observing.quasi_velocities().iter().copied();
+        let accelerations: Vec<_> = free.zip(equations.accelerations()).collect();
+        let reactions = multipliers.reactions_of_independent(&accelerations)?;
+        let known: Vec<_> = multipliers.reactions().iter().copied().zip(reactions).collect();
+        Ok(equations.with_observed(&known))
     }
 
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.

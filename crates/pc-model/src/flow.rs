@@ -25,9 +25,6 @@ pub struct Flow {
     /// What happens where; none in most models.
     pub events: FlowEvents,
     reading: Reading,
-    /// The motion with multipliers, where another is integrated: it knows the residuals of the constraints, the reactions,
-    /// and the energy of all velocities, which is not that of independent ones.
-    watch: Option<Motion>,
 }
 
 impl Flow {
@@ -42,20 +39,25 @@ impl Flow {
                 let all = assembly.system.quasi_velocities().iter().copied();
                 let free: Vec<Expr<'_>> =
                     all.filter(|eta| compiled.0.names().contains(&eta.to_string())).collect();
-                Flow::of(model, assembly, &free, compiled, (None, None))
+                Flow::of(model, assembly, &free, compiled, None)
             }
             Variables::Momenta => {
-                let refused = |error| model.derivation_error(error);
-                let canonical = model.canonical_in(assembly, variables)?;
-                let mut transform = canonical.legendre_transform().map_err(refused)?;
-                let system = canonical.system();
-                let start = assembly.start_of(&state(system));
-                let start = transform.to_momenta(assembly.t_start, &start).map_err(refused)?;
-                let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
-                let held = matches!(assembly.bound.form(), Form::Held(_));
-                let watch = if held { Some(model.compile(assembly)?.0) } else { None };
-                let free = system.quasi_velocities();
-                Flow::of(model, assembly, free, (motion, start), (Some(transform), watch))
+                let mut transform = model.legendre_transform(assembly, variables)?;
+                let system = match assembly.bound.form() {
+                    Form::Held(_) => assembly.system.clone(),
+                    Form::Free | Form::Vanishing(_) => model.system_in(assembly, variables)?,
+                };
+                let start = assembly.start_of(&state(&system));
+                let start = transform.to_momenta(assembly.t_start, &start);
+                let start = start.map_err(|error| model.derivation_error(error))?;
+                let motion = match assembly.bound.form() {
+                    Form::Held(held) => model.compile_in_momenta(&held.multipliers, assembly, &start)?,
+                    Form::Free | Form::Vanishing(_) => {
+                        let canonical = model.canonical_in(assembly, variables)?;
+                        model.compile_canonical(&canonical, assembly.t_start, &start)?
+                    }
+                };
+                Flow::of(model, assembly, system.quasi_velocities(), (motion, start), Some(transform))
             }
         }
     }
@@ -66,7 +68,7 @@ impl Flow {
         assembly: &Assembly<'g>,
         free: &[Expr<'g>],
         (motion, start): (Motion, Vec<f64>),
-        (transform, watch): (Option<LegendreTransform>, Option<Motion>),
+        transform: Option<LegendreTransform>,
     ) -> Result<Flow, ModelError> {
         let system = &assembly.system;
         let x = system.frame().coordinates();
@@ -85,12 +87,11 @@ impl Flow {
             transform,
         };
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, watch.as_ref().unwrap_or(&motion))?,
+            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities())?,
             motion,
             start,
             names: x.iter().chain(declared).map(ToString::to_string).collect(),
             reading,
-            watch,
         })
     }
 
@@ -101,7 +102,7 @@ impl Flow {
         let (mut events, mut reading) = (self.events.clone(), self.reading.clone());
         events.set_parameters(parameters);
         reading.set_parameters(parameters);
-        Flow { motion, start, names: self.names.clone(), events, reading, watch: None }
+        Flow { motion, start, names: self.names.clone(), events, reading }
     }
 
     /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.
@@ -117,10 +118,7 @@ impl Flow {
     /// Coordinates and declared quasi-velocities of a state, then the observables.
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut row = self.shown(t, state);
-        row.extend(match &mut self.watch {
-            Some(watch) => watch.observe(t, &row),
-            None => self.motion.observe(t, state),
-        });
+        row.extend(self.motion.observe(t, state));
         row.drain(
             self.names.len()
                 ..self.motion.coordinates() + self.reading.quasi_velocities.program().outputs_len(),
@@ -128,23 +126,14 @@ impl Flow {
         row
     }
 
-    /// The motion that the observables are those of.
-    pub fn observed(&self) -> &Motion {
-        self.watch.as_ref().unwrap_or(&self.motion)
-    }
-
     /// Names of the constraints held by multipliers, and of those solved for velocities.
     pub fn constraint_names(&self) -> Vec<String> {
-        self.observed().constraint_names().to_vec()
+        self.motion.constraint_names().to_vec()
     }
 
     /// What should be zero of each of these.
     pub fn constraint_residuals(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let shown = self.shown(t, state);
-        match &mut self.watch {
-            Some(watch) => watch.constraint_residuals(t, &shown),
-            None => self.motion.constraint_residuals(t, state),
-        }
+        self.motion.constraint_residuals(t, state)
     }
 
     /// Number of quasi-velocities.

@@ -2,8 +2,8 @@
 
 use pc_expr::Graph;
 use pc_mech::{
-    AlgebraError, Canonical, CompileOptions, Equations, Expr, KeptIntegrals, MechError, Motion, System,
-    VectorField,
+    AlgebraError, Canonical, CompileOptions, Equations, Expr, KeptIntegrals, MechError, Motion, Multipliers,
+    System, VectorField,
 };
 use pc_nonholo::NonholoError;
 
@@ -97,6 +97,11 @@ impl<'g> Assembly<'g> {
                 self.free_system().is_ok_and(|system| system.energy_rate().is_zero())
             }
         }
+    }
+
+    /// The quasi-velocities of the system at the start.
+    pub fn start_velocities(&self) -> Vec<f64> {
+        self.start_of(self.system.quasi_velocities())
     }
 
     /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
@@ -227,6 +232,21 @@ impl Model {
         let compiled = equations.compile_for(self.options());
         let (motion, _) = self.started(compiled, || equations.kept(&self.kept), t_start, start.to_vec())?;
         Ok(motion)
+    }
+
+    /// Compiles the canonical equations of this model with multipliers, and tries them at the start (x, y).
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub fn compile_in_momenta(
+        &self,
+        multipliers: &Multipliers<'_>,
+        assembly: &Assembly<'_>,
+        start: &[f64],
+    ) -> Result<Motion, ModelError> {
+        let compiled = multipliers.compile_in_momenta(self.options(), &assembly.start_velocities());
+        let kept = || multipliers.kept(&self.kept);
+        Ok(self.started(compiled, kept, assembly.t_start, start.to_vec())?.0)
     }
 
     /// The derivative by external forces is part of the Jacobian under them.
@@ -398,14 +418,6 @@ impl Model {
                 self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
             }
             MechError::Algebra(error) => self.algebra_error(error),
-            MechError::UnknownIntegral { name, .. }
-                if self.document.integrals.iter().any(|i| i.name.text == name) =>
-            {
-                let message =
-                    format!("`{name}` cannot be kept in momenta where multipliers hold the constraints");
-                let help = "use the form poincare, or keep `energy` alone";
-                self.error(&self.kept_place(&name), Fault::NoForm { message, help })
-            }
             MechError::UnknownIntegral { name, known } => {
                 self.error(&self.kept_place(&name), Fault::UnknownIntegral { name, known })
             }

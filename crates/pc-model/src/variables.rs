@@ -1,6 +1,6 @@
 //! The equations of a model in the variables of their state.
 
-use pc_mech::{Canonical, Equations, Expr, System};
+use pc_mech::{Canonical, Equations, Expr, LegendreTransform, System};
 
 use crate::bound::Form;
 use crate::error::ModelError;
@@ -12,12 +12,13 @@ pub enum Variables {
     /// The quasi-velocities of (9), or of (30): independent ones if constraints say that the others vanish, all of
     /// them with multipliers otherwise.
     QuasiVelocities,
-    /// The momenta of (10).
+    /// The momenta of (10), those of the same quasi-velocities.
     Momenta,
 }
 
 impl Model {
-    /// The system whose quasi-velocities are those of the state, or those of its momenta.
+    /// The system of the quasi-velocities of the state; for momenta where multipliers hold constraints, that of
+    /// independent ones.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
@@ -35,22 +36,18 @@ impl Model {
         })
     }
 
-    /// M η̇ = r in these quasi-velocities; without the reactions of multipliers.
+    /// M η̇ = r in the quasi-velocities of the state, or those of its momenta; without the reactions of multipliers.
     ///
     /// # Errors
-    /// As [`system_in`](Model::system_in).
-    pub fn equations_in<'g>(
-        &self,
-        assembly: &Assembly<'g>,
-        variables: Variables,
-    ) -> Result<Equations<'g>, ModelError> {
-        match (variables, assembly.bound.form()) {
-            (Variables::QuasiVelocities, Form::Held(held)) => Ok(held.multipliers.equations().clone()),
-            _ => assembly.equations().map_err(|error| self.constraint_error(error)),
+    /// [`ModelError`] at the constraint that there are no independent velocities under.
+    pub fn equations_in<'g>(&self, assembly: &Assembly<'g>) -> Result<Equations<'g>, ModelError> {
+        match assembly.bound.form() {
+            Form::Held(held) => Ok(held.multipliers.equations().clone()),
+            Form::Free | Form::Vanishing(_) => assembly.equations().map_err(|error| self.constraint_error(error)),
         }
     }
 
-    /// The canonical equations of the momenta of these quasi-velocities, η looked for from their start where they are
+    /// The canonical equations of the momenta of the [system](Model::system_in) in these variables, η looked for from their start where they are
     /// not closed.
     ///
     /// # Errors
@@ -65,6 +62,25 @@ impl Model {
         let n = system.frame().coordinates().len();
         let canonical = system.canonical().and_then(|canonical| canonical.with_guess(&start[n..]));
         canonical.map_err(|error| self.derivation_error(error))
+    }
+
+    /// The change between the quasi-velocities of the state and its momenta; from momenta to quasi-velocities that satisfy
+    /// the constraints, where multipliers hold these and momenta are integrated.
+    ///
+    /// # Errors
+    /// [`ModelError`] if there is none.
+    pub fn legendre_transform(
+        &self,
+        assembly: &Assembly<'_>,
+        variables: Variables,
+    ) -> Result<LegendreTransform, ModelError> {
+        let transform = match (variables, assembly.bound.form()) {
+            (Variables::Momenta, Form::Held(held)) => {
+                held.multipliers.legendre_transform(&assembly.start_velocities())
+            }
+            _ => self.canonical_in(assembly, variables)?.legendre_transform(),
+        };
+        transform.map_err(|error| self.derivation_error(error))
     }
 }
 

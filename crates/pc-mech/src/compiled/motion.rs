@@ -6,6 +6,7 @@ use crate::compiled::columns::Layout;
 use crate::compiled::elimination;
 use crate::compiled::fault::Fault;
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::in_momenta::InMomenta;
 use crate::compiled::kept::KeptIntegrals;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
@@ -44,6 +45,7 @@ pub struct Motion {
 enum Form {
     Unrolled(Box<Unrolled>),
     Staged(Box<Staged>),
+    InMomenta(Box<InMomenta>),
 }
 
 impl<'g> Equations<'g> {
@@ -137,15 +139,28 @@ impl Motion {
 
     /// The values of the parameters, in the order of declaration.
     pub fn parameters(&self) -> &[f64] {
-        &self.parameters
+        match &self.form {
+            Form::InMomenta(motion) => motion.inner().parameters(),
+            Form::Unrolled(_) | Form::Staged(_) => &self.parameters,
+        }
     }
 
     /// The values of the parameters, to be changed.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
-        if let Form::Unrolled(unrolled) = &mut self.form {
-            unrolled.forget();
+        match &mut self.form {
+            Form::InMomenta(motion) => return motion.inner_mut().parameters_mut(),
+            Form::Unrolled(unrolled) => unrolled.forget(),
+            Form::Staged(_) => {}
         }
         &mut self.parameters
+    }
+
+    /// The motion of the quasi-velocities, where that of momenta under constraints is made from it; else this one.
+    pub fn in_quasi_velocities(&self) -> &Motion {
+        match &self.form {
+            Form::InMomenta(motion) => motion.inner(),
+            Form::Unrolled(_) | Form::Staged(_) => self,
+        }
     }
 
     /// Names of the observables: the integrals, `energy`, the outputs.
@@ -169,8 +184,35 @@ impl Motion {
         match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, &mut values),
             Form::Staged(staged) => staged.observe(t, y, &self.parameters, &mut values),
+            Form::InMomenta(motion) => return motion.observe(t, y),
         }
         values
+    }
+
+    /// The same in momenta of these names.
+    pub(crate) fn of_momenta(motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
+        let inner = motion.inner();
+        Motion {
+            names: inner.names[..inner.coordinates].iter().cloned().chain(names).collect(),
+            coordinates: inner.coordinates,
+            quasi_velocities: inner.quasi_velocities.clone(),
+            parameters: Vec::new(),
+            options: inner.options,
+            observable_names: inner.observable_names.clone(),
+            conserved: inner.conserved,
+            constraints: inner.constraints.clone(),
+            surface: None,
+            kept: None,
+            form: Form::InMomenta(Box::new(motion)),
+        }
+    }
+
+    /// What it is made from, if momenta under constraints are in its state.
+    pub(crate) fn in_momenta(&mut self) -> Option<&mut InMomenta> {
+        match &mut self.form {
+            Form::InMomenta(motion) => Some(motion),
+            Form::Unrolled(_) | Form::Staged(_) => None,
+        }
     }
 
     /// The same under the constraints of these names.
@@ -180,6 +222,9 @@ impl Motion {
 
     /// Projects to the values of these integrals from now on; those before are returned.
     pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.inner_mut().set_kept(integrals);
+        }
         std::mem::replace(&mut self.kept, integrals.map(Box::new)).map(|kept| *kept)
     }
 
@@ -194,6 +239,9 @@ impl Motion {
     /// If `y` has not the length of the state.
     pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.constraint_residuals(t, y);
+        }
         let parameters = &self.parameters;
         self.surface.as_mut().map_or_else(Vec::new, |surface| surface.residuals(t, y, parameters))
     }
@@ -205,6 +253,7 @@ impl Motion {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
             Form::Staged(staged) => staged.cost().clone(),
+            Form::InMomenta(motion) => motion.inner().cost(),
         }
     }
 
@@ -212,7 +261,7 @@ impl Motion {
     pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.machine_code(self.names.len()),
-            Form::Staged(_) => None,
+            Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }
 
@@ -221,7 +270,7 @@ impl Motion {
     pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),
-            Form::Staged(_) => None,
+            Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }
 
@@ -260,8 +309,22 @@ impl Motion {
         projected.map_err(|fault| self.failure(fault, t, y))
     }
 
+    /// Moves the η of a state to where the constraints hold, and leaves its x as they are.
+    ///
+    /// # Errors
+    /// As the [projection](VectorField::project) of the state.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state.
+    pub fn project_velocities(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        let parameters = &self.parameters;
+        let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
+        outcome.map_err(|fault| self.failure(fault, t, y))
+    }
+
     #[cold]
-    fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
+    pub(crate) fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
         let fatal = matches!(fault, Fault::NotCompiled { .. });
         let error = fault.at(&self.quasi_velocities, t, &self.names, y);
         if fatal { Failure::fatal(error) } else { Failure::recoverable(error) }
@@ -278,6 +341,7 @@ impl Motion {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, layout),
             Form::Staged(staged) => staged.jacobian(at, entries, layout),
+            Form::InMomenta(motion) => return motion.jacobian(t, y, entries), // full in both layouts
         };
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
@@ -293,6 +357,7 @@ impl VectorField for Motion {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
             Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
+            Form::InMomenta(motion) => return motion.rhs(t, y, ydot),
         };
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
@@ -314,6 +379,7 @@ impl VectorField for Motion {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.pattern(),
             Form::Staged(staged) => staged.pattern(),
+            Form::InMomenta(motion) => motion.pattern(),
         }
     }
 
@@ -330,12 +396,13 @@ impl VectorField for Motion {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
             Form::Staged(staged) => staged.jvp(at, v, product),
+            Form::InMomenta(_) => Err(Fault::NotCompiled { what: "product with its Jacobian" }),
         };
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
     fn parameters_len(&self) -> usize {
-        self.parameters.len()
+        self.parameters().len()
     }
 
     fn has_parameter_jacobian(&self) -> bool {
@@ -347,19 +414,27 @@ impl VectorField for Motion {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
             Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
+            Form::InMomenta(motion) => return motion.parameter_jacobian(t, y, jacobian),
         };
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
     fn has_projection(&self) -> bool {
-        self.surface.is_some() || self.kept.is_some()
+        let inner = self.in_quasi_velocities();
+        inner.surface.is_some() || inner.kept.is_some()
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.project(t, y);
+        }
         self.project_in_turn(t, y).map_err(|fault| self.failure(fault, t, y))
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.restart(t, y);
+        }
         let Some(kept) = &mut self.kept else { return };
         let mut state = y.to_vec();
         if let Some(surface) = &mut self.surface

@@ -13,6 +13,10 @@ const UNIT: f64 = 2.0 * f64::EPSILON;
 /// Keeps quotients of two zeros from being no numbers.
 const TINY: f64 = 1e-300;
 
+/// Below it numbers have fewer digits: their spacing is that of the numbers above it, in units of which errors are
+/// counted here. Four of them, since factors of a number so small round once more.
+const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
+
 /// Functions with bounds of their rounding errors, compiled.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
@@ -39,7 +43,7 @@ impl Measured {
             parameters: inputs.parameters.iter().map(named).collect(),
         };
         let symbols = inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters);
-        let symbols: Vec<_> = symbols.map(|symbol| (*symbol, WithError::rounded(named(symbol)))).collect();
+        let symbols: Vec<_> = symbols.map(|symbol| (*symbol, WithError::symbol(named(symbol)))).collect();
         let measured = graph.evaluate(functions, &symbols)?;
         let (values, errors): (Vec<_>, Vec<_>) = measured.iter().map(|f| (f.value, f.error)).unzip();
         let program = Program::new(&measuring, &inputs_here, &[values, errors].concat())?;
@@ -96,6 +100,11 @@ impl<'g> WithError<'g> {
     /// A number that is known to one rounding.
     fn rounded(value: Expr<'g>) -> WithError<'g> {
         WithError { value, error: value.abs() }
+    }
+
+    /// The value of a symbol, which may be one of the smallest numbers.
+    fn symbol(value: Expr<'g>) -> WithError<'g> {
+        WithError { value, error: value.abs() + SPACING }
     }
 
     /// The value of a function of `args` that has these derivatives there.

@@ -8,17 +8,25 @@ use crate::compiled::fault::{Fault, check_finite};
 use crate::compiled::rounding::Measured;
 use crate::compiled::solver::Solver;
 
-/// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
+/// Steps from afar, where they are damped. Near the surface each is the square of the one before, and a handful is all
+/// there are.
 const MOST_STEPS: usize = 50;
 
 /// How often a step is halved before the way is taken to lead nowhere.
 const HALVINGS: i32 = 20;
 
+/// What is left of a step where Newton's method converges by squares; one that leaves more is damped, or is rounding.
+const CONVERGING: f64 = 0.25;
+
 /// What a single rounding may leave of f, in units of the bound of all. To move a state for it would put noise into the
 /// differences from which an integrator foresees the motion.
 const ONE_ROUNDING: f64 = 0.125;
 
-/// A step so short against the state that none is shorter is rounding.
+/// A step that errors of f of so many times their bounds would call for is rounding: f has its own, and so have the
+/// coefficients of the equations of the step.
+const ROUNDINGS: f64 = 4.0;
+
+/// Where f has no bound of its error, at an edge of its domain, a step this short against the state is rounding.
 const SHORT: f64 = 1e-8;
 
 /// What a surface is made of, in expressions of t, x, η and parameters.
@@ -127,6 +135,15 @@ impl Surface {
         self.project_part(Part::Velocity, t, y, p)
     }
 
+    /// Moves the η of `y` to g = 0, and leaves x where it is.
+    ///
+    /// # Errors
+    /// As [`project`](Surface::project).
+    pub(crate) fn project_velocities(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+        self.factorise(t, y, p)?;
+        self.project_part(Part::Velocity, t, y, p)
+    }
+
     fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, (t, y, p))?;
@@ -142,41 +159,78 @@ impl Surface {
     /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which comes to its end at once where g is affine in η;
     /// leaves the matrix factorised where it ends.
     ///
-    /// A step is halved until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,
-    /// Numer. Math. 22, 1974, 289–315); lengths are those of δπ, with the diagonal of M for a metric, and so know no units of
-    /// f. Where only rounding is left of f, one whole step more is all that can help.
+    /// Lengths of steps are those of δπ, with the diagonal of M for a metric, and so know no units of f. A state is on the
+    /// surface where f is no larger than the bound of its rounding errors, where a step changes no digit, and where a step is
+    /// no longer than such errors would call for: then one whole step more is all that can help.
     fn project_part(&mut self, part: Part, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        let n = self.coordinates;
-        let range = if part == Part::Position { 0..n } else { n..y.len() };
-        let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let range = if part == Part::Position { 0..self.coordinates } else { self.coordinates..y.len() };
         self.measured(part).try_eval((t, y, p))?;
         for _ in 0..MOST_STEPS {
             let rest = self.measured(part).in_errors();
             if rest <= ONE_ROUNDING {
                 return Ok(());
             }
-            let is_there = rest <= 1.0;
             let length = self.step(part);
             let (start, change) = (y[range.clone()].to_vec(), self.moved(part, t, y, p));
-            let halvings = if is_there { 0 } else { HALVINGS };
-            let found = (0..=halvings).any(|halvings| {
-                let fraction = 0.5f64.powi(halvings);
-                let moving = y[range.clone()].iter_mut().zip(&start).zip(&change);
-                moving.for_each(|((y, start), change)| *y = start + fraction * change);
-                let is_finite = self.measured(part).try_eval((t, y, p)).is_ok();
-                is_finite && self.step(part) <= (1.0 - fraction / 4.0) * length
-            });
-            if !found {
-                y[range].copy_from_slice(&start);
-                let is_rounding = is_there || largest(&change) <= SHORT * largest(&start);
-                return if is_rounding { Ok(()) } else { Err(Fault::NoProjection { unknowns: self.k }) };
-            }
-            self.factorise(t, y, p)?;
-            if is_there {
+            if start.iter().zip(&change).all(|(y, change)| y + change == *y) {
                 return Ok(());
             }
+            let mut go = |surface: &mut Surface, fraction: f64| {
+                let moving = y[range.clone()].iter_mut().zip(&start).zip(&change);
+                moving.for_each(|((y, start), change)| *y = start + fraction * change);
+                let is_finite = surface.measured(part).try_eval((t, y, p)).is_ok();
+                is_finite.then(|| (surface.step(part), surface.measured(part).in_errors()))
+            };
+            let whole = go(self, 1.0);
+            let converges = whole.is_some_and(|(next, _)| next <= CONVERGING * length);
+            if !converges && (rest <= 1.0 || self.is_rounding(part, length, &change, &start)) {
+                if whole.is_none_or(|(_, left)| left >= rest) {
+                    y[range].copy_from_slice(&start);
+                    self.measured(part).try_eval((t, y, p))?;
+                }
+                return self.factorise(t, y, p);
+            }
+            if !converges && self.damped(length, |surface, fraction| Some(go(surface, fraction)?.0)).is_none()
+            {
+                y[range].copy_from_slice(&start);
+                return Err(Fault::NoProjection { unknowns: self.k });
+            }
+            self.factorise(t, y, p)?;
         }
         Err(Fault::NoProjection { unknowns: self.k })
+    }
+
+    /// Halves a step until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,
+    /// Numer. Math. 22, 1974, 289–315), `length` being that of the whole step; none if it never is.
+    fn damped(
+        &mut self,
+        length: f64,
+        mut go: impl FnMut(&mut Surface, f64) -> Option<f64>,
+    ) -> Option<f64> {
+        (0..=HALVINGS).map(|halvings| 0.5f64.powi(halvings)).find(|&fraction| {
+            go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length)
+        })
+    }
+
+    /// Whether errors of f, where it was computed last, may call for a step of this length, with the matrix as it is
+    /// factorised.
+    fn is_rounding(&mut self, part: Part, length: f64, change: &[f64], state: &[f64]) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let errors: Vec<f64> = (0..self.measured(part).values().len())
+            .map(|place| self.measured(part).error(place))
+            .collect();
+        if !errors.iter().all(|error| error.is_finite()) {
+            return largest(change) <= SHORT * largest(state);
+        }
+        let mut noise = 0.0;
+        for (place, &error) in errors.iter().enumerate() {
+            self.change.fill(0.0);
+            let row = if part == Part::Position { self.places[place] } else { place };
+            self.change[self.k + row] = error;
+            self.solver.solve(&mut self.change);
+            noise += self.length();
+        }
+        length <= ROUNDINGS * noise
     }
 
     fn measured(&mut self, part: Part) -> &mut Measured {
@@ -200,7 +254,13 @@ impl Surface {
         }
         self.change[..self.k].fill(0.0);
         self.solver.solve(&mut self.change);
-        self.change.iter().zip(&self.weights).map(|(change, mass)| mass * change * change).sum::<f64>().sqrt()
+        self.length()
+    }
+
+    /// The length of the δπ in `change`; its square may be too small or too large for a number.
+    fn length(&self) -> f64 {
+        let components = || self.change.iter().zip(&self.weights).map(|(change, mass)| change * mass.sqrt());
+        components().fold(0.0, f64::hypot)
     }
 
     /// What the step changes of x or of η.

@@ -114,7 +114,8 @@ impl Events for FlowEvents {
         Ok(())
     }
 
-    /// The new values all come of the state before; velocities are then moved to where constraints allow them.
+    /// The new values all come of the state before; velocities are then moved to where constraints allow them. Coordinates
+    /// stay where they are unless the reset says otherwise: the state is at the event, and no rounding may take it back.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
         let Reset { places, values } = &mut self.resets[event];
@@ -125,6 +126,11 @@ impl Events for FlowEvents {
         }
         if let Some(motion) = self.constraints.as_mut().filter(|_| all.iter().all(|value| value.is_finite()))
         {
+            if places.iter().all(|&place| place >= motion.coordinates()) {
+                motion.project_velocities(t, &mut all)?;
+                y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
+                return Ok(());
+            }
             let given = all.clone();
             match self.determining.as_slice() {
                 [] => motion.project(t, &mut all)?,

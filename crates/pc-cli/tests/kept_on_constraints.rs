@@ -1,0 +1,150 @@
+//! Motions that stay on their constraints, whatever rounding leaves of these.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+fn run(model: &str, arguments: &[&str]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args([&["run", "-"], arguments].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    child.wait_with_output().expect("pc ends")
+}
+
+/// The columns and rows of a run that comes to its end.
+#[track_caller]
+fn table(model: &str, arguments: &[&str]) -> (Vec<String>, Vec<Vec<f64>>) {
+    let output = run(model, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let mut lines = text.lines();
+    let header = lines.next().expect("a header").split(',').map(str::to_owned).collect();
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    (header, lines.map(row).collect())
+}
+
+#[track_caller]
+fn agree(one: &[Vec<f64>], other: &[Vec<f64>], tolerance: f64) {
+    assert_eq!(one.len(), other.len());
+    for (a, b) in one.iter().zip(other) {
+        for (x, y) in a.iter().zip(b) {
+            assert!((x - y).abs() <= tolerance * (1.0 + x.abs()), "at {}: {x} {y}", a[0]);
+        }
+    }
+}
+
+const BICYCLE: &str = include_str!("whipple-bicycle.toml");
+
+/// Five constraints whose residuals have rounding errors of very different size, at all speeds: none of them stalls.
+#[test]
+fn a_bicycle_rides_at_every_speed() {
+    for i in 0..=40 {
+        let speed = format!("v0={}", 4.0 + 0.05 * f64::from(i));
+        let (names, rows) = table(BICYCLE, &["--set", &speed]);
+        let energy = names.iter().position(|name| name == "energy").expect("a column");
+        let (first, last) = (&rows[0], rows.last().expect("rows"));
+        // The error of the integration with rtol 1e-9, some hundred steps.
+        assert!((last[energy] - first[energy]).abs() < 1e-9 * first[energy].abs(), "{speed}");
+    }
+}
+
+/// 5e-324 is no multiple of itself: 0.56 x' cannot be made zero by a step of Newton's method.
+#[test]
+fn the_smallest_number_is_rounding() {
+    let model = |c: &str, start: &str, other: &str| {
+        format!(
+            "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = {start}\n\"y'\" = {other}\n[constraints]\n\
+             k = \"{c}*x'\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[simulation]\nt_end = 1.0\nsamples = 2\n"
+        )
+    };
+    for (c, start, other) in [
+        ("0.56", "5e-324", "1.0"),
+        ("0.56", "5e-324", "0.0"),
+        ("0.7", "-1.5e-323", "1e-300"),
+        ("1e100", "5e-324", "1.0"),
+        ("3", "2e-310", "5e-324"),
+    ] {
+        let (_, rows) = table(&model(c, start, other), &[]);
+        assert!(rows[1][1].abs() < 1e-300 && rows[1][2] == rows[0][4], "{c}, {start}: {rows:?}");
+    }
+}
+
+/// Where nothing moves, what the equations leave of accelerations is rounding, and the energy can be kept.
+#[test]
+fn energy_is_kept_where_its_rate_is_rounding() {
+    let still = "[quasi_velocities]\nw1 = 0.0\nw2 = 0.19879861614865244\nw3 = 0.22336923162769937\n[algebra]\n\
+                 name = \"heisenberg\"\n[constraints]\nk0 = \"w2 - 0.89*w3 + 1.14*w1\"\nk1 = \"w1\"\n[lagrangian]\n\
+                 kinetic = \"1.568*w2^2/2 + 0.82*w3^2/2\"\n[simulation]\nt_end = 1.0\n";
+    let (_, rows) = table(still, &["--project", "energy"]);
+    for row in &rows {
+        for (value, start) in row[1..].iter().zip(&rows[0][1..]) {
+            assert!((value - start).abs() < 1e-15, "{row:?}"); // a few roundings
+        }
+    }
+    // A rate of that size that is no rounding is one.
+    let slow = "[coordinates]\nx = 1.0\n[quasi_velocities]\n\"x'\" = 7e-19\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+                [integrals]\nplace = \"x\"\n[simulation]\nt_end = 1.0\n";
+    assert_eq!(run(slow, &["--project", "place"]).status.code(), Some(4));
+}
+
+/// A bead on a circle that is slowed down where it passes a place.
+const BRAKED: &str = "[parameters]\nplace = 0.3\n[coordinates]\nx = 0.6\ny = -0.8\n[constraints]\ncircle = \"x^2 + y^2 - 1\"\n\
+                      [lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n[events.brake]\nwhen = \"x - place\"\n\
+                      reset = { \"x'\" = \"0.5*x'\" }\n[simulation]\nt_end = 2.0\nsamples = 2\n";
+
+/// The projection that a reset ends with leaves the bead at the place, on the side where it is: no form and no place makes it
+/// pass twice.
+#[test]
+fn a_reset_under_constraints_occurs_once() {
+    let (_, rows) = table(BRAKED, &["--form", "canonical"]);
+    // x and x' by an integration in the angle.
+    assert!((rows[1][1] + 0.042_565_8).abs() < 1e-7 && (rows[1][3] + 0.425_942_7).abs() < 1e-7, "{rows:?}");
+    for i in 0..49 {
+        let place = format!("place={}", 0.05 + 0.01 * f64::from(i));
+        let mut ends = Vec::new();
+        for form in ["poincare", "canonical"] {
+            let arguments = ["--set", &place, "--form", form];
+            let said = String::from_utf8(run(BRAKED, &arguments).stderr).expect("UTF-8");
+            assert!(said.contains("  events   brake  once: "), "{form}, {place}: {said}");
+            ends.push(table(BRAKED, &arguments).1);
+        }
+        agree(&ends[0], &ends[1], 1e-7); // a hundred times the tolerance of the integration
+    }
+}
+
+/// A particle on a sphere, thrown from near the equator over the poles.
+const SPHERE: &str = "[parameters]\ng = 1.0\n[coordinates]\nx = 0.0\ny = 0.6\nz = 0.8\n[quasi_velocities]\n\"x'\" = 0.3\n\
+                      \"y'\" = 2.4\n\"z'\" = -1.8\n[constraints]\nsphere = \"x^2 + y^2 + z^2 - 1\"\n[lagrangian]\n\
+                      kinetic = \"(x'^2 + y'^2 + z'^2)/2\"\npotential = \"g*z\"\n[simulation]\nt_end = 12.0\nsamples = 49\n";
+
+/// No two of the three velocities are independent everywhere on a sphere, and a motion crosses all three great circles; in
+/// momenta it is the same motion, by each method and with any of the integrals kept.
+#[test]
+fn momenta_cross_where_any_choice_of_velocities_fails() {
+    for arguments in [&["--rtol", "1e-10"][..], &["--rtol", "1e-10", "--set", "g=0"]] {
+        let usual = table(SPHERE, arguments);
+        for j in 1..=3 {
+            let sides = |side: f64| usual.1.iter().any(|row| row[j] * side > 0.1);
+            assert!(sides(1.0) && sides(-1.0), "it crosses the plane of {}", usual.0[j]);
+        }
+        for more in [&["--form", "canonical"][..], &["--form", "canonical", "--project", "energy"]] {
+            let momenta = table(SPHERE, &[arguments, more].concat());
+            assert_eq!(usual.0, momenta.0);
+            agree(&usual.1, &momenta.1, 1e-7); // a thousand times the tolerance of the integration, after several turns
+            for row in &momenta.1 {
+                let radius = row[1].hypot(row[2]).hypot(row[3]);
+                assert!((radius - 1.0).abs() < 1e-14, "projected to rounding: {row:?}");
+            }
+        }
+    }
+    let bdf = ["--method", "bdf", "--rtol", "1e-8"];
+    agree(
+        &table(SPHERE, &bdf).1,
+        &table(SPHERE, &[&bdf[..], &["--form", "canonical"]].concat()).1,
+        1e-4, // BDF with 1e-8 a step
+    );
+}

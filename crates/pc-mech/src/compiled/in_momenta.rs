@@ -1,0 +1,264 @@
+//! Motions under constraints with momenta for the components of their state.
+
+use pc_algebra::Matrix;
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, VectorField};
+
+use crate::compiled::columns::derivative;
+use crate::compiled::fault::check_finite;
+use crate::compiled::motion::Motion;
+use crate::compiled::options::CompileOptions;
+use crate::error::MechError;
+use crate::legendre::LegendreTransform;
+use crate::multipliers::Multipliers;
+
+/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
+///
+///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
+///
+/// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
+///
+///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
+#[derive(Clone, Debug)]
+pub(crate) struct InMomenta {
+    transform: LegendreTransform,
+    inner: Box<Motion>,
+    /// ẏ of (t, (x, η, η̇)).
+    transport: Evaluator,
+    /// By x and, where these are asked for, by the parameters.
+    jacobian: Option<Slopes>,
+    parameter_jacobian: Option<Slopes>,
+    /// x, η, then η̇.
+    known: Vec<f64>,
+    full: Pattern,
+}
+
+/// Derivatives by symbols q, all of (t, (x, η, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
+/// ∂ẏ/∂η and of M.
+#[derive(Clone, Debug)]
+struct Slopes {
+    symbols: usize,
+    multipliers: usize,
+    entries: Evaluator,
+}
+
+impl InMomenta {
+    /// # Errors
+    /// [`MechError::Expr`] for a symbol that is neither state nor declared parameter.
+    pub(crate) fn new<'g>(
+        multipliers: &Multipliers<'g>,
+        transform: LegendreTransform,
+        options: &CompileOptions,
+    ) -> Result<InMomenta, MechError> {
+        let system = multipliers.equations().system();
+        let (graph, x, eta) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
+        let accelerations = system.accelerations();
+        let velocities = system.frame().velocities(eta);
+        let along: Vec<_> = x
+            .iter()
+            .copied()
+            .zip(velocities)
+            .chain(eta.iter().copied().zip(accelerations.iter().copied()))
+            .chain([(system.frame().time(), Expr::ONE)])
+            .collect();
+        let parameters: Vec<Expr<'g>> =
+            system.run_time_inputs().into_iter().map(|(symbol, _)| symbol).collect();
+        let inputs = Inputs {
+            time: Some(system.frame().time()),
+            state: [x, eta, &accelerations].concat(),
+            parameters: parameters.clone(),
+        };
+        let momenta = system.momenta();
+        let rates = graph.shorten(&graph.directional(&momenta, &along), &system.collecting_order());
+        let slopes = |symbols: &[Expr<'g>]| {
+            let negative: Vec<_> = momenta.iter().map(|&p| -p).collect();
+            let balance = [negative.as_slice(), multipliers.velocities()].concat();
+            let by = |functions: &[Expr<'g>], symbol: Expr<'g>| {
+                graph.directional(functions, &[(symbol, Expr::ONE)])
+            };
+            let columns = symbols.iter().flat_map(|&q| [by(&rates, q), by(&balance, q)].concat());
+            let moving = eta.iter().chain(&accelerations).flat_map(|&eta| by(&rates, eta));
+            let entries: Vec<Expr<'g>> = columns.chain(moving).collect();
+            Ok::<_, ExprError>(Slopes {
+                symbols: symbols.len(),
+                multipliers: multipliers.constraints().len(),
+                entries: derivative(graph, &inputs, &entries, options.backend)?,
+            })
+        };
+        let dim = x.len() + eta.len();
+        Ok(InMomenta {
+            inner: Box::new(multipliers.compile_for(CompileOptions { jvp: false, ..*options })?),
+            transport: Evaluator::new(Program::new(graph, &inputs, &rates)?, Backend::Interpreter),
+            jacobian: options.jacobian.then(|| slopes(x)).transpose()?,
+            parameter_jacobian: (options.jacobian && options.parameter_jacobian)
+                .then(|| slopes(&parameters))
+                .transpose()?,
+            known: vec![0.0; dim + eta.len()],
+            full: Pattern::full(dim, dim),
+            transform,
+        })
+    }
+
+    /// The motion of (x, η).
+    pub(crate) fn inner(&self) -> &Motion {
+        &self.inner
+    }
+
+    /// The motion of (x, η), to be changed.
+    pub(crate) fn inner_mut(&mut self) -> &mut Motion {
+        &mut self.inner
+    }
+
+    /// The places of the Jacobian.
+    pub(crate) fn pattern(&self) -> Option<&Pattern> {
+        self.jacobian.as_ref().map(|_| &self.full)
+    }
+
+    /// (x, η) of (x, y).
+    ///
+    /// # Errors
+    /// As [`LegendreTransform::to_quasi_velocities`].
+    pub(crate) fn read(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
+        let parameters = self.transform.parameters_mut();
+        let known = parameters.len();
+        parameters.copy_from_slice(&self.inner.parameters()[..known]);
+        self.transform.to_quasi_velocities(t, y)
+    }
+
+    /// The observables, not finite where momenta have no quasi-velocities.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        match self.read(t, y) {
+            Ok(state) => self.inner.observe(t, &state),
+            Err(_) => vec![f64::NAN; self.inner.observable_names().len()],
+        }
+    }
+
+    /// What should be zero of each constraint, not finite where momenta have no quasi-velocities.
+    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        match self.read(t, y) {
+            Ok(state) => self.inner.constraint_residuals(t, &state),
+            Err(_) => vec![f64::NAN; self.inner.constraint_names().len()],
+        }
+    }
+
+    /// Leaves (x, η, η̇) in `known`, and ẋ in `rates`.
+    fn solve(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+        let n = self.inner.coordinates();
+        let state = self.read(t, y).map_err(Failure::recoverable)?;
+        self.inner.rhs(t, &state, rates)?;
+        self.known[..y.len()].copy_from_slice(&state);
+        self.known[y.len()..].copy_from_slice(&rates[n..]);
+        Ok(())
+    }
+
+    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.solve(t, y, ydot)?;
+        let n = self.inner.coordinates();
+        let parameters = self.inner.parameters();
+        self.transport.eval(t, &self.known, parameters, &mut ydot[n..]);
+        check_finite(&ydot[n..], &self.transport, (t, &self.known, parameters))
+            .map_err(|fault| self.inner.failure(fault, t, &self.known[..y.len()]))
+    }
+
+    /// To where the motion of (x, η) is projected; momenta of a state that is there are left as they are.
+    pub(crate) fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let state = self.read(t, y).map_err(Failure::recoverable)?;
+        let mut projected = state.clone();
+        self.inner.project(t, &mut projected)?;
+        if projected != state {
+            y.copy_from_slice(&self.transform.to_momenta(t, &projected).map_err(Failure::recoverable)?);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn restart(&mut self, t: f64, y: &[f64]) {
+        // Where momenta have no quasi-velocities the next evaluation says so.
+        if let Ok(state) = self.read(t, y) {
+            self.inner.restart(t, &state);
+        }
+    }
+
+    /// ∂f/∂y, column after column: with F(t, x, η) = (ẋ, ẏ) and η = h(t, x, y),
+    ///
+    ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y.
+    pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
+        let Some(slopes) = self.jacobian.clone() else {
+            return Err(Failure::fatal(MechError::NotCompiled { what: "Jacobian" }));
+        };
+        let of_inner = self.inner_jacobian(t, y)?;
+        entries.copy_from_slice(&self.changes(&slopes, t, &of_inner, |i, q| of_inner[(i, q)])?);
+        Ok(())
+    }
+
+    /// The derivative of (ẋ, η̇) by (x, η); leaves (x, η, η̇) in `known`.
+    fn inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<Matrix<f64>, Failure> {
+        let dim = y.len();
+        self.solve(t, y, &mut vec![0.0; dim])?;
+        let mut entries = vec![0.0; dim * dim];
+        self.inner.jacobian(t, &self.known[..dim], &mut entries)?;
+        Ok(Matrix::from_fn(dim, dim, |i, j| entries[i + j * dim]))
+    }
+
+    /// ∂f/∂p, column after column, as [`jacobian`](InMomenta::jacobian).
+    pub(crate) fn parameter_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        let Some(slopes) = self.parameter_jacobian.clone() else {
+            return Err(Failure::fatal(MechError::NotCompiled { what: "derivative by parameters" }));
+        };
+        let (dim, of_inner) = (y.len(), self.inner_jacobian(t, y)?);
+        let mut by_parameters = vec![0.0; entries.len()];
+        self.inner.parameter_jacobian(t, &self.known[..dim], &mut by_parameters)?;
+        let columns = self.changes(&slopes, t, &of_inner, |i, q| by_parameters[i + q * dim])?;
+        entries.copy_from_slice(&columns[..entries.len()]);
+        Ok(())
+    }
+
+    /// The columns of ∂f/∂q for each symbol q of `slopes`, then those of ∂f/∂y; (ẋ, η̇) has the derivatives `of_inner` by
+    /// (x, η) and `by_symbol` by q.
+    fn changes(
+        &mut self,
+        slopes: &Slopes,
+        t: f64,
+        of_inner: &Matrix<f64>,
+        by_symbol: impl Fn(usize, usize) -> f64,
+    ) -> Result<Vec<f64>, Failure> {
+        let (n, dim) = (self.inner.coordinates(), of_inner.rows());
+        let (k, m) = (dim - n, slopes.multipliers);
+        let stride = 2 * k + m;
+        let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
+        slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
+        check_finite(&values, &slopes.entries, (t, &self.known, self.inner.parameters()))
+            .map_err(|fault| self.inner.failure(fault, t, &self.known[..dim]))?;
+        let (by_q, moving) = values.split_at(slopes.symbols * stride);
+        let (by_eta, mass) = moving.split_at(k * k);
+        // ∂h/∂q, then ∂h/∂y
+        let mut h = vec![0.0; (slopes.symbols + k) * (k + m)];
+        for (q, column) in h.chunks_exact_mut(k + m).enumerate() {
+            match q.checked_sub(slopes.symbols) {
+                None => column.copy_from_slice(&by_q[q * stride + k..(q + 1) * stride]),
+                Some(s) => column[s] = 1.0,
+            }
+        }
+        self.transform.solve_last(&mut h);
+        let mut columns = Vec::with_capacity((slopes.symbols + k) * dim);
+        for (q, h) in h.chunks_exact(k + m).enumerate() {
+            let is_symbol = q < slopes.symbols;
+            let inner: Vec<f64> = (0..dim)
+                .map(|i| {
+                    let direct = if is_symbol { by_symbol(i, q) } else { 0.0 };
+                    direct + (0..k).map(|s| of_inner[(i, n + s)] * h[s]).sum::<f64>()
+                })
+                .collect();
+            columns.extend_from_slice(&inner[..n]);
+            columns.extend((0..k).map(|r| {
+                let direct = if is_symbol { by_q[q * stride + r] } else { 0.0 };
+                let along = |s: usize| by_eta[r + s * k] * h[s] + mass[r + s * k] * inner[n + s];
+                direct + (0..k).map(along).sum::<f64>()
+            }));
+        }
+        Ok(columns)
+    }
+}
