@@ -7,14 +7,15 @@
 use std::hash::{Hash, Hasher};
 
 use hashbrown::HashTable;
-use rustc_hash::FxHasher;
+use rustc_hash::{FxHashMap, FxHasher};
 
-use crate::fingerprint::Fingerprint;
+use crate::fingerprint::{Fingerprint, Roots, Terms, Value};
 use crate::function::Function;
 use crate::number::Number;
 
 mod calls;
 mod divisors;
+mod signs;
 
 use divisors::{DivisorSets, Divisors};
 
@@ -113,12 +114,19 @@ pub(crate) struct Dag {
     folding: Folding,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
+    /// The values of nodes with roots, as sums of products of these.
+    expansions: FxHashMap<NodeId, Terms>,
+    roots: Roots,
+    /// Whether the node is known not to be negative where it has a value.
+    nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
     /// A bit for each symbol that the node is written with, the same bit for every sixty-fourth.
     symbols: Vec<u64>,
     /// What the node divides by.
     divisors: Vec<Divisors>,
+    /// The arguments of roots and the like in the node, which bound the region where it has a value.
+    limits: Vec<Divisors>,
     divisor_sets: DivisorSets,
     /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
     successor: Vec<Option<(NodeId, Number)>>,
@@ -170,6 +178,19 @@ impl Dag {
         self.fingerprints[id.index()]
     }
 
+    /// Whether there is no root in the value of a node.
+    pub(crate) fn is_plain(&self, id: NodeId) -> bool {
+        self.expansions.is_empty() || !self.expansions.contains_key(&id)
+    }
+
+    pub(crate) fn value(&self, id: NodeId) -> Value {
+        Value::new(self.fingerprint(id), self.expansions.get(&id).cloned())
+    }
+
+    pub(crate) fn roots_mut(&mut self) -> &mut Roots {
+        &mut self.roots
+    }
+
     pub(crate) fn cost(&self, id: NodeId) -> u32 {
         self.costs[id.index()]
     }
@@ -214,8 +235,7 @@ impl Dag {
     pub(crate) fn symbol(&mut self, name: &str) -> NodeId {
         let candidate = Candidate::Symbol(name);
         self.find(&candidate).unwrap_or_else(|| {
-            let fingerprint = Fingerprint::symbol(name);
-            let id = self.push(&candidate, fingerprint);
+            let id = self.push(&candidate, Fingerprint::symbol(name).into());
             self.register(id);
             id
         })
@@ -307,7 +327,7 @@ impl Dag {
     }
 
     /// Writes q·n as q'·n' with n' not a scaled node (unless q' would overflow or underflow).
-    fn split_coefficient(&self, node: NodeId, q: Number) -> (NodeId, Number) {
+    pub(crate) fn split_coefficient(&self, node: NodeId, q: Number) -> (NodeId, Number) {
         let (mut node, sign) = self.representative(node);
         let mut q = q * sign;
         while let Node::Sum { constant, terms } = self.node(node) {
@@ -502,8 +522,8 @@ impl Dag {
     /// value up to sign is answered if it is at least as good.
     ///
     /// Of two forms of one function the better is the one that divides by less, as (x² − 1)/(x − 1) has no value at
-    /// x = 1 and x + 1 has; where both have the same divisors, the shorter. A form that divides by what the other does
-    /// not, and conversely, stays a node of its own.
+    /// x = 1 and x + 1 has, and takes fewer roots, as (√x − 1)² + 2√x has none below 0; where neither is worse, the shorter.
+    /// A form that divides by what the other does not, and conversely, stays a node of its own.
     fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         if self.folding == Folding::Structural {
             return self.intern(candidate);
@@ -512,24 +532,27 @@ impl Dag {
             let (node, sign) = self.representative(known);
             return self.signed(node, sign);
         }
-        let fingerprint = self.fingerprint_of(candidate);
+        let value = self.value_of(candidate);
+        let fingerprint = value.fingerprint;
         if let Some((p, q)) = fingerprint.small_rational() {
             return Atom::Constant(Number::ratio(p, q));
         }
         let key = fingerprint.up_to_sign();
         let hash = hash_of(&key);
         let Some(&equal) = self.by_value.find(hash, |&id| self.fingerprint(id).up_to_sign() == key) else {
-            let id = self.push(candidate, fingerprint);
+            let id = self.push(candidate, value);
             self.register(id);
             return Atom::Node(id);
         };
         let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
         let (ours, theirs) = (self.divisors_of(candidate), self.divisors[equal.index()]);
-        let (regular, replaceable) = (self.are_within(theirs, ours), self.are_within(ours, theirs));
+        let (bounds, their_bounds) = (self.limits_of(candidate), self.limits[equal.index()]);
+        let regular = self.are_within(theirs, ours) && self.are_among(their_bounds, bounds);
+        let replaceable = self.are_within(ours, theirs) && self.are_among(bounds, their_bounds);
         if regular && !(replaceable && self.is_shorter(candidate, equal)) {
             return self.signed(equal, sign);
         }
-        let id = self.push(candidate, fingerprint);
+        let id = self.push(candidate, value);
         if replaceable {
             self.successor[equal.index()] = Some((id, sign));
             if let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
@@ -560,8 +583,8 @@ impl Dag {
     /// Interns a candidate by its structure alone.
     fn intern(&mut self, candidate: &Candidate<'_>) -> Atom {
         let id = self.find(candidate).unwrap_or_else(|| {
-            let fingerprint = self.fingerprint_of(candidate);
-            self.push(candidate, fingerprint)
+            let value = self.value_of(candidate);
+            self.push(candidate, value)
         });
         Atom::Node(id)
     }
@@ -583,9 +606,10 @@ impl Dag {
         }
     }
 
-    fn push(&mut self, candidate: &Candidate<'_>, fingerprint: Fingerprint) -> NodeId {
+    fn push(&mut self, candidate: &Candidate<'_>, value: Value) -> NodeId {
         let (cost, symbols) = (self.cost_of(candidate), self.symbols_of(candidate));
-        let divisors = self.divisors_of(candidate);
+        let (divisors, limits) = (self.divisors_of(candidate), self.limits_of(candidate));
+        let nonnegative = self.is_candidate_nonnegative(candidate);
         let node = match *candidate {
             Candidate::Constant(c) => Node::Constant(c),
             Candidate::Symbol(name) => {
@@ -606,10 +630,15 @@ impl Dag {
         };
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
-        self.fingerprints.push(fingerprint);
+        self.fingerprints.push(value.fingerprint);
+        if let Some(terms) = value.into_terms() {
+            self.expansions.insert(id, terms);
+        }
+        self.nonnegative.push(nonnegative);
         self.costs.push(cost);
         self.symbols.push(symbols);
         self.divisors.push(divisors);
+        self.limits.push(limits);
         self.successor.push(None);
         let hash = candidate.hash();
         let Dag { by_structure, nodes, names, terms: term_pool, factors: factor_pool, .. } = self;

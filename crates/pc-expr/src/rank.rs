@@ -2,37 +2,42 @@
 
 use crate::dag::Atom;
 use crate::expr::Expr;
-use crate::fingerprint::{Fingerprint, First};
+use crate::fingerprint::{Fingerprint, Value};
 use crate::graph::Graph;
 
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.
     pub fn generic_rank<'g>(&'g self, rows: &[Vec<Expr<'g>>]) -> usize {
-        let mut rows: Vec<Vec<First>> = self.with(|dag| {
+        self.with(|dag| {
             let value = |x: &Expr<'g>| match x.atom() {
-                Atom::Constant(c) => Fingerprint::constant(c).first(),
-                Atom::Node(id) => dag.fingerprint(id).first(),
+                Atom::Constant(c) => Fingerprint::constant(c).into(),
+                Atom::Node(id) => dag.value(id),
             };
-            rows.iter().map(|row| row.iter().map(value).collect()).collect()
-        });
-        let columns = rows.first().map_or(0, Vec::len);
-        let mut rank = 0;
-        for column in 0..columns {
-            let Some(pivot) = (rank..rows.len()).find(|&r| rows[r][column] != First::ZERO) else {
-                continue;
-            };
-            rows.swap(rank, pivot);
-            let (head, tail) = rows.split_at_mut(rank + 1);
-            let pivot_row = &head[rank];
-            let inverse = pivot_row[column].inverse();
-            for row in tail {
-                let factor = row[column] * inverse;
-                for j in column..columns {
-                    row[j] = row[j] - factor * pivot_row[j];
+            let mut rows: Vec<Vec<Value>> = rows.iter().map(|row| row.iter().map(value).collect()).collect();
+            let roots = dag.roots_mut();
+            let columns = rows.first().map_or(0, Vec::len);
+            let mut rank = 0;
+            for column in 0..columns {
+                let Some(pivot) = (rank..rows.len()).find(|&r| !rows[r][column].is_zero()) else {
+                    continue;
+                };
+                rows.swap(rank, pivot);
+                let (head, tail) = rows.split_at_mut(rank + 1);
+                let pivot_row = &head[rank];
+                let inverse = roots.inverse(&pivot_row[column]);
+                for row in tail {
+                    if row[column].is_zero() {
+                        continue;
+                    }
+                    let factor = roots.times(&row[column], &inverse).negated();
+                    for j in column..columns {
+                        let product = roots.times(&factor, &pivot_row[j]);
+                        row[j] = roots.plus(&[row[j].clone(), product]);
+                    }
                 }
+                rank += 1;
             }
-            rank += 1;
-        }
-        rank
+            rank
+        })
     }
 }

@@ -84,7 +84,9 @@ impl<'g> Sampler<'g> {
         let symbols = graph.symbols_of(outputs);
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
         let cone = graph.with(|dag| Cone::below(dag, outputs.iter().copied()));
-        let called = |&&id: &&NodeId| graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
+        // Roots keep their laws in a graph only: where there are some, every node is written once more.
+        let rooted = graph.with(|dag| cone.order.iter().any(|&id| !dag.is_plain(id)));
+        let called = |&&id: &&NodeId| rooted || graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
         let calls = cone.order.iter().filter(called).map(|&id| graph.expr(Atom::Node(id))).collect();
         Sampler { graph, outputs, cone, symbols, calls }
     }
@@ -96,6 +98,9 @@ impl<'g> Sampler<'g> {
             let of =
                 |values: &FxHashMap<NodeId, First>, id: &NodeId| values.get(id).copied().unwrap_or_default();
             for &id in &self.cone.order {
+                if values.contains_key(&id) {
+                    continue;
+                }
                 let value = match dag.node(id) {
                     Node::Constant(c) => constant(c),
                     Node::Symbol(_) | Node::Call { .. } => continue,

@@ -114,7 +114,6 @@ fn what_differs_somewhere_stays_apart() {
     let all = [
         x,
         -x,
-        x.square().sqrt(),
         x.abs(),
         x.sign() * x.square().sqrt(),
         x.square().pow(0.3),
@@ -129,7 +128,6 @@ fn what_differs_somewhere_stays_apart() {
         x.sin().asin(),
         x.cos().acos(),
         x.sin().atan2(x.cos()),
-        x.exp().log(),
         x.cos(),
         (x + half_turn).cos(),
         (x + half_turn / 2.0).cos(),

@@ -34,6 +34,22 @@ enum Step {
     Geometric(usize),
     /// (a⁶ − 1)/(a − 1), which is the same
     GeometricQuotient(usize),
+    /// (√a + b)(√a − b), which is a − b²
+    Conjugates(usize, usize),
+    /// 1/(√(a² + 1) − b)
+    Conjugate(usize, usize),
+    /// √(a²b), which is |a|√b
+    RootOfProduct(usize, usize),
+    /// √(ab)
+    RootOfPair(usize, usize),
+    /// a^(p/q)
+    Fraction(usize, i32, i32),
+    /// (a^(1/4) + 1)(a^(1/4) − 1)(√a + 1), which is a − 1
+    Quarters(usize),
+    /// e^(b log a)
+    ThroughLogarithm(usize, i32),
+    /// cos(2 acos a + b)
+    ThroughAngle(usize, usize),
 }
 
 /// Scales, those of the order of 1 first.
@@ -60,6 +76,14 @@ fn steps(count: usize, scales: &'static [f64]) -> impl Strategy<Value = Vec<Step
         1 => (i(), i()).prop_map(|(a, b)| Step::Exponentials(a, b)),
         1 => i().prop_map(Step::Geometric),
         1 => i().prop_map(Step::GeometricQuotient),
+        1 => (i(), i()).prop_map(|(a, b)| Step::Conjugates(a, b)),
+        1 => (i(), i()).prop_map(|(a, b)| Step::Conjugate(a, b)),
+        1 => (i(), i()).prop_map(|(a, b)| Step::RootOfProduct(a, b)),
+        1 => (i(), i()).prop_map(|(a, b)| Step::RootOfPair(a, b)),
+        1 => (i(), -7i32..8, prop::sample::select(&[4, 5, 10][..])).prop_map(|(a, p, q)| Step::Fraction(a, p, q)),
+        1 => i().prop_map(Step::Quarters),
+        1 => (i(), -2i32..3).prop_map(|(a, e)| Step::ThroughLogarithm(a, e)),
+        1 => (i(), i()).prop_map(|(a, b)| Step::ThroughAngle(a, b)),
     ];
     prop::collection::vec(step, count)
 }
@@ -142,7 +166,33 @@ fn perform<A: Algebra>(step: &Step, pool: &[A]) -> A {
             let less = |x: A| x.plus(x.constant(-1.0));
             less(at(a).power(6)).times(less(at(a)).power(-1))
         }
+        Step::Conjugates(a, b) => {
+            let root = call(Function::Sqrt, at(a));
+            root.plus(at(b)).times(root.plus(minus(at(b))))
+        }
+        Step::Conjugate(a, b) => {
+            call(Function::Sqrt, at(a).power(2).plus(at(a).constant(1.0))).plus(minus(at(b))).power(-1)
+        }
+        Step::RootOfProduct(a, b) => call(Function::Sqrt, at(a).power(2).times(at(b))),
+        Step::RootOfPair(a, b) => call(Function::Sqrt, at(a).times(at(b))),
+        Step::Fraction(a, p, q) => fraction(at(a), p, q),
+        Step::Quarters(a) => {
+            let (one, root) = (at(a).constant(1.0), fraction(at(a), 1, 4));
+            root.plus(one).times(root.plus(minus(one))).times(call(Function::Sqrt, at(a)).plus(one))
+        }
+        Step::ThroughLogarithm(a, e) => {
+            call(Function::Exp, call(Function::Log, at(a)).times(at(a).constant(e.into())))
+        }
+        Step::ThroughAngle(a, b) => {
+            let angle = call(Function::Acos, at(a)).times(at(a).constant(2.0));
+            call(Function::Cos, angle.plus(at(b)))
+        }
     }
+}
+
+/// a^(p/q)
+fn fraction<A: Algebra>(a: A, p: i32, q: i32) -> A {
+    A::apply(Function::Pow, &[a, a.constant(f64::from(p) / f64::from(q))])
 }
 
 proptest! {

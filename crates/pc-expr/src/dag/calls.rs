@@ -73,7 +73,8 @@ impl Dag {
         match atom {
             Atom::Constant(c) => {
                 let candidate = Candidate::Constant(c);
-                self.find(&candidate).unwrap_or_else(|| self.push(&candidate, Fingerprint::constant(c)))
+                self.find(&candidate)
+                    .unwrap_or_else(|| self.push(&candidate, Fingerprint::constant(c).into()))
             }
             Atom::Node(node) => match self.representative(node) {
                 (node, sign) if sign.is_one() => node,

@@ -97,6 +97,51 @@ impl Dag {
         all
     }
 
+    /// The arguments that bound where a candidate has a value, in itself or below. Where nodes are merged by structure alone
+    /// nobody asks.
+    pub(super) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
+        if self.folding == Folding::Structural {
+            return Divisors::NONE;
+        }
+        let mut all = Divisors::NONE;
+        let mut add = |dag: &mut Dag, node: NodeId| {
+            all = dag.divisor_sets.union(all, dag.limits[node.index()]);
+        };
+        match *candidate {
+            Candidate::Constant(_) | Candidate::Symbol(_) => {}
+            Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(self, node)),
+            Candidate::Product(factors) => factors.iter().for_each(|&(node, _)| add(self, node)),
+            Candidate::Call(function, args) => {
+                Dag::args(function, &args).iter().for_each(|&node| add(self, node));
+                let bounded = match function {
+                    Function::Sqrt => !self.is_nonnegative(args[0]),
+                    Function::Pow | Function::Asin | Function::Acos => true,
+                    Function::Log => self.may_vanish(args[0]),
+                    _ => false,
+                };
+                if bounded {
+                    let own = self.divisor_sets.intern(vec![args[0]]);
+                    all = self.divisor_sets.union(all, own);
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether each limit of the first set is one of the second.
+    pub(super) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
+        if some == others || some == Divisors::NONE || others == Divisors::ALL {
+            return true;
+        }
+        if some == Divisors::ALL || others == Divisors::NONE {
+            return false;
+        }
+        let others = self.divisor_sets.get(others);
+        self.divisor_sets.get(some).iter().all(|&limit| {
+            others.iter().any(|&other| other == limit || self.fingerprint(other) == self.fingerprint(limit))
+        })
+    }
+
     /// Whether each divisor of the first expression vanishes only where one of the second does.
     pub(crate) fn is_as_regular(&self, some: Atom, other: Atom) -> bool {
         let divisors = |atom| match atom {
