@@ -9,13 +9,14 @@
 //! The rest serves several tests: nonholonomic systems described by closures ([`nonholonomic`]), the definition
 //! of the equations in numbers, which has the library evaluate expressions and nothing else ([`definition`],
 //! over the numbers of [`dual`]), a measure for what rounding may do to a program ([`magnitude`]) and a
-//! workbench for emitted source ([`emitted`]).
+//! workbench for emitted source ([`emitted`]). Random models have a room of their own ([`fuzz`]).
 
 pub mod classical;
 pub mod closed_form;
 pub mod definition;
 pub mod dual;
 pub mod emitted;
+pub mod fuzz;
 pub mod magnitude;
 pub mod malformed;
 pub mod nonholonomic;

@@ -12,6 +12,7 @@ mod command;
 mod counts;
 mod demo;
 mod error;
+mod fuzz;
 mod header;
 mod install;
 mod packages;
@@ -32,6 +33,8 @@ usage: cargo xtask <command>
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
   test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
+  fuzz models [--count N] [--seed S] [--model K]
+                   run random models and compare them with independent computations; --model shows one of them
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind
@@ -70,6 +73,7 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         }
         "test" => test::run(quick(rest)?),
         "bench" => bench::run(rest),
+        "fuzz" => fuzz::run(rest),
         "header" => {
             no_more(name, rest)?;
             header::run()

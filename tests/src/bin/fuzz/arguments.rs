@@ -1,0 +1,45 @@
+//! The command line of the differential tester.
+
+use std::time::Duration;
+
+use pc_tests::fuzz::campaign::Campaign;
+
+pub(crate) const USAGE: &str =
+    "usage: fuzz models [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N]";
+
+/// What is to be done.
+#[derive(Debug)]
+pub(crate) struct Arguments {
+    pub(crate) campaign: Campaign,
+    /// The one model that is shown.
+    pub(crate) model: Option<u64>,
+}
+
+impl Arguments {
+    pub(crate) fn of(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
+        if words.next().as_deref() != Some("models") {
+            return Err("what is varied are `models`".to_owned());
+        }
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let limit = Duration::from_secs(60);
+        let campaign = Campaign { seed: 1, first: 0, count: 20_000, threads, emitted_every: 50, limit };
+        let mut arguments = Arguments { campaign, model: None };
+        while let Some(word) = words.next() {
+            let mut number = || -> Result<u64, String> {
+                let text = words.next().ok_or_else(|| format!("`{word}` needs a number"))?;
+                text.parse().map_err(|_| format!("`{word}` needs a number, not `{text}`"))
+            };
+            let campaign = &mut arguments.campaign;
+            match word.as_str() {
+                "--count" => campaign.count = number()?,
+                "--seed" => campaign.seed = number()?,
+                "--first" => campaign.first = number()?,
+                "--model" => arguments.model = Some(number()?),
+                "--threads" => campaign.threads = number()?.clamp(1, 1024) as usize,
+                "--emitted-every" => campaign.emitted_every = number()?,
+                other => return Err(format!("there is no `{other}`")),
+            }
+        }
+        Ok(arguments)
+    }
+}

@@ -1,0 +1,76 @@
+//! The differential tester: `cargo xtask fuzz models [--count N] [--seed S] [--model K] [--threads T]`.
+//!
+//! It runs random models over the whole text format and compares what the product makes of them with independent
+//! computations. The same seed gives the same models with any number of threads; `--model K` shows one of them.
+
+mod arguments;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use arguments::Arguments;
+use pc_tests::fuzz::campaign::Campaign;
+use pc_tests::fuzz::examination::{Examined, examine, note_panics};
+use pc_tests::fuzz::generator;
+use pc_tests::fuzz::report::Report;
+use pc_tests::fuzz::shrink::shrink;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::of(std::env::args().skip(1)) {
+        Ok(arguments) => arguments,
+        Err(message) => {
+            eprintln!("fuzz: {message}\n{}", arguments::USAGE);
+            return ExitCode::from(2);
+        }
+    };
+    note_panics();
+    match arguments.model {
+        Some(index) => one(&arguments.campaign, index),
+        None => many(&arguments.campaign),
+    }
+}
+
+/// Shows a model, what came of it, and the shortest that has the same findings.
+fn one(campaign: &Campaign, index: u64) -> ExitCode {
+    let examined = examine(campaign.seed, index, campaign.thoroughness(index));
+    show(&examined);
+    for refusal in &examined.refusals {
+        println!("# refused, {}: {}", refusal.stage, refusal.message.replace('\n', "\n#   "));
+    }
+    let kinds: Vec<&str> = examined.findings.iter().map(|finding| finding.kind).collect();
+    kinds.iter().for_each(|kind| show_shrunk(campaign, index, kind));
+    ExitCode::from(u8::from(!kinds.is_empty()))
+}
+
+fn many(campaign: &Campaign) -> ExitCode {
+    let begin = Instant::now();
+    let results = campaign.run(|done| {
+        if done % 1000 == 0 {
+            eprintln!("{done} of {} models, {:.0} s", campaign.count, begin.elapsed().as_secs_f64());
+        }
+    });
+    let report = Report::of(&results);
+    println!("seed {}, {:.0} s", campaign.seed, begin.elapsed().as_secs_f64());
+    print!("{}", report.text());
+    for (kind, first) in report.kinds() {
+        show_shrunk(campaign, first, kind);
+    }
+    ExitCode::from(u8::from(!report.is_clean()))
+}
+
+fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
+    let specimen = generator::specimen(campaign.seed, index);
+    let (_, examined) = shrink(specimen, kind, campaign.thoroughness(index));
+    println!("\n# model {index} of seed {}, shrunk: {kind}", campaign.seed);
+    show(&examined);
+}
+
+fn show(examined: &Examined) {
+    for finding in &examined.findings {
+        println!("# {}", finding.to_string().replace('\n', "\n#   "));
+    }
+    println!("{}", examined.text);
+    if let Some(twin) = &examined.twin {
+        println!("# the same in ordinary velocities\n# {}", twin.trim_end().replace('\n', "\n# "));
+    }
+}

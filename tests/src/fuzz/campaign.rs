@@ -1,0 +1,55 @@
+//! Many models, on all cores, in order.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use super::examination::{Examined, Thoroughness, examine};
+
+/// Which models are examined.
+#[derive(Clone, Copy, Debug)]
+pub struct Campaign {
+    /// The seed of all.
+    pub seed: u64,
+    /// The number of the first.
+    pub first: u64,
+    /// So many.
+    pub count: u64,
+    /// Threads that work at the same time.
+    pub threads: usize,
+    /// Every so many models one is emitted and compiled; 0 for none.
+    pub emitted_every: u64,
+    /// How long a model may take.
+    pub limit: Duration,
+}
+
+impl Campaign {
+    /// How model number `index` is examined.
+    pub fn thoroughness(&self, index: u64) -> Thoroughness {
+        let emitted = self.emitted_every > 0 && index.is_multiple_of(self.emitted_every);
+        Thoroughness { emitted, limit: self.limit }
+    }
+
+    /// What came of the models, in their order, whatever the number of threads; `done` is told how many are.
+    pub fn run(&self, done: impl Fn(u64) + Sync) -> Vec<(u64, Examined)> {
+        let next = AtomicU64::new(0);
+        let results = Mutex::new(Vec::new());
+        let work = || {
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                if number >= self.count {
+                    return;
+                }
+                let index = self.first + number;
+                let examined = examine(self.seed, index, self.thoroughness(index));
+                results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, examined));
+                done(number + 1);
+            }
+        };
+        thread::scope(|scope| (0..self.threads.max(1)).for_each(|_| _ = scope.spawn(work)));
+        let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        results.sort_by_key(|(index, _)| *index);
+        results
+    }
+}

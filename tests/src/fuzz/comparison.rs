@@ -1,0 +1,253 @@
+//! What must agree: forms of one model, a model and its motion in ordinary velocities, claims and numbers.
+
+use std::fmt;
+
+use num_dual::Dual64;
+
+use super::execution::{Execution, Happening, Motion, Refusal};
+use super::specimen::{Frame, Restricts, Specimen};
+use super::start::Start;
+use super::text::SHOWN;
+
+/// Relative to a number or to 1: some hundred times the tolerance of the integration, which has a few dozen steps.
+const TOLERANCE: f64 = 1e-9;
+
+/// How much larger the error of a motion may be than what tolerances a hundred times as large change in it: the error of the
+/// other form, whose variables are others, at a safety factor.
+const GROWTH: f64 = 10.0;
+
+/// A column that looser tolerances change by so much, relative to its size or to 1, is not resolved and judges nothing.
+const RESOLVED: f64 = 1e-5;
+
+/// An event that looser tolerances change the number of is a matter of rounding.
+const SAME_TIME: f64 = 1e-8;
+
+/// A finding: something that must agree does not, or a panic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What is wrong, the same for all instances.
+    pub kind: &'static str,
+    /// Where, and both values.
+    pub detail: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.kind, self.detail)
+    }
+}
+
+fn finding(kind: &'static str, detail: String) -> Finding {
+    Finding { kind, detail }
+}
+
+/// Everything that does not agree within one model.
+pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let (motion, loose) = (&execution.motion, &execution.loose);
+    if !same_events(motion, loose) {
+        return findings; // not resolved
+    }
+    let forms = [
+        ("canonical form differs", &execution.canonical),
+        ("projected motion differs", &execution.projected),
+    ];
+    for (kind, other) in forms {
+        if let Some(Ok(other)) = other {
+            let same = |name: &str| Some(name.to_owned());
+            findings.extend(compare(kind, motion, loose, other, same));
+        }
+    }
+    let kept = execution.keeps_energy.then_some("energy").into_iter();
+    let integrals = execution.conserved.iter().flatten().map(String::as_str);
+    let jumps = specimen.events.iter().any(|event| !event.reset.is_empty());
+    for name in kept.chain(integrals.filter(|_| !jumps)) {
+        findings.extend(drift("claimed to be kept, but changes", name, motion, loose));
+    }
+    if is_conservative(specimen) && !jumps {
+        findings.extend(drift("energy must be kept, but changes", "energy", motion, loose));
+    }
+    if let Some((name, residual)) = &motion.residual
+        && !(*residual <= TOLERANCE)
+    {
+        findings.push(finding("constraint violated", format!("{name} by {residual:e}")));
+    }
+    for happening in &motion.happenings {
+        findings.extend(is_crossing(specimen, happening));
+        if specimen.constraints.is_empty() {
+            findings.extend(is_reset(specimen, start, motion, happening));
+        }
+    }
+    findings
+}
+
+/// What does not agree between a model and its twin in ordinary velocities.
+pub fn between(specimen: &Specimen, start: &Start, model: &Execution, twin: &Execution) -> Option<Finding> {
+    if !same_events(&model.motion, &model.loose) || !same_events(&twin.motion, &twin.loose) {
+        return None;
+    }
+    let eta = specimen.quasi_velocities();
+    let carried: Vec<&str> = specimen.carried.iter().map(|carried| carried.name.as_str()).collect();
+    let drifts = specimen.has_drift();
+    let name_in_twin = |name: &str| match name {
+        "energy" => (!drifts).then(|| name.to_owned()),
+        // Which of several that follow from each other is dropped is a choice.
+        reaction if reaction.starts_with("λ_") => (!start.redundant).then(|| name.to_owned()),
+        integral if integral.starts_with("i_") => None,
+        name if carried.contains(&name) || eta.iter().any(|eta| eta == name) => {
+            Some(format!("{SHOWN}{name}"))
+        }
+        name => Some(name.to_owned()),
+    };
+    compare("motion in ordinary velocities differs", &model.motion, &model.loose, &twin.motion, name_in_twin)
+}
+
+/// Whether brackets that the frame of a specimen does not determine must be given, and are not.
+pub fn is_undetermined(specimen: &Specimen) -> bool {
+    specimen.algebra.is_none() && super::determined::dependent_over_constants(specimen)
+}
+
+fn same_events(a: &Motion, b: &Motion) -> bool {
+    a.happenings.len() == b.happenings.len()
+        && a.times.len() == b.times.len()
+        && a.happenings.iter().zip(&b.happenings).all(|(a, b)| a.event == b.event)
+}
+
+/// The size of a column, at least 1.
+fn size(motion: &Motion, column: usize) -> f64 {
+    motion.rows.iter().fold(1.0, |size, row| f64::max(size, row[column].abs()))
+}
+
+/// How far looser tolerances move a column; none where that is so far that it judges nothing.
+fn uncertainty(motion: &Motion, loose: &Motion, column: usize) -> Option<f64> {
+    let mut moved = motion.rows.iter().zip(&loose.rows).map(|(a, b)| (a[column] - b[column]).abs());
+    let worst = moved.try_fold(0.0, |worst, moved| moved.is_finite().then(|| f64::max(worst, moved)));
+    worst.filter(|worst| *worst <= RESOLVED * size(motion, column))
+}
+
+fn compare(
+    kind: &'static str,
+    motion: &Motion,
+    loose: &Motion,
+    other: &Motion,
+    name_in_other: impl Fn(&str) -> Option<String>,
+) -> Option<Finding> {
+    let said = |motion: &Motion| -> String {
+        let said = motion.happenings.iter().map(|h| format!("{} at {}", h.event, h.time));
+        said.collect::<Vec<_>>().join(", ")
+    };
+    if !same_events(motion, other) {
+        return Some(finding(kind, format!("events: {}; not: {}", said(other), said(motion))));
+    }
+    for ((a, b), loose) in motion.happenings.iter().zip(&other.happenings).zip(&loose.happenings) {
+        let allowed = SAME_TIME * a.time.abs().max(1.0) + GROWTH * (a.time - loose.time).abs();
+        if !((a.time - b.time).abs() <= allowed) {
+            return Some(finding(kind, format!("{} occurs at {}, not at {}", a.event, b.time, a.time)));
+        }
+    }
+    for (j, name) in motion.columns.iter().enumerate() {
+        let Some(wanted) = name_in_other(name) else { continue };
+        let Some(k) = other.columns.iter().position(|name| *name == wanted) else {
+            return Some(finding(kind, format!("there is no column {wanted}")));
+        };
+        let Some(uncertainty) = uncertainty(motion, loose, j) else { continue };
+        let allowed = TOLERANCE * size(motion, j) + GROWTH * uncertainty;
+        for ((t, row), other) in motion.times.iter().zip(&motion.rows).zip(&other.rows) {
+            let (a, b) = (row[j], other[k]);
+            if !((a - b).abs() <= allowed) && !(a.is_nan() && b.is_nan()) {
+                let t = t - motion.times[0];
+                return Some(finding(
+                    kind,
+                    format!("{name} is {b:?}, not {a:?}, {t} after the start; {allowed:.0e} allowed"),
+                ));
+            }
+        }
+    }
+    None
+}
+
+fn drift(kind: &'static str, name: &str, motion: &Motion, loose: &Motion) -> Option<Finding> {
+    let column = motion.columns.iter().position(|column| column == name)?;
+    let allowed = TOLERANCE * size(motion, column) + GROWTH * uncertainty(motion, loose, column)?;
+    let first = motion.rows.first()?[column];
+    let last = motion.rows.iter().map(|row| row[column]).find(|value| !((value - first).abs() <= allowed))?;
+    Some(finding(kind, format!("{name} from {first:?} to {last:?}; {allowed:.0e} allowed")))
+}
+
+/// Whether the motion keeps its energy by construction: nothing depends on time, constraints are homogeneous, and there are
+/// only potential forces.
+fn is_conservative(specimen: &Specimen) -> bool {
+    let mut specimen = specimen.clone();
+    let acts = !specimen.forces.is_empty()
+        || !specimen.dissipation.is_empty()
+        || specimen.bodies.iter().any(|body| body.force.is_some());
+    let drifts = specimen.has_drift();
+    let restricts = specimen.constraints.iter().all(|constraint| match constraint.restricts {
+        Restricts::Positions => true,
+        Restricts::Velocities => {
+            let rest: Vec<_> = specimen.chart.iter().map(super::specimen::at_rest).collect();
+            let eta = specimen.quasi_velocities();
+            let zero = eta.into_iter().map(|eta| (eta, super::expression::Expression::Number(0.0)));
+            let rest: Vec<_> = rest.into_iter().chain(zero).collect();
+            constraint.expression.substitute(&rest).is_zero()
+        }
+        Restricts::Nonlinearly => false,
+    });
+    let moving = specimen.expressions_mut().iter().any(|expression| expression.mentions("t"));
+    let group_moves = match &specimen.frame {
+        Frame::Group { velocities, .. } => velocities.iter().any(|row| row.mentions("t")),
+        _ => false,
+    };
+    !acts && !drifts && restricts && !moving && !group_moves
+}
+
+/// Whether the function of an event passes through zero in its direction where the event occurs.
+fn is_crossing(specimen: &Specimen, happening: &Happening) -> Option<Finding> {
+    let [before, after] = happening.sides;
+    let steep = (after - before).abs() > 1e-9;
+    let event = specimen.events.iter().find(|event| event.name == happening.event)?;
+    let right = match event.direction {
+        "rising" => before < 0.0 && after > 0.0,
+        "falling" => before > 0.0 && after < 0.0,
+        _ => before * after < 0.0,
+    };
+    (steep && !right).then(|| {
+        let (name, t) = (&happening.event, happening.time);
+        finding("event without a zero", format!("{name} at {t}: {before:e} before, {after:e} after"))
+    })
+}
+
+/// Whether the state after an event is that of the formulas of its reset.
+fn is_reset(specimen: &Specimen, start: &Start, motion: &Motion, happening: &Happening) -> Option<Finding> {
+    let event = specimen.events.iter().find(|event| event.name == happening.event)?;
+    let mut values = start.values.clone();
+    for (name, &value) in motion.columns.iter().zip(&happening.before) {
+        values.insert(name.clone(), Dual64::from(value));
+    }
+    values.insert("t".to_owned(), Dual64::from(happening.time));
+    for (name, formula) in &event.reset {
+        let expected = formula.value(&values).re;
+        let column = motion.columns.iter().position(|column| column == name)?;
+        let found = happening.after[column];
+        if !((found - expected).abs() <= 1e-12 * expected.abs().max(1.0)) && expected.is_finite() {
+            let t = happening.time;
+            return Some(finding(
+                "reset by another formula",
+                format!("{name} is {found:?}, not {expected:?}, after {} at {t}", event.name),
+            ));
+        }
+    }
+    None
+}
+
+/// The refusals of an execution in forms that may be refused alone.
+pub fn refusals(execution: &Execution) -> Vec<Refusal> {
+    let motions = [&execution.canonical, &execution.projected];
+    let mut refusals: Vec<Refusal> =
+        motions.into_iter().flatten().filter_map(|motion| motion.as_ref().err()).cloned().collect();
+    refusals.extend(execution.conserved.as_ref().err().cloned());
+    if let Some(Err(refusal)) = &execution.emitted {
+        refusals.push(refusal.clone());
+    }
+    refusals
+}

@@ -1,0 +1,142 @@
+//! One specimen, examined: what was found, what was refused.
+
+use std::cell::RefCell;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+use super::comparison::{self, Finding};
+use super::emission;
+use super::execution::{Forms, Refusal, execute};
+use super::generator;
+use super::specimen::Specimen;
+use super::start::Start;
+use super::text;
+
+/// The main thread of the program has as much.
+const STACK: usize = 8 << 20;
+
+/// What came of a specimen.
+#[derive(Clone, Debug, Default)]
+pub struct Examined {
+    /// Its text; empty where it has no start.
+    pub text: String,
+    /// Its text in ordinary velocities.
+    pub twin: Option<String>,
+    /// What is wrong.
+    pub findings: Vec<Finding>,
+    /// What the product did not do.
+    pub refusals: Vec<Refusal>,
+    /// Whether the model was run.
+    pub ran: bool,
+    /// Whether it was refused, as it must be.
+    pub rightly_refused: bool,
+}
+
+/// How a specimen is examined.
+#[derive(Clone, Copy, Debug)]
+pub struct Thoroughness {
+    /// With a compiler for emitted source.
+    pub emitted: bool,
+    /// How long it may take.
+    pub limit: Duration,
+}
+
+/// Examines model number `index` of a seed.
+pub fn examine(seed: u64, index: u64, thoroughness: Thoroughness) -> Examined {
+    examine_specimen(&generator::specimen(seed, index), thoroughness)
+}
+
+/// Examines a specimen in a thread of its own. One that takes too long is left to itself, and refused.
+pub fn examine_specimen(specimen: &Specimen, thoroughness: Thoroughness) -> Examined {
+    let Some(start) = Start::of(specimen) else { return Examined::default() };
+    let (text, twin) = (text::model(specimen, &start), text::twin(specimen, &start));
+    let (sender, receiver) = mpsc::channel();
+    let (copy, texts) = (specimen.clone(), (text.clone(), twin.clone()));
+    let work = move || {
+        let work =
+            AssertUnwindSafe(|| examine_texts(&copy, &start, &texts.0, texts.1.as_deref(), thoroughness));
+        // Nobody listens any more where the limit has passed.
+        let _ = sender.send(panic::catch_unwind(work).map_err(|_| last_panic()));
+    };
+    let thread = thread::Builder::new().stack_size(STACK).spawn(work);
+    let mut examined = match thread.map(|_| receiver.recv_timeout(thoroughness.limit)) {
+        Ok(Ok(Ok(examined))) => examined,
+        Ok(Ok(Err(message))) => Examined::of_finding("panic", message),
+        Ok(Err(_)) => Examined::of_refusal("time", format!("given up after {:?}", thoroughness.limit)),
+        Err(error) => Examined::of_refusal("time", format!("no thread: {error}")),
+    };
+    (examined.text, examined.twin) = (text, twin);
+    examined
+}
+
+impl Examined {
+    fn of_finding(kind: &'static str, detail: String) -> Examined {
+        Examined { findings: vec![Finding { kind, detail }], ..Examined::default() }
+    }
+
+    fn of_refusal(stage: &'static str, message: String) -> Examined {
+        Examined { refusals: vec![Refusal { stage, message }], ..Examined::default() }
+    }
+
+    /// Whether something of this kind was found.
+    pub fn has(&self, kind: &str) -> bool {
+        self.findings.iter().any(|finding| finding.kind == kind)
+    }
+}
+
+fn examine_texts(
+    specimen: &Specimen,
+    start: &Start,
+    text: &str,
+    twin: Option<&str>,
+    thoroughness: Thoroughness,
+) -> Examined {
+    let mut examined = Examined::default();
+    let undetermined = comparison::is_undetermined(specimen);
+    let execution = match execute("model.toml", text, Forms { all: true, emitted: thoroughness.emitted }) {
+        Ok(execution) => execution,
+        Err(refusal) => {
+            examined.rightly_refused = undetermined;
+            examined.refusals.push(refusal);
+            return examined;
+        }
+    };
+    examined.ran = true;
+    if undetermined {
+        let detail = "the fields are dependent over the constants, and no [algebra] is given".to_owned();
+        return Examined { ran: true, ..Examined::of_finding("brackets that nothing determines", detail) };
+    }
+    examined.refusals = comparison::refusals(&execution);
+    examined.findings = comparison::within(specimen, start, &execution);
+    if let Some(Ok(emission)) = &execution.emitted {
+        examined.findings.extend(emission::compare(emission));
+    }
+    let Some(twin) = twin else { return examined };
+    match execute("twin.toml", twin, Forms { all: false, emitted: false }) {
+        Ok(twin) => examined.findings.extend(comparison::between(specimen, start, &execution, &twin)),
+        Err(refusal) => {
+            let message = refusal.message;
+            examined.refusals.push(Refusal { stage: "ordinary velocities", message });
+        }
+    }
+    examined
+}
+
+thread_local! {
+    static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Has panics noted, with their places, instead of printed.
+pub fn note_panics() {
+    panic::set_hook(Box::new(|panic| {
+        let message = panic.payload_as_str().unwrap_or("a panic without words");
+        let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
+        LAST_PANIC.with_borrow_mut(|last| *last = format!("{message}{place}"));
+    }));
+}
+
+fn last_panic() -> String {
+    LAST_PANIC.with_borrow(Clone::clone)
+}

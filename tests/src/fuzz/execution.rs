@@ -1,0 +1,267 @@
+//! A text run through the product in every form, as the program does.
+
+use pc_expr::{Events, VectorField};
+use pc_mech::{EmitOptions, Equations, Graph, Language};
+use pc_model::{Assembly, Document, Flow, Model, ModelError, Source, Variables};
+use pc_solve::{Occurrence, Options, Trajectory, solve_with_events};
+
+use crate::emitted::{Emitted, Routine};
+
+/// Relative tolerance of the motions that are compared.
+pub const RTOL: f64 = 1e-11;
+/// Absolute tolerance of the motions that are compared.
+pub const ATOL: f64 = 1e-13;
+/// Rows of a motion.
+pub const SAMPLES: usize = 5;
+
+/// The tolerances of the same motion once more, to see what errors of integration grow to.
+const LOOSE: f64 = 1e2;
+
+/// Steps from one row to the next: the motions are smooth and need some ten.
+const MOST_STEPS: u64 = 20_000;
+
+/// The part of the time span by which a state is moved to both sides of an event.
+const ASIDE: f64 = 1e-7;
+
+/// Something that the product did not do, at which stage, and what it said.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// What was to be done.
+    pub stage: &'static str,
+    /// What was said.
+    pub message: String,
+}
+
+impl Refusal {
+    fn new(stage: &'static str, message: impl ToString) -> Refusal {
+        Refusal { stage, message: message.to_string() }
+    }
+
+    /// The kind of refusal: its first line without place, names and numbers.
+    pub fn cause(&self) -> String {
+        let line = self.message.lines().next().unwrap_or_default();
+        let line = line.split_once(": ").map_or(line, |(_, rest)| rest);
+        let mut cause = String::new();
+        let mut quoted = false;
+        for c in line.chars() {
+            match c {
+                '`' => {
+                    quoted = !quoted;
+                    cause.push_str(if quoted { "`…" } else { "`" });
+                }
+                _ if quoted => {}
+                c if c.is_ascii_digit() => {
+                    if !cause.ends_with('#') {
+                        cause.push('#');
+                    }
+                }
+                c => cause.push(c),
+            }
+        }
+        for noise in ["#.#", "#e-#", "#e#", "-#"] {
+            while cause.contains(noise) {
+                cause = cause.replace(noise, "#");
+            }
+        }
+        format!("{}: {cause}", self.stage)
+    }
+}
+
+/// What occurred.
+#[derive(Clone, Debug)]
+pub struct Happening {
+    /// The name of the event.
+    pub event: String,
+    /// When.
+    pub time: f64,
+    /// The row before.
+    pub before: Vec<f64>,
+    /// The row after.
+    pub after: Vec<f64>,
+    /// The function of the event a little before and after, along the motion that led there.
+    pub sides: [f64; 2],
+}
+
+/// A motion as a table.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The names of the columns, without the time.
+    pub columns: Vec<String>,
+    /// The times of the rows.
+    pub times: Vec<f64>,
+    /// The rows.
+    pub rows: Vec<Vec<f64>>,
+    /// What occurred, in order.
+    pub happenings: Vec<Happening>,
+    /// The largest residual of a constraint, with its name.
+    pub residual: Option<(String, f64)>,
+}
+
+/// A model run through the product.
+#[derive(Debug)]
+pub struct Execution {
+    /// Its motion in quasi-velocities.
+    pub motion: Motion,
+    /// The same with less precision.
+    pub loose: Motion,
+    /// Its motion in momenta.
+    pub canonical: Option<Result<Motion, Refusal>>,
+    /// Its motion, projected to its energy; where that is claimed to be kept.
+    pub projected: Option<Result<Motion, Refusal>>,
+    /// Whether the energy is claimed to be kept.
+    pub keeps_energy: bool,
+    /// The integrals that are claimed to be kept between events, or why nothing is claimed.
+    pub conserved: Result<Vec<String>, Refusal>,
+    /// Its emitted source, with states and what the interpreter makes of them.
+    pub emitted: Option<Result<Emission, Refusal>>,
+}
+
+/// What emitted source has to compute.
+#[derive(Debug)]
+pub struct Emission {
+    /// The source.
+    pub source: Emitted,
+    /// t, state, parameters
+    pub inputs: Vec<Vec<f64>>,
+    /// The rates there.
+    pub rates: Vec<Vec<f64>>,
+}
+
+/// In which forms a model is to be run.
+#[derive(Clone, Copy, Debug)]
+pub struct Forms {
+    /// In momenta, with claims of conservation, and projected.
+    pub all: bool,
+    /// As source.
+    pub emitted: bool,
+}
+
+/// Runs a text; what it is called names emitted source.
+///
+/// # Errors
+/// [`Refusal`] if there is no motion in quasi-velocities.
+pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusal> {
+    let document = Document::parse(Source::new(name, text)).map_err(|e| Refusal::new("text", e))?;
+    let mut model = Model::new(document);
+    model.observe_reactions(true);
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).map_err(|e| Refusal::new("model", e))?;
+    let mut flow =
+        Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(|e| Refusal::new("model", e))?;
+    let motion = follow(&mut flow, &model, &assembly, 1.0)?;
+    let loose = follow(&mut flow, &model, &assembly, LOOSE)?;
+    let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
+    let keeps_energy = assembly.keeps_energy() && !resets;
+    let canonical = forms.all.then(|| {
+        let flow = Flow::new(&model, &assembly, Variables::Momenta);
+        let mut flow = flow.map_err(|error| Refusal::new("canonical form", error))?;
+        follow(&mut flow, &model, &assembly, 1.0)
+    });
+    let projected = (forms.all && keeps_energy).then(|| projected(model.clone()));
+    let refused = |error| Refusal::new("independent velocities", model.constraint_error(error));
+    let equations = assembly.equations().map_err(refused);
+    let conserved = match (&equations, forms.all) {
+        (Ok(equations), true) => Ok(conserved(equations)),
+        (Err(refusal), true) => Err(refusal.clone()),
+        (_, false) => Ok(Vec::new()),
+    };
+    let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
+    Ok(Execution { motion, loose, canonical, projected, keeps_energy, conserved, emitted })
+}
+
+fn projected(mut model: Model) -> Result<Motion, Refusal> {
+    let refused = |error: ModelError| Refusal::new("projection", error);
+    model.keep("energy").map_err(|error| Refusal::new("projection", error))?;
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).map_err(refused)?;
+    let mut flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(refused)?;
+    follow(&mut flow, &model, &assembly, 1.0)
+}
+
+fn conserved(equations: &Equations<'_>) -> Vec<String> {
+    let rates = equations.rates();
+    let integrals = equations.system().integrals().iter();
+    let kept = integrals.filter(|(_, value)| rates.verdict(*value).is_conserved());
+    kept.map(|(name, _)| name.clone()).collect()
+}
+
+fn emission(name: &str, assembly: &Assembly<'_>, equations: &Equations<'_>) -> Result<Emission, Refusal> {
+    let refused = |error: pc_mech::MechError| Refusal::new("emission", error);
+    let system = equations.system();
+    let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let start = assembly.start_of(&state);
+    let routines = vec![Routine { name: "rhs", outputs: Some(state.len()) }];
+    let source = Emitted::new(equations, |language: Language| EmitOptions::new(language, name), routines);
+    let source = source.map_err(refused)?;
+    let mut motion = equations.compile_for(pc_mech::Backend::Interpreter).map_err(refused)?;
+    let (mut inputs, mut rates) = (Vec::new(), Vec::new());
+    for i in 0..8 {
+        let moved = |(j, y): (usize, &f64)| y + f64::from(i) * 1e-2 * (1.0 + j as f64).sin();
+        let y: Vec<f64> = start.iter().enumerate().map(moved).collect();
+        let mut rate = vec![f64::NAN; y.len()];
+        if motion.rhs(assembly.t_start, &y, &mut rate).is_ok() {
+            inputs.push([&[assembly.t_start], &y[..], motion.parameters()].concat());
+            rates.push(rate);
+        }
+    }
+    Ok(Emission { source, inputs, rates })
+}
+
+fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -> Result<Motion, Refusal> {
+    let t_start = assembly.t_start;
+    let t_end = model.document().simulation.t_end.as_ref().map_or(t_start, |t| t.value);
+    let last = (SAMPLES - 1) as f64;
+    let times: Vec<f64> = (0..SAMPLES).map(|i| t_start + (t_end - t_start) * (i as f64 / last)).collect();
+    let options = Options::default().relative_tolerance(RTOL * loose).absolute_tolerance(ATOL * loose);
+    let options = options.max_steps(MOST_STEPS);
+    let start = flow.start.clone();
+    let solved = solve_with_events(&mut flow.motion, t_start, &start, &times, &options, &mut flow.events);
+    let solved = solved.map_err(|failure| Refusal::new("integration", failure.error))?;
+    let residual = residual(flow, &solved.trajectory);
+    let names: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
+    let aside = ASIDE * (t_end - t_start);
+    let happenings = solved
+        .occurrences
+        .iter()
+        .map(|occurrence| Happening {
+            event: names[occurrence.event].clone(),
+            time: occurrence.time,
+            before: flow.row(occurrence.time, &occurrence.state_before),
+            after: flow.row(occurrence.time, &occurrence.state_after),
+            sides: sides(flow, occurrence, aside),
+        })
+        .collect();
+    let columns = flow.names.iter().chain(flow.observed().observable_names()).cloned().collect();
+    let (times, rows) = solved.trajectory.iter().map(|(t, y)| (t, flow.row(t, y))).unzip();
+    Ok(Motion { columns, times, rows, happenings, residual })
+}
+
+fn residual(flow: &mut Flow, trajectory: &Trajectory) -> Option<(String, f64)> {
+    let names = flow.constraint_names();
+    let mut worst: Option<(String, f64)> = None;
+    for (t, y) in trajectory.iter() {
+        for (name, residual) in names.iter().zip(flow.constraint_residuals(t, y)) {
+            if worst.as_ref().is_none_or(|(_, worst)| !(residual.abs() <= *worst)) {
+                worst = Some((name.clone(), residual.abs()));
+            }
+        }
+    }
+    worst
+}
+
+/// The function of an event at y⁻ ∓ aside ẏ; no numbers where there are no rates.
+fn sides(flow: &mut Flow, occurrence: &Occurrence, aside: f64) -> [f64; 2] {
+    let y = &occurrence.state_before;
+    let mut rate = vec![f64::NAN; y.len()];
+    if flow.motion.rhs(occurrence.time, y, &mut rate).is_err() {
+        return [f64::NAN; 2];
+    }
+    [-aside, aside].map(|aside| {
+        let moved: Vec<f64> = y.iter().zip(&rate).map(|(y, rate)| y + aside * rate).collect();
+        let mut values = vec![f64::NAN; flow.events.events().len()];
+        match flow.events.evaluate(occurrence.time + aside, &moved, &mut values) {
+            Ok(()) => values[occurrence.event],
+            Err(_) => f64::NAN,
+        }
+    })
+}

@@ -1,0 +1,89 @@
+//! What a campaign came to, in words.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::examination::Examined;
+
+/// A cause with how often it was met, and the first model that it was met with.
+#[derive(Clone, Debug)]
+struct Cause {
+    count: usize,
+    first: u64,
+    example: String,
+}
+
+/// Findings and refusals by cause.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    models: usize,
+    ran: usize,
+    rightly_refused: usize,
+    without_start: usize,
+    with_findings: usize,
+    findings: BTreeMap<String, Cause>,
+    refusals: BTreeMap<String, Cause>,
+}
+
+impl Report {
+    /// The report on models in order.
+    pub fn of(results: &[(u64, Examined)]) -> Report {
+        let mut report = Report::default();
+        for (index, examined) in results {
+            report.models += 1;
+            report.ran += usize::from(examined.ran);
+            report.without_start += usize::from(examined.text.is_empty());
+            report.rightly_refused += usize::from(examined.rightly_refused);
+            report.with_findings += usize::from(!examined.findings.is_empty());
+            for finding in &examined.findings {
+                note(&mut report.findings, finding.kind.to_owned(), *index, &finding.detail);
+            }
+            if !examined.rightly_refused {
+                for refusal in &examined.refusals {
+                    note(&mut report.refusals, refusal.cause(), *index, &refusal.message);
+                }
+            }
+        }
+        report
+    }
+
+    /// Whether nothing was found.
+    pub fn is_clean(&self) -> bool {
+        self.findings.is_empty()
+    }
+
+    /// The kinds of findings, each with the first model that has it.
+    pub fn kinds(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.findings.iter().map(|(kind, cause)| (kind.as_str(), cause.first))
+    }
+
+    /// Numbers, and a table of findings and one of refusals, each cause with an example.
+    pub fn text(&self) -> String {
+        let Report { models, ran, rightly_refused, without_start, with_findings, .. } = self;
+        let mut text = format!(
+            "{models} models: {ran} run, {with_findings} with findings; {rightly_refused} refused as they must be, \
+             {without_start} without a start\n"
+        );
+        for (title, causes) in [("findings", &self.findings), ("refusals", &self.refusals)] {
+            let mut sorted: Vec<(&String, &Cause)> = causes.iter().collect();
+            sorted.sort_by_key(|(_, cause)| std::cmp::Reverse(cause.count));
+            let _ = writeln!(text, "\n{title}");
+            if sorted.is_empty() {
+                text.push_str("  none\n");
+            }
+            for (cause, Cause { count, first, example }) in sorted {
+                let _ = writeln!(text, "{count:6}  {cause}  (first: model {first})");
+                for line in example.lines().take(6) {
+                    let _ = writeln!(text, "          {line}");
+                }
+            }
+        }
+        text
+    }
+}
+
+fn note(causes: &mut BTreeMap<String, Cause>, cause: String, index: u64, example: &str) {
+    let cause =
+        causes.entry(cause).or_insert_with(|| Cause { count: 0, first: index, example: example.to_owned() });
+    cause.count += 1;
+}
