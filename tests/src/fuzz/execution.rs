@@ -231,7 +231,7 @@ fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -
             sides: sides(flow, occurrence, aside),
         })
         .collect();
-    let columns = flow.names.iter().chain(flow.observed().observable_names()).cloned().collect();
+    let columns = flow.names.iter().chain(flow.motion.observable_names()).cloned().collect();
     let (times, rows) = solved.trajectory.iter().map(|(t, y)| (t, flow.row(t, y))).unzip();
     Ok(Motion { columns, times, rows, happenings, residual })
 }
