@@ -1,7 +1,9 @@
 //! The values of parameters: numbers, and expressions in those before them.
 
+use std::sync::Arc;
+
 use pc_expr::parse::AstKind;
-use pc_expr::{Backend, Evaluator, Graph, Inputs, Program};
+use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
 
 use crate::document::{Document, Expression};
 use crate::error::{ErrorKind, ModelError};
@@ -22,7 +24,7 @@ enum Formula {
     /// It was given as a number.
     Number,
     /// An expression in all parameters, of which it contains none but those before it.
-    Of(Box<Evaluator>),
+    Of(Arc<Program>),
     /// An expression that means nothing.
     Wrong(ModelError),
 }
@@ -43,9 +45,7 @@ impl Parameters {
             let (value, formula) = match expression.ast.kind {
                 AstKind::Number(value) => (value, Formula::Number),
                 _ => match scope.parameter(place).map(|value| Program::new(&graph, &inputs, &[value])) {
-                    Ok(Ok(program)) => {
-                        (f64::NAN, Formula::Of(Box::new(Evaluator::new(program, Backend::Interpreter))))
-                    }
+                    Ok(Ok(program)) => (f64::NAN, Formula::Of(Arc::new(program))),
                     Ok(Err(_)) => (f64::NAN, Formula::Wrong(not_finite(document, expression, f64::NAN))),
                     Err(error) => (f64::NAN, Formula::Wrong(error)),
                 },
@@ -89,10 +89,10 @@ impl Parameters {
     }
 
     fn follow(&mut self) {
-        for (place, formula) in self.formulas.iter_mut().enumerate() {
-            if let Formula::Of(formula) = formula {
+        for (place, formula) in self.formulas.iter().enumerate() {
+            if let Formula::Of(program) = formula {
                 let mut value = [f64::NAN];
-                formula.eval(0.0, &[], &self.values, &mut value);
+                Interpreter::new(Arc::clone(program)).eval(0.0, &[], &self.values, &mut value);
                 self.values[place] = value[0];
             }
         }
