@@ -56,6 +56,11 @@ impl Field {
         self.motion().coordinates()
     }
 
+    /// Number of quasi-velocities, or momenta.
+    pub(crate) fn quasi_velocities(&self) -> usize {
+        self.dim() - self.coordinates() - self.motion().states()
+    }
+
     /// Names of the constraints that are kept by projection.
     pub(crate) fn constraint_names(&self) -> &[String] {
         self.motion().constraint_names()

@@ -19,7 +19,7 @@ pub(crate) struct Mechanics {
     /// c_rs^m, the index m fastest, then s, then r.
     structure: Evaluator,
     operators: usize,
-    /// b η + b_0, then r, which the external forces are inputs of too.
+    /// b η + b_0, then r, then ż, which the external forces are inputs of too.
     right: Evaluator,
     /// Whether M η̇ = r is all there is: no multipliers, no momenta.
     complete: bool,
@@ -35,7 +35,8 @@ impl Mechanics {
         let all = || 0..=operators;
         let pairs = all().flat_map(|r| all().map(move |s| (r, s)));
         let coefficients = pairs.flat_map(|(r, s)| (1..=operators).map(move |m| structure.get(r, s, m)));
-        let right = [equations.velocities(), equations.right_hand_side()].concat();
+        let of_states: Vec<Expr<'_>> = equations.system().states().iter().map(|&(_, rate)| rate).collect();
+        let right = [equations.velocities(), equations.right_hand_side(), &of_states].concat();
         let held = matches!(assembly.bound.form(), ::pc_model::Form::Held(_));
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
@@ -62,7 +63,7 @@ pub(crate) fn compile<'g>(
     let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
     let inputs = Inputs {
         time: Some(system.frame().time()),
-        state: [system.frame().coordinates(), system.quasi_velocities()].concat(),
+        state: system.state(),
         parameters: parameters.chain(forces.iter().copied()).collect(),
     };
     Ok(Evaluator::new(Program::new(system.graph(), &inputs, values)?, Backend::Interpreter))
@@ -109,7 +110,8 @@ impl Inner {
 }
 
 /// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so `length` is
-/// k*k; k is pc_system_dim less pc_system_coordinate_count. With multipliers their rows are not among it. The
+/// k*k; k is pc_system_dim less pc_system_coordinate_count and
+/// pc_system_state_count. With multipliers their rows are not among it. The
 /// first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
@@ -122,7 +124,7 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
-        let (dim, k) = (inventory.dim(), inventory.dim() - inner.field.coordinates());
+        let (dim, k) = (inventory.dim(), inner.field.quasi_velocities());
         let target = Target { data: matrix, length, expected: k * k, what: "matrix" };
         // SAFETY: as the preamble demands.
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
@@ -220,7 +222,7 @@ pub unsafe extern "C" fn pc_system_residual(
         } else {
             evaluate(&mut mechanics.right, (t, y, motion.inputs(t, y)?), residual)?;
         }
-        let k = dim - n;
+        let k = motion.quasi_velocities();
         let mut mass = vec![0.0; k * k];
         evaluate(&mut mechanics.mass, (t, y, motion.parameters()), &mut mass)?;
         for i in 0..n {
@@ -229,6 +231,9 @@ pub unsafe extern "C" fn pc_system_residual(
         for s in 0..k {
             let product: f64 = (0..k).map(|r| mass[s * k + r] * rates[n + r]).sum();
             residual[n + s] = product - residual[n + s];
+        }
+        for i in n + k..dim {
+            residual[i] = rates[i] - residual[i];
         }
         Ok(())
     };

@@ -108,8 +108,7 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
         options = options.title(title.value.clone());
     }
     if t_end.is_finite() {
-        let state =
-            [equations.system().frame().coordinates(), equations.system().quasi_velocities()].concat();
+        let state = equations.system().state();
         options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
     }
     let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;

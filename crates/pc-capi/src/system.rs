@@ -34,6 +34,7 @@ pub(crate) struct Inventory {
     pub(crate) variables: Variables,
     names: Vec<CString>,
     coordinates: usize,
+    states: usize,
     parameters: Vec<CString>,
     pub(crate) observables: Vec<CString>,
     pub(crate) conserved: usize,
@@ -97,6 +98,7 @@ impl pc_system {
             variables,
             names: c_strings(motion.names()),
             coordinates: motion.coordinates(),
+            states: motion.states(),
             parameters: c_strings(&parameters),
             observables: c_strings(observables),
             conserved: motion.conserved_len(),
@@ -229,6 +231,12 @@ pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_coordinate_count(system: *const pc_system) -> usize {
     count(system, |inventory| inventory.coordinates)
+}
+
+/// The number of first-order states, which come last in the state. 0 of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_state_count(system: *const pc_system) -> usize {
+    count(system, |inventory| inventory.states)
 }
 
 /// The number of parameters. 0 of NULL.

@@ -57,10 +57,11 @@ pub fn say_choice(choice: &str) {
 /// Says where the start was moved, on standard error.
 pub fn say_moved(assembly: &Assembly<'_>) {
     if let Some(written) = &assembly.written_start {
-        let frame = assembly.system.frame();
-        let names = frame.coordinates().iter().chain(assembly.system.quasi_velocities());
-        let moved =
-            names.zip(written.iter().zip(&assembly.start)).filter(|(_, (before, after))| before != after);
+        let names = assembly.system.state();
+        let moved = names
+            .iter()
+            .zip(written.iter().zip(&assembly.start))
+            .filter(|(_, (before, after))| before != after);
         let moves = moved.map(|(name, (before, after))| {
             format!("{name} = {} → {}", short(*before, 10), short(*after, 10))
         });

@@ -41,6 +41,8 @@ struct Report<'g> {
     title: String,
     coordinates: Vec<String>,
     quasi_velocities: Vec<String>,
+    /// First-order states.
+    states: Vec<String>,
     rank: usize,
     given_algebra: bool,
     closure_residual: f64,
@@ -82,7 +84,7 @@ impl<'g> Report<'g> {
         let evaluated = motion.rhs(assembly.t_start, &start, &mut rate).is_ok();
         let largest_rate = rate.iter().fold(0.0f64, |largest, r| largest.max(r.abs()));
 
-        let state = frame.coordinates().iter().chain(system.quasi_velocities()).copied();
+        let state = system.state().into_iter();
         let mut centre = system.parameters().to_vec();
         centre.push((frame.time(), assembly.t_start));
         centre.extend(state.zip(assembly.start.iter().copied()));
@@ -102,6 +104,7 @@ impl<'g> Report<'g> {
             title: model.title().to_owned(),
             coordinates: names(frame.coordinates()),
             quasi_velocities: names(system.quasi_velocities()),
+            states: system.states().iter().map(|(z, _)| z.to_string()).collect(),
             rank: frame.rank(),
             given_algebra: model.document().algebra.is_some(),
             closure_residual: frame.closure_residual(structure, &near),
@@ -138,12 +141,15 @@ impl<'g> Report<'g> {
             (false, true) => "brackets from the frame",
             (false, false) => "constant brackets found",
         };
-        let names = self.coordinates.iter().chain(&self.quasi_velocities).map(String::as_str);
+        let names = self.coordinates.iter().chain(&self.quasi_velocities).chain(&self.states);
+        let names = names.map(String::as_str);
         let start = assignments(names.zip(self.start.iter().copied()), WIDTH);
         let rank = [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(self.frame.constraints());
-        let entries: [(&str, Vec<String>); 12] = [
+        let of_states = if self.states.is_empty() { Vec::new() } else { counted_names("l", &self.states) };
+        let entries: [(&str, Vec<String>); 13] = [
             ("coordinates", counted_names("n", &self.coordinates)),
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
+            ("states", of_states),
             ("rank of the frame", rank.collect()),
             ("holonomic", self.frame.holonomic(WIDTH)),
             ("closure", vec![held(self.closure_residual)]),
@@ -204,6 +210,7 @@ impl<'g> Report<'g> {
             "model": self.title,
             "coordinates": self.coordinates.len(),
             "quasi_velocities": self.quasi_velocities.len(),
+            "states": self.states,
             "rank": self.rank,
             "frame_constraints": frame_constraints,
             "holonomic": holonomic,
@@ -250,7 +257,7 @@ fn steady_motion<'g>(
     if assembly.bound.nonlinear().is_some() {
         return Search::Nonlinear;
     }
-    let start = assembly.start_of(&[system.frame().coordinates(), system.quasi_velocities()].concat());
+    let start = assembly.start_of(&system.state());
     let Form::Held(held) = assembly.bound.form() else {
         return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
     };

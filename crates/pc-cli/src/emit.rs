@@ -47,8 +47,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     }
     if let Some(t_end) = &model.document().simulation.t_end {
         let system = equations.system();
-        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
-        options = options.start(assembly.t_start, &assembly.start_of(&state), t_end.value);
+        options = options.start(assembly.t_start, &assembly.start_of(&system.state()), t_end.value);
     }
     let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
 

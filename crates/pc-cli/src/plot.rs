@@ -77,6 +77,7 @@ impl Picture {
         let panels = [
             linear("coordinates", table.coordinates()),
             linear("quasi-velocities", table.quasi_velocities()),
+            linear("states", table.states()),
             Panel {
                 label: "relative drift",
                 scale: Scale::Decades,

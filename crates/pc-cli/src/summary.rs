@@ -39,7 +39,7 @@ pub fn text(run: &Run) -> String {
     let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
     line("dropped", &dropped.collect::<Vec<_>>());
     if let Some(row) = run.table.rows().next_back() {
-        let state = run.table.coordinates().start..run.table.quasi_velocities().end;
+        let state = run.table.coordinates().start..run.table.states().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
         let shown = names.take(1 + state.len());
         let arrived = matches!(run.ending, Ending::Completed | Ending::Event { .. });

@@ -1,4 +1,4 @@
-//! The table of a motion: t, coordinates, quasi-velocities, integrals, energy, outputs.
+//! The table of a motion: t, coordinates, quasi-velocities, first-order states, integrals, energy, outputs.
 
 use pc_model::Flow;
 use pc_solve::Trajectory;
@@ -9,6 +9,7 @@ pub struct Table {
     columns: Vec<String>,
     coordinates: usize,
     quasi_velocities: usize,
+    states: usize,
     conserved: usize,
     /// One row after the other.
     values: Vec<f64>,
@@ -28,6 +29,7 @@ impl Table {
             columns,
             coordinates: flow.motion.coordinates(),
             quasi_velocities: flow.quasi_velocities(),
+            states: flow.motion.states(),
             conserved: flow.motion.conserved_len(),
             values,
         }
@@ -69,9 +71,15 @@ impl Table {
         start..start + self.quasi_velocities
     }
 
+    /// The numbers of the columns that are first-order states.
+    pub fn states(&self) -> std::ops::Range<usize> {
+        let start = self.quasi_velocities().end;
+        start..start + self.states
+    }
+
     /// The numbers of the columns that are integrals, with the energy last.
     pub fn conserved(&self) -> std::ops::Range<usize> {
-        let start = self.quasi_velocities().end;
+        let start = self.states().end;
         start..start + self.conserved
     }
 

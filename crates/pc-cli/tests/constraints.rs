@@ -532,16 +532,13 @@ fn emitted_outputs_have_the_reactions_put_in() {
     for (name, text) in WITH_REACTIONS {
         std::fs::write(path(&format!("{name}.toml")), text).expect("written");
         for lang in ["c", "rust"] {
-            let emitted =
-                pc("", &["emit", &path(&format!("{name}.toml")), "--lang", lang, "-o", &path("")]);
+            let emitted = pc("", &["emit", &path(&format!("{name}.toml")), "--lang", lang, "-o", &path("")]);
             assert_eq!(emitted.status.code(), Some(0), "{}", stderr(&emitted));
         }
         let (columns, rows) = run(text, &[]);
         let source = std::fs::read_to_string(path(&format!("{name}.h"))).expect("a header");
-        let state: Vec<&str> = source
-            .lines()
-            .filter_map(|line| line.strip_prefix(" *     y[")?.split("  ").nth(1))
-            .collect();
+        let state: Vec<&str> =
+            source.lines().filter_map(|line| line.strip_prefix(" *     y[")?.split("  ").nth(1)).collect();
         let place = |name: &str| columns.iter().position(|known| known == name).expect("a column");
         let outputs: Vec<usize> = (place("energy") + 1..columns.len()).collect();
         let literal = |row: &Vec<f64>| {
@@ -565,7 +562,15 @@ fn emitted_outputs_have_the_reactions_put_in() {
         std::fs::write(path("main.rs"), format!("#[allow(dead_code)] mod {name};\nfn main() {{\n{rust}}}\n"))
             .expect("written");
         let mut cc = Command::new("cc");
-        cc.args(["-std=c99", "-O1", &path("main.c"), &path(&format!("{name}.c")), "-o", &path("by_c"), "-lm"]);
+        cc.args([
+            "-std=c99",
+            "-O1",
+            &path("main.c"),
+            &path(&format!("{name}.c")),
+            "-o",
+            &path("by_c"),
+            "-lm",
+        ]);
         let mut rustc = Command::new("rustc");
         rustc.args(["--edition", "2021", &path("main.rs"), "-o", &path("by_rust")]);
         for (compiler, program) in [(&mut cc, "by_c"), (&mut rustc, "by_rust")] {
@@ -573,12 +578,14 @@ fn emitted_outputs_have_the_reactions_put_in() {
             let printed = Command::new(path(program)).output().expect("it runs");
             let printed = String::from_utf8(printed.stdout).expect("UTF-8");
             let found: Vec<f64> = printed.lines().map(|line| line.parse().expect("a number")).collect();
-            let expected: Vec<f64> =
-                rows.iter().flat_map(|row| outputs.iter().map(|&j| row[j])).collect();
+            let expected: Vec<f64> = rows.iter().flat_map(|row| outputs.iter().map(|&j| row[j])).collect();
             assert_eq!(found.len(), expected.len());
             for (found, expected) in found.iter().zip(&expected) {
                 // The same function by other operations, at states that satisfy the constraints to rounding.
-                assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{name}: {found} {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-12 * (1.0 + expected.abs()),
+                    "{name}: {found} {expected}"
+                );
             }
         }
     }

@@ -36,7 +36,12 @@ fn compare(model: &str, asked: &Asked<'_>, further: &[&str]) -> Motion {
     for (found, expected) in library.rows.iter().zip(&program.rows) {
         for (j, (found, &k)) in found.iter().zip(&places).enumerate() {
             let name = &library.columns[j];
-            assert!(*found == expected[k], "{model}: {name} at t = {} is {found}, not {}", expected[0], expected[k]);
+            assert!(
+                *found == expected[k],
+                "{model}: {name} at t = {} is {found}, not {}",
+                expected[0],
+                expected[k]
+            );
         }
     }
     assert_eq!(library.events, program.events, "{model}");

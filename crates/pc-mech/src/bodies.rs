@@ -8,6 +8,7 @@ use pc_algebra::Frame;
 use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, shape};
+use crate::system::check_no_state;
 
 /// Something with mass.
 #[derive(Clone, Debug)]
@@ -67,15 +68,20 @@ pub(crate) struct Share<'g> {
 pub(crate) struct Moving<'a, 'g> {
     pub(crate) frame: &'a Frame<'g>,
     pub(crate) eta: &'a [Expr<'g>],
+    states: &'a [(Expr<'g>, Expr<'g>)],
     /// Each x_i' with b_is η_s + b_i0, but for those that are the name of a quasi-velocity.
     velocities: Vec<(Expr<'g>, Expr<'g>)>,
 }
 
 impl<'a, 'g> Moving<'a, 'g> {
-    pub(crate) fn new(frame: &'a Frame<'g>, eta: &'a [Expr<'g>]) -> Moving<'a, 'g> {
+    pub(crate) fn new(
+        frame: &'a Frame<'g>,
+        eta: &'a [Expr<'g>],
+        states: &'a [(Expr<'g>, Expr<'g>)],
+    ) -> Moving<'a, 'g> {
         let symbols = frame.coordinates().iter().map(|x| frame.graph().symbol(&format!("{x}'")));
         let velocities = symbols.zip(frame.velocities(eta)).filter(|(symbol, _)| !eta.contains(symbol));
-        Moving { frame, eta, velocities: velocities.collect() }
+        Moving { frame, eta, states, velocities: velocities.collect() }
     }
 
     /// Functions of (t, x, η) and ẋ in terms of (t, x, η).
@@ -86,13 +92,15 @@ impl<'a, 'g> Moving<'a, 'g> {
     /// X_s f for each function f of (t, x), s = 0..k.
     ///
     /// # Errors
-    /// [`MechError::BodyOfVelocities`] if they depend on velocities; `what` is their name.
+    /// [`MechError::BodyOfVelocities`] if they depend on velocities, [`MechError::OfState`] if on first-order states; `what` is
+    /// their name.
     pub(crate) fn operators(
         &self,
         what: &'static str,
         functions: &[Expr<'g>],
     ) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
         self.check_at_rest(what, functions)?;
+        check_no_state(self.states, what, functions)?;
         Ok((0..=self.eta.len()).map(|s| self.frame.apply(s, functions)).collect())
     }
 

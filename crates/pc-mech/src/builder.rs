@@ -10,7 +10,7 @@ use crate::bodies::{Body, Moving};
 use crate::error::{MechError, shape};
 use crate::external;
 use crate::forces::Force;
-use crate::system::System;
+use crate::system::{System, check_no_state};
 
 /// How a system is described; every closure receives (t, x, η).
 ///
@@ -28,6 +28,8 @@ pub struct SystemBuilder<'g> {
     structure: Option<StructureCoefficients<'g>>,
     near: Neighbourhood<'g>,
     parameters: Vec<(Expr<'g>, f64)>,
+    /// Each z with ż.
+    states: Vec<(Expr<'g>, Expr<'g>)>,
     /// Terms of L(t, x, η).
     lagrangian: Vec<Expr<'g>>,
     /// Terms of L(t, x, ẋ), with the symbols x'.
@@ -63,6 +65,7 @@ impl<'g> SystemBuilder<'g> {
             structure: None,
             near: Neighbourhood::default(),
             parameters: Vec::new(),
+            states: Vec::new(),
             lagrangian: Vec::new(),
             in_velocities: Vec::new(),
             bodies: Vec::new(),
@@ -93,6 +96,38 @@ impl<'g> SystemBuilder<'g> {
     pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.quasi_velocities =
             Some(names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect());
+        self
+    }
+
+    /// Declares a symbol to be a first-order state z with the rate ż(t, x, η, z), such as the current in a motor or the
+    /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces and what is
+    /// watched may depend on it, the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż ∂p_s/∂z.
+    ///
+    /// ```
+    /// # use pc_mech::{Graph, System, VectorField};
+    /// let graph = Graph::new();
+    /// let [x, v, i] = graph.symbols(["x", "x'", "i"]);
+    /// // A coil in a field, i' = −i − v, and the force that it feels.
+    /// let coil = System::builder(&graph)
+    ///     .coordinates(["x"])
+    ///     .kinetic(|_, _, v| v[0].square() / 2.0)
+    ///     .state(i, |_, _, v| -i - v[0])
+    ///     .forces(|_, _, _| [i])
+    ///     .build()?;
+    /// assert_eq!(coil.state(), [x, v, i]);
+    /// let mut rates = [0.0; 3];
+    /// coil.poincare()?.compile()?.rhs(0.0, &[0.0, 2.0, 3.0], &mut rates)?;
+    /// assert_eq!(rates, [2.0, 3.0, -5.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn state(
+        mut self,
+        symbol: Expr<'g>,
+        rate: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>,
+    ) -> Self {
+        let rate = rate(self.time, &self.coordinates, &self.eta());
+        self.states.push((symbol, rate));
         self
     }
 
@@ -320,6 +355,7 @@ impl<'g> SystemBuilder<'g> {
     /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
     /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed or contradict it;
     /// [`MechError::FrameOfVelocities`] for a frame that contains velocities;
+    /// [`MechError::OfState`] for a frame or a body placed by first-order states;
     /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
     /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
@@ -338,6 +374,7 @@ impl<'g> SystemBuilder<'g> {
         };
         shape("the list of quasi-velocities", k, frame.operators())?;
         of_position(&frame, &[&eta[..], &velocities].concat())?;
+        check_no_state(&self.states, "the frame", &[frame.b().entries(), frame.b0()].concat())?;
         let mut near = self.near;
         near.centre.extend(self.parameters.iter().copied());
         let structure = match self.structure {
@@ -348,7 +385,7 @@ impl<'g> SystemBuilder<'g> {
                 given
             }
         };
-        let moving = Moving::new(&frame, &eta);
+        let moving = Moving::new(&frame, &eta, &self.states);
         let mut terms = self.lagrangian;
         let velocities: Vec<_> = velocities.into_iter().zip(frame.velocities(&eta)).collect();
         terms.extend(self.graph.substitute(&self.in_velocities, &velocities));
@@ -372,7 +409,7 @@ impl<'g> SystemBuilder<'g> {
         for force in &self.forces {
             parts.push(force.components(&frame, &eta)?);
         }
-        let external = external::symbols(&self.external, &frame, &eta, &self.parameters)?;
+        let external = external::symbols(&self.external, &frame, &eta, &self.parameters, &self.states)?;
         for (name, symbol) in &external {
             parts.push(
                 eta.iter().map(|eta| if eta.to_string() == *name { *symbol } else { Expr::ZERO }).collect(),
@@ -382,12 +419,15 @@ impl<'g> SystemBuilder<'g> {
         let forces: Vec<Expr<'g>> = (0..k).map(|s| self.graph.sum(parts.iter().map(|q| q[s]))).collect();
         self.graph.check(&[lagrangian])?;
         self.graph.check(&forces)?;
+        let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
+        self.graph.check(&rates)?;
         self.graph.check(frame.b().entries())?;
         self.graph.check(frame.b0())?;
         Ok(System {
             frame,
             structure,
             quasi_velocities: eta,
+            states: self.states,
             parameters: self.parameters,
             lagrangian,
             forces,

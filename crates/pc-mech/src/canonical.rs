@@ -26,6 +26,8 @@ pub struct Canonical<'g> {
     hamiltonian: Expr<'g>,
     velocities: Vec<Expr<'g>>,
     right: Vec<Expr<'g>>,
+    /// ż
+    state_rates: Vec<Expr<'g>>,
 }
 
 impl<'g> System<'g> {
@@ -88,7 +90,9 @@ impl<'g> System<'g> {
         let right: Vec<Expr<'g>> =
             (0..eta.len()).map(|s| graph.sum([gyroscopic[s], -slope[s], forces[s]])).collect();
         graph.check(&right)?;
+        let state_rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
         Ok(Canonical {
+            state_rates: graph.shorten(&graph.substitute(&state_rates, &values), &order),
             velocities: graph.shorten(&self.frame.velocities(&eta), &order),
             right: graph.shorten(&right, &order),
             system: self.clone(),
@@ -187,6 +191,11 @@ impl<'g> Canonical<'g> {
         &self.right
     }
 
+    /// The rates ż of the first-order [states](System::states) in the same terms.
+    pub fn state_rates(&self) -> &[Expr<'g>] {
+        &self.state_rates
+    }
+
     /// The two sides of the equations (10), k pairs of texts: sums of products of momenta.
     pub fn balance(&self, style: Style) -> Vec<(String, String)> {
         let graph = self.system.graph();
@@ -228,6 +237,7 @@ impl<'g> Canonical<'g> {
         let gyroscopic = system.structure.gyroscopic(graph, eta, &self.momenta);
         let mut rates = system.frame.velocities(eta);
         rates.extend((0..eta.len()).map(|s| graph.sum([gyroscopic[s], slope[s], system.forces[s]])));
+        rates.extend(system.states.iter().map(|&(_, rate)| rate));
         let parameters = system.parameters.iter().map(|&(symbol, _)| symbol);
         let (right, implicit) = match &self.legendre.inverse {
             Inverse::Closed { momenta_at_rest, .. } => (impulse(&self.momenta, momenta_at_rest), None),
@@ -239,8 +249,9 @@ impl<'g> Canonical<'g> {
         FirstOrder {
             graph,
             time: system.frame.time(),
-            state: x.iter().chain(&self.momenta).copied().collect(),
+            state: system.state_with(&self.momenta),
             coordinates: x.len(),
+            states: system.states.len(),
             parameters: system.run_time_inputs(),
             unknowns: eta.clone(),
             names: eta.iter().map(Expr::to_string).collect(),

@@ -52,6 +52,7 @@ impl<'g> System<'g> {
     /// The change to quasi-velocities given by their expressions in the old ones.
     pub(crate) fn change(&self, definitions: &[Expr<'g>]) -> Result<FrameChange<'g>, MechError> {
         let (graph, eta) = (self.graph(), &self.quasi_velocities);
+        self.check_no_state("the definition of a quasi-velocity", definitions)?;
         let parts = definitions.iter().enumerate().map(|(row, &definition)| {
             affine(graph, definition, eta).ok_or_else(|| AlgebraError::DefinitionNotAffine {
                 row: row + 1,
@@ -94,6 +95,7 @@ impl<'g> System<'g> {
             lagrangian: graph.shorten(&put(&[self.lagrangian]), &order)[0],
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
+            states: self.states_in(put),
             bodies: self.bodies.map(put),
             parameters: self.parameters.clone(),
             external: self.external.clone(),

@@ -53,7 +53,7 @@ impl EmitOptions {
         self
     }
 
-    /// A start state (coordinates, then quasi-velocities) and the times of a motion. With these the source has a
+    /// A start state (coordinates, quasi-velocities, then first-order states) and the times of a motion. With these the source has a
     /// `main` that integrates it.
     #[must_use]
     pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
@@ -113,6 +113,8 @@ struct Source<'a> {
     name: String,
     state: Vec<String>,
     coordinates: usize,
+    /// Number of first-order states.
+    states: usize,
     parameters: Vec<(String, f64)>,
     integrals: Vec<String>,
     outputs: Vec<String>,
@@ -175,6 +177,7 @@ impl<'g> Equations<'g> {
             name: options.language.identifiers(&[&options.name], &[]).remove(0),
             state,
             coordinates: system.frame.coordinates().len(),
+            states: system.states.len(),
             parameters: system
                 .run_time_inputs()
                 .into_iter()
@@ -196,6 +199,7 @@ impl<'g> Equations<'g> {
             let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
             lines.push(format!("{left} = {right}"));
         }
+        lines.extend(self.system.states.iter().map(|(z, rate)| format!("{z}' = {rate}")));
         let short = lines.iter().all(|line| line.chars().count() <= LONG_EQUATION);
         if short { lines } else { Vec::new() }
     }
@@ -203,19 +207,25 @@ impl<'g> Equations<'g> {
     fn routines(&self, options: &EmitOptions) -> Result<Vec<Routine>, MechError> {
         let system = &self.system;
         let graph = system.graph();
-        let (n, k) = (system.frame.coordinates().len(), system.quasi_velocities.len());
-        let dim = n + k;
+        let k = system.quasi_velocities.len();
         let writer = Writer::new(self.first_order(), options);
         let state: Vec<String> = writer.system.state.iter().map(Expr::to_string).collect();
+        let dim = state.len();
         let rates: Vec<String> = state.iter().map(|name| format!("{name}'")).collect();
 
         let factors = Factors::of(graph, &self.mass);
         let accelerations = writer.system.solve(&factors);
         let linearised = Linearised::new(&writer.system, &factors, &accelerations);
-        let motion: Vec<Expr<'g>> = self.velocities.iter().chain(&accelerations).copied().collect();
+        let of_states = system.states.iter().map(|(_, rate)| rate);
+        let motion: Vec<Expr<'g>> =
+            self.velocities.iter().chain(&accelerations).chain(of_states).copied().collect();
         let mut routines = vec![writer.routine(
             "rhs",
-            "`ydot` = dy/dt: the velocities of the coordinates, then the accelerations".to_owned(),
+            match system.states.as_slice() {
+                [] => "`ydot` = dy/dt: the velocities of the coordinates, then the accelerations".to_owned(),
+                _ => "`ydot` = dy/dt: the velocities of the coordinates, the accelerations, then the rates of the first-order                       states"
+                    .to_owned(),
+            },
             ("ydot", Extent::State),
             &motion,
             |i| (format!("[{i}]"), rates[i].clone()),
@@ -367,10 +377,11 @@ impl Source<'_> {
         };
         let quasi_velocities = count(self.quasi_velocities(), "quasi-velocity", "quasi-velocities");
         lines.push(String::new());
-        lines.push(match self.coordinates {
-            0 => format!("State: {quasi_velocities}."),
-            n => format!("State: {}, then {quasi_velocities}.", count(n, "coordinate", "coordinates")),
-        });
+        let coordinates =
+            (self.coordinates > 0).then(|| count(self.coordinates, "coordinate", "coordinates"));
+        let states = (self.states > 0).then(|| count(self.states, "first-order state", "first-order states"));
+        let parts: Vec<String> = coordinates.into_iter().chain([quasi_velocities]).chain(states).collect();
+        lines.push(format!("State: {}.", parts.join(", then ")));
         lines.extend(self.state.iter().enumerate().map(|(i, name)| format!("    y[{i}]  {}", comment(name))));
         if !self.parameters.is_empty() {
             lines.extend([String::new(), "Parameters, with their default values:".to_owned()]);
@@ -383,7 +394,7 @@ impl Source<'_> {
     }
 
     fn quasi_velocities(&self) -> usize {
-        self.state.len() - self.coordinates
+        self.state.len() - self.coordinates - self.states
     }
 
     fn constants(&self, values: impl Iterator<Item = f64>) -> String {

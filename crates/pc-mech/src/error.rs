@@ -22,6 +22,14 @@ pub enum MechError {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
+    /// A part of the frame that depends on a first-order state.
+    #[error("{what} depends on the first-order state `{state}`, which is no part of the frame")]
+    OfState {
+        /// The part.
+        what: &'static str,
+        /// The state.
+        state: String,
+    },
     /// Neither a Lagrangian was given nor one that depends on the quasi-velocities.
     #[error("the system has no Lagrangian")]
     NoLagrangian,

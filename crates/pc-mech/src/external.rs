@@ -61,9 +61,11 @@ pub(crate) fn symbols<'g>(
     frame: &Frame<'g>,
     eta: &[Expr<'g>],
     parameters: &[(Expr<'g>, f64)],
+    states: &[(Expr<'g>, Expr<'g>)],
 ) -> Result<Vec<(String, Expr<'g>)>, MechError> {
     let known: Vec<String> = eta.iter().map(Expr::to_string).collect();
     let declared = frame.coordinates().iter().chain(eta).chain(parameters.iter().map(|(symbol, _)| symbol));
+    let declared = declared.chain(states.iter().map(|(symbol, _)| symbol));
     let taken: Vec<String> = declared.map(Expr::to_string).collect();
     let symbol = |name: &String| {
         if !known.contains(name) {

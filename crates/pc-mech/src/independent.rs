@@ -134,6 +134,7 @@ impl<'g> Multipliers<'g> {
             lagrangian: put(&[system.lagrangian()])[0],
             integrals: named(system.integrals()),
             outputs: named(system.outputs()),
+            states: system.states_in(put),
             bodies: system.bodies.map(put),
             quasi_velocities: free,
             structure,
@@ -233,11 +234,11 @@ impl<'g> Multipliers<'g> {
                 _ => 0,
             };
             let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);
-            let state = system.frame().coordinates().iter().chain(system.quasi_velocities());
+            let state = system.state();
             MechError::SingularConstraint {
                 constraint: self.constraints()[place].name().to_owned(),
                 t: value(system.frame().time()).map_or(f64::NAN, |&(_, t)| t),
-                state: state.filter_map(|&x| Some((x.to_string(), value(x)?.1))).collect(),
+                state: state.into_iter().filter_map(|x| Some((x.to_string(), value(x)?.1))).collect(),
             }
         })?;
         let mut dependent = saddle.dependent().to_vec();

@@ -1,5 +1,7 @@
 //! From quasi-velocities to momenta and back: y = ∂L/∂η.
 
+use std::ops::Range;
+
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
@@ -80,8 +82,8 @@ pub(crate) fn not_quadratic_in<'g>(system: &System<'g>) -> Expr<'g> {
 /// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {
-    /// Names of x, η, y.
-    names: [Vec<String>; 3],
+    /// Names of x, η, y, z.
+    names: [Vec<String>; 4],
     parameters: Vec<f64>,
     momenta: Evaluator,
     quasi_velocities: QuasiVelocities,
@@ -114,12 +116,10 @@ impl Canonical<'_> {
     /// declared parameter.
     pub fn legendre_transform(&self) -> Result<LegendreTransform, MechError> {
         // External forces are in none of what is solved here.
-        let equations =
-            FirstOrder { parameters: self.system().parameters().to_vec(), ..self.first_order() };
+        let equations = FirstOrder { parameters: self.system().parameters().to_vec(), ..self.first_order() };
         let quasi_velocities = match &equations.implicit {
             None => {
-                let program =
-                    Program::new(equations.graph, &equations.inputs(&[]), self.quasi_velocities())?;
+                let program = Program::new(equations.graph, &equations.inputs(&[]), self.quasi_velocities())?;
                 QuasiVelocities::Closed(Evaluator::new(program, Backend::Interpreter))
             }
             Some(_) => QuasiVelocities::solved(&equations)?,
@@ -180,14 +180,15 @@ impl LegendreTransform {
         quasi_velocities: QuasiVelocities,
     ) -> Result<LegendreTransform, MechError> {
         let (x, eta) = (system.frame().coordinates(), system.quasi_velocities());
+        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
         let inputs = Inputs {
             time: Some(system.frame().time()),
-            state: [x, eta].concat(),
+            state: system.state(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
         let momenta = Program::new(system.graph(), &inputs, momenta)?;
         Ok(LegendreTransform {
-            names: [x, eta, symbols].map(|symbols| symbols.iter().map(Expr::to_string).collect()),
+            names: [x, eta, symbols, &states].map(|symbols| symbols.iter().map(Expr::to_string).collect()),
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             momenta: Evaluator::new(momenta, Backend::Interpreter),
             quasi_velocities,
@@ -210,20 +211,20 @@ impl LegendreTransform {
         &mut self.parameters
     }
 
-    /// (x, y) of the state (x, η), length n + k both.
+    /// (x, y) of the state (x, η), length n + k both; first-order states follow and stay.
     ///
     /// # Errors
     /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
     /// ∂L/∂η.
     pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
-        let moving = &mut result[self.names[0].len()..];
+        let moving = &mut result[self.moving()];
         evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
             .map_err(|fault| self.error(fault, t, state))?;
         Ok(result)
     }
 
-    /// (x, η) of the state (x, y), length n + k both. Where L is not quadratic, Newton's method finds it from
+    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not quadratic, Newton's method finds it from
     /// the [guess](Canonical::with_guess).
     ///
     /// # Errors
@@ -231,7 +232,7 @@ impl LegendreTransform {
     /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
-        let moving = &mut result[self.names[0].len()..];
+        let moving = &mut result[self.moving()];
         let outcome = match &mut self.quasi_velocities {
             QuasiVelocities::Closed(program) => evaluate(program, (t, state, &self.parameters), moving),
             QuasiVelocities::Linear(linear) => linear.solve((t, state, &self.parameters)).map(|solution| {
@@ -251,14 +252,21 @@ impl LegendreTransform {
 
     /// The state, if it has the right length.
     fn checked(&self, state: &[f64]) -> Result<Vec<f64>, MechError> {
-        check_length("the state", state, self.names[0].len() + self.names[1].len())?;
+        let length = self.names[0].len() + self.names[1].len() + self.names[3].len();
+        check_length("the state", state, length)?;
         Ok(state.to_vec())
+    }
+
+    /// The places of η, or y, in a state.
+    fn moving(&self) -> Range<usize> {
+        let n = self.names[0].len();
+        n..n + self.names[1].len()
     }
 
     /// At the state (x, y).
     fn error(&self, fault: Fault, t: f64, state: &[f64]) -> MechError {
-        let [x, eta, y] = &self.names;
-        fault.at(eta, t, &[&x[..], y].concat(), state)
+        let [x, eta, y, z] = &self.names;
+        fault.at(eta, t, &[&x[..], y, z].concat(), state)
     }
 }
 

@@ -153,6 +153,7 @@ impl<'g> System<'g> {
     /// # Errors
     /// [`MechError::ConstraintNotAffine`] unless it was said to be [nonlinear](Constraint::nonlinear);
     /// [`MechError::TooManyConstraints`] if no velocity is left free;
+    /// [`MechError::OfState`] for one on first-order states;
     /// [`MechError::DependentConstraint`] for one that follows from those before it, or contradicts them;
     /// [`MechError::DegenerateLagrangian`] if the constraints leave velocities without inertia.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
@@ -164,6 +165,7 @@ impl<'g> System<'g> {
         let mut velocities = Vec::new();
         let mut rows = Vec::new();
         for constraint in constraints {
+            self.check_no_state("a constraint", &[constraint.expression])?;
             let velocity = constraint.velocity(self);
             rows.push(match constraint.nonlinear {
                 true => graph.gradient(velocity, &self.quasi_velocities),
@@ -347,11 +349,7 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The equations with w = (η, μ); nothing changes by them.
-    fn legendre_equations(
-        &self,
-        momenta: &[Expr<'g>],
-        guess: &[f64],
-    ) -> Result<FirstOrder<'g>, MechError> {
+    fn legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> Result<FirstOrder<'g>, MechError> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (k, m) = (eta.len(), self.reactions.len());
         let unknowns = [eta, &self.reactions].concat();
@@ -372,9 +370,8 @@ impl<'g> Multipliers<'g> {
             let guess = guess.iter().copied().chain(vec![0.0; m]).collect();
             (Matrix::from_fn(k + m, k + m, |i, j| rows[i][j]), right, Some(Implicit { left, guess }))
         };
-        let x = system.frame.coordinates();
         Ok(FirstOrder {
-            state: x.iter().chain(momenta).copied().collect(),
+            state: system.state_with(momenta),
             parameters: system.parameters.clone(),
             unknowns,
             mass,

@@ -23,7 +23,7 @@ impl<'g> System<'g> {
     ///
     ///   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s
     ///
-    /// in the form M η̇ = r with M = ∂²L/∂η∂η and r = v + X L + Q − (∂²L/∂η∂x) ẋ − ∂²L/∂η∂t.
+    /// in the form M η̇ = r with M = ∂²L/∂η∂η and r = v + X L + Q − (∂²L/∂η∂x) ẋ − (∂²L/∂η∂z) ż − ∂²L/∂η∂t.
     ///
     /// # Errors
     /// [`MechError::DegenerateLagrangian`] if M is singular everywhere.
@@ -69,8 +69,13 @@ impl<'g> System<'g> {
         let hessian: Vec<Vec<Expr<'g>>> = momenta[..free].iter().map(|&p| graph.gradient(p, eta)).collect();
         let mass = Matrix::from_fn(free, free, |r, s| hessian[r.max(s)][r.min(s)]);
 
-        let along: Vec<_> =
-            x.iter().copied().zip(velocities.iter().copied()).chain([(t, Expr::ONE)]).collect();
+        let along: Vec<_> = x
+            .iter()
+            .copied()
+            .zip(velocities.iter().copied())
+            .chain([(t, Expr::ONE)])
+            .chain(system.states.iter().copied())
+            .collect();
         let transport = graph.directional(&momenta[..free], &along);
         let gyroscopic = self.structure.gyroscopic(graph, &on_constraints(all), momenta);
         let potential = system.frame.contract(slope);

@@ -48,7 +48,10 @@ impl<'g> System<'g> {
         let forces = short(&self.forces);
         let structure = self.structure.map(|c| short(&[c])[0]);
         let brackets = structure.nonzero().map(|(.., c)| c);
-        let dynamics: Vec<Expr<'g>> = brackets.chain(forces.iter().copied()).chain([lagrangian]).collect();
+        let states = self.states_in(short);
+        let rates = states.iter().map(|&(_, rate)| rate);
+        let dynamics: Vec<Expr<'g>> =
+            brackets.chain(forces.iter().copied()).chain(rates).chain([lagrangian]).collect();
         let kept = self.kept(&dynamics);
 
         let x = self.frame.coordinates();
@@ -68,6 +71,7 @@ impl<'g> System<'g> {
             frame,
             structure,
             quasi_velocities: self.quasi_velocities.clone(),
+            states,
             parameters: self.parameters.clone(),
             external: self.external.clone(),
             lagrangian,

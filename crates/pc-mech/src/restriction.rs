@@ -66,6 +66,7 @@ impl<'g> System<'g> {
             forces: self.forces[..free].iter().map(|&q| put(q)).collect(),
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
+            states: self.states_in(|list| graph.substitute(list, &zeros)),
             bodies: self.bodies.map(|list| graph.substitute(list, &zeros)),
         }
     }

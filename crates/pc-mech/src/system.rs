@@ -15,6 +15,8 @@ pub struct System<'g> {
     pub(crate) frame: Frame<'g>,
     pub(crate) structure: StructureCoefficients<'g>,
     pub(crate) quasi_velocities: Vec<Expr<'g>>,
+    /// Each z with ż.
+    pub(crate) states: Vec<(Expr<'g>, Expr<'g>)>,
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
     pub(crate) lagrangian: Expr<'g>,
     pub(crate) forces: Vec<Expr<'g>>,
@@ -48,6 +50,30 @@ impl<'g> System<'g> {
     /// The symbols η_1..η_k of the quasi-velocities (2).
     pub fn quasi_velocities(&self) -> &[Expr<'g>] {
         &self.quasi_velocities
+    }
+
+    /// The symbols of the first-order states z, which are no part of the frame, each with its rate ż(t, x, η, z).
+    pub fn states(&self) -> &[(Expr<'g>, Expr<'g>)] {
+        &self.states
+    }
+
+    /// The symbols of the whole state: x, η, z.
+    pub fn state(&self) -> Vec<Expr<'g>> {
+        self.state_with(&self.quasi_velocities)
+    }
+
+    /// x, then what moves them, then z.
+    pub(crate) fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let states = self.states.iter().map(|(symbol, _)| symbol);
+        self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
+    }
+
+    /// That what the frame is made of, called `what`, contains no first-order state.
+    ///
+    /// # Errors
+    /// [`MechError::OfState`]
+    pub(crate) fn check_no_state(&self, what: &'static str, parts: &[Expr<'g>]) -> Result<(), MechError> {
+        check_no_state(&self.states, what, parts)
     }
 
     /// The parameters with their values, in the order of declaration.
@@ -102,10 +128,9 @@ impl<'g> System<'g> {
     /// The symbol of that name, with `mark` before it as often as it takes to be none of the system's.
     pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
         let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
-        let taken: Vec<&Expr<'g>> =
-            self.frame.coordinates().iter().chain(&self.quasi_velocities).chain(parameters).collect();
+        let taken: Vec<Expr<'g>> = self.state().into_iter().chain(parameters.copied()).collect();
         let mut name = name;
-        while taken.contains(&&self.graph().symbol(&name)) {
+        while taken.contains(&self.graph().symbol(&name)) {
             name.insert_str(0, mark);
         }
         self.graph().symbol(&name)
@@ -140,6 +165,7 @@ impl<'g> System<'g> {
             frame: self.frame.map(bind),
             structure: self.structure.map(bind),
             quasi_velocities: self.quasi_velocities.clone(),
+            states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: Vec::new(),
             lagrangian: bind(self.lagrangian),
             forces: self.forces.iter().map(|&x| bind(x)).collect(),
@@ -184,6 +210,11 @@ impl<'g> System<'g> {
         })
     }
 
+    /// The states with their rates put in other terms.
+    pub(crate) fn states_in(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.states.iter().map(|&(z, rate)| (z, put(&[rate])[0])).collect()
+    }
+
     /// The momenta ∂L/∂η_s in terms of (t, x, η), length k.
     pub fn momenta(&self) -> Vec<Expr<'g>> {
         self.graph().gradient(self.lagrangian, &self.quasi_velocities)
@@ -192,5 +223,20 @@ impl<'g> System<'g> {
     /// The energy η_s ∂L/∂η_s − L in terms of (t, x, η): T − U where T is a quadratic form in η.
     pub fn energy(&self) -> Expr<'g> {
         self.graph().dot(self.momenta(), self.quasi_velocities.iter().copied()) - self.lagrangian
+    }
+}
+
+/// That `parts`, called `what`, contain none of the first-order `states`.
+///
+/// # Errors
+/// [`MechError::OfState`]
+pub(crate) fn check_no_state<'g>(
+    states: &[(Expr<'g>, Expr<'g>)],
+    what: &'static str,
+    parts: &[Expr<'g>],
+) -> Result<(), MechError> {
+    match states.iter().find(|(z, _)| parts.iter().any(|part| part.depends_on(*z))) {
+        Some((z, _)) => Err(MechError::OfState { what, state: z.to_string() }),
+        None => Ok(()),
     }
 }

@@ -12,7 +12,6 @@ use crate::system::System;
 #[derive(Clone, Debug)]
 pub struct VelocityTransform {
     parameters: Vec<f64>,
-    coordinates: usize,
     velocities: Evaluator,
     quasi_velocities: Evaluator,
 }
@@ -51,15 +50,14 @@ impl System<'_> {
         let compiled = |moving: &[Expr<'_>], values: &[Expr<'_>]| -> Result<Evaluator, MechError> {
             let inputs = Inputs {
                 time: Some(self.frame.time()),
-                state: x.iter().chain(moving).copied().collect(),
+                state: self.state_with(moving),
                 parameters: self.parameters.iter().map(|&(symbol, _)| symbol).collect(),
             };
-            let outputs: Vec<Expr<'_>> = x.iter().chain(values).copied().collect();
+            let outputs = self.state_with(values);
             Ok(Evaluator::new(Program::new(graph, &inputs, &outputs)?, Backend::Interpreter))
         };
         Ok(VelocityTransform {
             parameters: self.parameters.iter().map(|&(_, value)| value).collect(),
-            coordinates: x.len(),
             velocities: compiled(&self.quasi_velocities, &self.frame.velocities(&self.quasi_velocities))?,
             quasi_velocities: compiled(&rates, &eta)?,
         })
@@ -72,7 +70,7 @@ impl VelocityTransform {
     /// # Panics
     /// If the state has another length.
     pub fn to_velocities(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; 2 * self.coordinates];
+        let mut result = vec![0.0; self.velocities.program().outputs_len()];
         self.velocities.eval(t, state, &self.parameters, &mut result);
         result
     }

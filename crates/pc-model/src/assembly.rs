@@ -28,7 +28,7 @@ pub(crate) fn assemble<'g>(model: &Model, graph: &'g Graph) -> Result<Assembly<'
     Assembler { model, graph, scope: Scope::new(graph, model.document()) }.assemble()
 }
 
-/// The start values alone: of coordinates, then of the declared quasi-velocities or of the velocities.
+/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
 ///
 /// # Errors
 /// [`ModelError`] where one is not a number.
@@ -36,7 +36,8 @@ pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError
     let parameters: Vec<(Expr<'_>, f64)> =
         model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
     let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
-    Ok(assembler.given_start(&parameters)?.values)
+    let given = assembler.given_start(&parameters)?;
+    Ok([given.values, given.states].concat())
 }
 
 struct Assembler<'g, 'm> {
@@ -61,7 +62,9 @@ impl<'g> Assembler<'g, '_> {
             if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
         let declared = eta.len();
         eta.extend(&completing);
+        let of_states = given.states.clone();
         let mut start = self.start_state(&frame, &eta, &constraints, &at, given)?;
+        start.extend(of_states);
 
         let velocities = frame.velocities(&eta);
         let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self
@@ -75,6 +78,7 @@ impl<'g> Assembler<'g, '_> {
         let bodies = self.bodies(&eta, &x_dot)?;
         let gravity = self.gravity()?;
         let dissipation = self.dissipation(&x_dot)?;
+        let rates = self.state_rates(&x_dot)?;
         let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
         let integrals = self.observed(&document.integrals, &x_dot)?;
         let mut outputs = self.observed(&document.outputs, &x_dot)?;
@@ -85,7 +89,8 @@ impl<'g> Assembler<'g, '_> {
 
         let crossings = self.crossings(&x_dot)?;
 
-        let state: Vec<Expr<'g>> = frame.coordinates().iter().chain(&eta).copied().collect();
+        let states = self.scope.states();
+        let state = [frame.coordinates(), &eta, &states].concat();
         let mut values = parameters.clone();
         values.push((frame.time(), t_start));
         values.extend(state.iter().copied().zip(start.iter().copied()));
@@ -104,6 +109,9 @@ impl<'g> Assembler<'g, '_> {
                 Body::Particle(particle) => builder.particle(|_, _, _| particle),
                 Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
             };
+        }
+        for (symbol, rate) in states.into_iter().zip(rates) {
+            builder = builder.state(symbol, |_, _, _| rate);
         }
         if let Some(acceleration) = gravity {
             builder = builder.gravity(|_| acceleration);
@@ -125,7 +133,8 @@ impl<'g> Assembler<'g, '_> {
         let written_start = self.model.projects_start().then(|| start.clone());
         let held = StartHeld::new(self.model, if completing.is_empty() { 0 } else { declared });
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), &held)?;
-        let events = self.events(crossings, &x_dot, &bound)?;
+        let events =
+            self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;
         Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
     }
@@ -158,6 +167,14 @@ impl<'g> Assembler<'g, '_> {
             Some(dissipation) => self.dynamic(dissipation, x_dot),
             None => Ok(Expr::ZERO),
         }
+    }
+
+    /// ż of the first-order states.
+    fn state_rates(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
+        let states = self.model.document().states.iter();
+        let rates: Result<Vec<Expr<'g>>, ModelError> =
+            states.map(|state| self.scope.resolve(&state.rate, Stage::Rate)).collect();
+        Ok(self.graph.substitute(&rates?, x_dot))
     }
 
     /// An expression of the dynamics with ẋ = b η + b_0 put in.

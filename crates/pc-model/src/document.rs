@@ -112,6 +112,8 @@ pub struct Document {
     pub quasi_velocities: Vec<QuasiVelocity>,
     /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
     pub start_velocities: Vec<NamedExpression>,
+    /// `[states]`
+    pub states: Vec<State>,
     /// `[kinematics]`: x_i' by the names of coordinates.
     pub kinematics: Vec<NamedExpression>,
     /// `[algebra]`
@@ -156,6 +158,17 @@ pub struct QuasiVelocity {
     pub is: Option<Expression>,
     /// Its start value; 0 where it is left out.
     pub start: Option<Expression>,
+}
+
+/// A first-order state z, which is no part of the frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Its name.
+    pub name: Name,
+    /// Its start value; 0 where it is left out.
+    pub start: Option<Expression>,
+    /// ż
+    pub rate: Expression,
 }
 
 /// Structure coefficients given by the user.
@@ -364,6 +377,7 @@ impl Document {
             "definitions" => self.definitions = table.declarations()?,
             "coordinates" => self.coordinates = table.declarations()?,
             "quasi_velocities" => sections::quasi_velocities(&table, self)?,
+            "states" => self.states = sections::states(&table)?,
             "kinematics" => self.kinematics = table.expressions()?,
             "algebra" => self.algebra = Some(sections::algebra(&table)?),
             "constraints" => self.constraints = sections::constraints(&table)?,

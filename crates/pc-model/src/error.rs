@@ -314,6 +314,8 @@ pub enum Role {
     Coordinate,
     /// An entry of `[quasi_velocities]`.
     QuasiVelocity,
+    /// An entry of `[states]`.
+    State,
     /// An entry of `[integrals]`.
     Integral,
     /// An entry of `[outputs]`.
@@ -327,6 +329,7 @@ impl fmt::Display for Role {
             Self::Definition => "a definition",
             Self::Coordinate => "a coordinate",
             Self::QuasiVelocity => "a quasi-velocity",
+            Self::State => "a first-order state",
             Self::Integral => "an integral",
             Self::Output => "an output",
         })
@@ -340,6 +343,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "definitions",
     "coordinates",
     "quasi_velocities",
+    "states",
     "kinematics",
     "algebra",
     "constraints",
@@ -390,7 +394,7 @@ impl ErrorKind {
             }
             Self::Reserved { name } => reserved(name),
             Self::NameTaken { name, .. } => format!(
-                "parameters, definitions, coordinates, quasi-velocities, integrals and outputs share one \
+                "parameters, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
                  namespace; choose another name, such as `{name}_1`"
             ),
             Self::NotAPair { .. } => {

@@ -13,6 +13,6 @@ pub struct Event<'g> {
     pub direction: Direction,
     /// Whether the motion ends there.
     pub terminal: bool,
-    /// The components of (x, η) that are given new values, and these: all of the state before the event.
+    /// The components of (x, η, z) that are given new values, and these: all of the state before the event.
     pub resets: Vec<(usize, Expr<'g>)>,
 }

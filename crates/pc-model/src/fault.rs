@@ -149,7 +149,10 @@ pub enum Fault {
     )]
     DependentDefinitions,
     /// Velocities that neither definitions nor constraints determine where the motion starts.
-    #[error("at the start the definitions of the quasi-velocities and the constraints leave {} undetermined", listed(velocities))]
+    #[error(
+        "at the start the definitions of the quasi-velocities and the constraints leave {} undetermined",
+        listed(velocities)
+    )]
     StartOpen {
         /// The velocities.
         velocities: Vec<String>,

@@ -11,7 +11,7 @@ use self::reading::Reading;
 use crate::bound::Form;
 use crate::error::ModelError;
 use crate::model::{Assembly, Model};
-use crate::variables::{Variables, state};
+use crate::variables::Variables;
 
 /// Equations of motion of a model, compiled and tried at the start, with what is read off their states.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct Flow {
     pub motion: Motion,
     /// Its state at the start.
     pub start: Vec<f64>,
-    /// Coordinates and declared quasi-velocities, the columns of a table whatever the form.
+    /// Coordinates, declared quasi-velocities and first-order states, the columns of a table whatever the form.
     pub names: Vec<String>,
     /// What happens where; none in most models.
     pub events: FlowEvents,
@@ -47,7 +47,7 @@ impl Flow {
                     Form::Held(_) => assembly.system.clone(),
                     Form::Free | Form::Vanishing(_) => model.system_in(assembly, variables)?,
                 };
-                let start = assembly.start_of(&state(&system));
+                let start = assembly.start_of(&system.state());
                 let start = transform.to_momenta(assembly.t_start, &start);
                 let start = start.map_err(|error| model.derivation_error(error))?;
                 let motion = match assembly.bound.form() {
@@ -76,7 +76,8 @@ impl Flow {
         let all = assembly.quasi_velocities_of(free).map_err(|error| model.constraint_error(error))?;
         let eta = system.quasi_velocities();
         let free_places = free.iter().filter_map(|free| eta.iter().position(|eta| eta == free)).collect();
-        let inputs = inputs(system, &[x, free].concat());
+        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
+        let inputs = inputs(system, &[x, free, &states].concat());
         let program = Program::new(system.graph(), &inputs, &all)
             .map_err(|error| model.derivation_error(MechError::from(error)))?;
         let reading = Reading {
@@ -90,7 +91,7 @@ impl Flow {
             events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities())?,
             motion,
             start,
-            names: x.iter().chain(declared).map(ToString::to_string).collect(),
+            names: x.iter().chain(declared).chain(&states).map(ToString::to_string).collect(),
             reading,
         })
     }
@@ -105,23 +106,24 @@ impl Flow {
         Flow { motion, start, names: self.names.clone(), events, reading }
     }
 
-    /// Coordinates and all quasi-velocities of a state. Where momenta have no quasi-velocities, these are no numbers.
+    /// Coordinates, all quasi-velocities and first-order states of a state. Where momenta have no quasi-velocities, these are no numbers.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
         self.reading.read(t, state).unwrap_or_else(|_| {
             let mut free = state.to_vec();
-            free[n..].fill(f64::NAN);
+            let states = free.len() - self.motion.states();
+            free[n..states].fill(f64::NAN);
             self.reading.complete(t, &free)
         })
     }
 
-    /// Coordinates and declared quasi-velocities of a state, then the observables.
+    /// Coordinates, declared quasi-velocities and first-order states of a state, then the observables.
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut row = self.shown(t, state);
         row.extend(self.motion.observe(t, state));
+        let declared = self.names.len() - self.motion.states();
         row.drain(
-            self.names.len()
-                ..self.motion.coordinates() + self.reading.quasi_velocities.program().outputs_len(),
+            declared..self.motion.coordinates() + self.reading.quasi_velocities.program().outputs_len(),
         );
         row
     }
@@ -138,7 +140,7 @@ impl Flow {
 
     /// Number of quasi-velocities.
     pub fn quasi_velocities(&self) -> usize {
-        self.names.len() - self.motion.coordinates()
+        self.names.len() - self.motion.coordinates() - self.motion.states()
     }
 }
 

@@ -41,7 +41,7 @@ pub struct Assembly<'g> {
     pub bound: Bound<'g>,
     /// Start time.
     pub t_start: f64,
-    /// Start state: coordinates, then quasi-velocities.
+    /// Start state: coordinates, quasi-velocities, first-order states.
     pub start: Vec<f64>,
     /// The start state as written, where it was to be moved to the constraints.
     pub written_start: Option<Vec<f64>>,
@@ -55,7 +55,7 @@ impl<'g> Assembly<'g> {
     /// Values of time, coordinates and quasi-velocities at the start.
     pub fn at_start(&self) -> Vec<(Expr<'g>, f64)> {
         let frame = self.system.frame();
-        let state = frame.coordinates().iter().chain(self.system.quasi_velocities()).copied();
+        let state = self.system.state().into_iter();
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
@@ -212,7 +212,7 @@ impl Model {
             Form::Free | Form::Vanishing(_) => {
                 let equations = assembly.equations().map_err(refused)?;
                 let system = equations.system();
-                let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+                let state = system.state();
                 let (compiled, start) = (equations.compile_for(self.options()), assembly.start_of(&state));
                 self.started(compiled, || equations.kept(&self.kept), assembly.t_start, start)
             }

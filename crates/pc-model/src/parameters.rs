@@ -76,7 +76,8 @@ impl Parameters {
     /// # Errors
     /// [`ModelError`] at the first expression of the document, whose values these are, that has no finite value.
     pub(crate) fn check(&self, document: &Document) -> Result<(), ModelError> {
-        for ((formula, value), parameter) in self.formulas.iter().zip(&self.values).zip(&document.parameters) {
+        for ((formula, value), parameter) in self.formulas.iter().zip(&self.values).zip(&document.parameters)
+        {
             match formula {
                 Formula::Wrong(error) => return Err(error.clone()),
                 Formula::Of(_) if !value.is_finite() => {

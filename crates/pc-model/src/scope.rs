@@ -26,6 +26,10 @@ pub(crate) enum Stage {
     Kinematics,
     /// Mass, inertia, place and attitude of a body: coordinates and t.
     Position,
+    /// Mass and inertia of a body: coordinates, first-order states and t.
+    Inertia,
+    /// The rate of a first-order state: everything but accelerations.
+    Rate,
     /// The acceleration of gravity: parameters and t.
     Gravity,
     /// A constraint: everything but accelerations.
@@ -47,7 +51,8 @@ impl Stage {
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
-            Stage::Position => "the mass, inertia, position or rotation of a body",
+            Stage::Position | Stage::Inertia => "the mass, inertia, position or rotation of a body",
+            Stage::Rate => "the rate of a first-order state",
             Stage::Gravity => "the acceleration of gravity",
             Stage::Constraint => "a constraint",
             Stage::Dynamics => "the Lagrangian or a force",
@@ -63,9 +68,10 @@ impl Stage {
             Stage::Start => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
-            Stage::Position => "parameters, coordinates and t",
+            Stage::Position | Stage::Inertia => "parameters, coordinates and t",
             Stage::Gravity => "numbers, parameters and t",
-            Stage::Constraint | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
+            Stage::Constraint => "parameters, coordinates, velocities and t",
+            Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
                 "declared names"
             }
         }
@@ -105,7 +111,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         let names = document.parameters.iter().map(|p| &p.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
         let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
-        for name in names.chain(coordinates).chain(quasi_velocities) {
+        let states = document.states.iter().map(|state| &state.name.text);
+        for name in names.chain(coordinates).chain(quasi_velocities).chain(states) {
             graph.symbol(name);
         }
         let time = graph.symbol("t");
@@ -138,6 +145,10 @@ impl<'g, 'd> Scope<'g, 'd> {
 
     pub(crate) fn velocities(&self) -> Vec<Expr<'g>> {
         self.document.coordinates.iter().map(|c| self.velocity(&c.name.text)).collect()
+    }
+
+    pub(crate) fn states(&self) -> Vec<Expr<'g>> {
+        self.document.states.iter().map(|state| self.graph.symbol(&state.name.text)).collect()
     }
 
     pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
@@ -272,13 +283,20 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
         let is_coordinate = document.coordinates.iter().any(|c| c.name.text == name);
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
+        let is_state = document.states.iter().any(|state| state.name.text == name);
         match stage {
             Stage::Parameter if self.places.contains_key(name) => refuse(self),
-            Stage::Parameter | Stage::Start if name == "t" || is_coordinate || is_quasi_velocity => refuse(self),
-            Stage::Definition | Stage::Position if is_quasi_velocity => refuse(self),
-            Stage::Gravity if is_coordinate || is_quasi_velocity => refuse(self),
+            Stage::Parameter | Stage::Start
+                if name == "t" || is_coordinate || is_quasi_velocity || is_state =>
+            {
+                refuse(self)
+            }
+            Stage::Definition | Stage::Position if is_quasi_velocity || is_state => refuse(self),
+            Stage::Inertia if is_quasi_velocity => refuse(self),
+            Stage::Kinematics | Stage::Constraint if is_state => refuse(self),
+            Stage::Gravity if is_coordinate || is_quasi_velocity || is_state => refuse(self),
             _ if name == "t" => Ok(self.time),
-            _ if is_coordinate || is_quasi_velocity => Ok(self.graph.symbol(name)),
+            _ if is_coordinate || is_quasi_velocity || is_state => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_resultant(name) => {
                 let symbol = self.graph.symbol(name);
@@ -315,7 +333,9 @@ impl<'g, 'd> Scope<'g, 'd> {
         let definitions = document.definitions.iter().map(|d| &d.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
         let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
-        parameters.chain(definitions).chain(coordinates).chain(quasi_velocities).cloned().collect()
+        let states = document.states.iter().map(|state| &state.name.text);
+        let moving = coordinates.chain(quasi_velocities).chain(states);
+        parameters.chain(definitions).chain(moving).cloned().collect()
     }
 
     fn velocity_of(
@@ -334,14 +354,21 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         match stage {
-            Stage::Parameter | Stage::Start | Stage::Kinematics | Stage::Position | Stage::Gravity => Err(self.error(expression, span, |text| {
-                Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() }
+            Stage::Parameter
+            | Stage::Start
+            | Stage::Kinematics
+            | Stage::Position
+            | Stage::Inertia
+            | Stage::Gravity => Err(self.error(expression, span, |text| Fault::NotHere {
+                name: text,
+                place: stage.place(),
+                allowed: stage.allowed(),
             })),
             _ => Ok(self.velocity(name)),
         }
     }
 
-    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i, and accelerations where f contains velocities.
+    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, and accelerations where f contains velocities.
     fn total_derivative(
         &mut self,
         expression: &Expression,
@@ -350,9 +377,15 @@ impl<'g, 'd> Scope<'g, 'd> {
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
-            Stage::Parameter | Stage::Start | Stage::Kinematics | Stage::Position | Stage::Gravity => true,
+            Stage::Parameter
+            | Stage::Start
+            | Stage::Kinematics
+            | Stage::Position
+            | Stage::Inertia
+            | Stage::Gravity => true,
             Stage::Definition
             | Stage::Constraint
+            | Stage::Rate
             | Stage::Dynamics
             | Stage::Event
             | Stage::Function
@@ -373,6 +406,18 @@ impl<'g, 'd> Scope<'g, 'd> {
         rates.extend(velocities.iter().map(rate));
         rates.extend(eta.iter().map(rate));
         rates.push((self.time, Expr::ONE));
+        for (z, state) in self.states().into_iter().zip(&self.document.states) {
+            if !value.depends_on(z) {
+                continue;
+            }
+            if stage == Stage::Rate {
+                // The rates of two states may each contain that of the other.
+                let fault =
+                    |text| Fault::NotHere { name: text, place: stage.place(), allowed: "rates written out" };
+                return Err(self.error(expression, span, fault));
+            }
+            rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
+        }
         Ok(self.graph.directional(&[value], &rates)[0])
     }
 }

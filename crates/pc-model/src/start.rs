@@ -12,12 +12,13 @@ use crate::model::Model;
 pub struct UnknownStart {
     /// The name asked for.
     pub name: String,
-    /// The coordinates and quasi-velocities there are; velocities x' where no quasi-velocity is declared.
+    /// The coordinates, quasi-velocities and first-order states there are; velocities x' where no quasi-velocity is declared.
     pub known: Vec<String>,
 }
 
 impl Model {
-    /// The names that have a start value: coordinates, then quasi-velocities, or velocities x' where none is declared.
+    /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
+    /// first-order states.
     pub fn start_names(&self) -> Vec<String> {
         let document = self.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
@@ -26,6 +27,7 @@ impl Model {
         if document.quasi_velocities.is_empty() {
             names.extend(document.coordinates.iter().map(|x| format!("{}'", x.name.text)));
         }
+        names.extend(document.states.iter().map(|state| state.name.text.clone()));
         names
     }
 
@@ -50,7 +52,8 @@ impl Model {
     /// # Errors
     /// [`UnknownStart`] with the names there are.
     pub fn hold_start(&mut self, name: &str) -> Result<(), UnknownStart> {
-        let known = self.start_names();
+        let mut known = self.start_names();
+        known.truncate(known.len() - self.document().states.len()); // no constraint moves first-order states
         match known.iter().position(|known| known == name) {
             Some(place) => {
                 self.hold_start_at(place);
@@ -73,7 +76,7 @@ impl Model {
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
     }
 
-    /// The start state (x, η) with the declared η, or (x, x') where none is: the values of [`start_names`](Model::start_names)
+    /// The start state (x, η, z) with the declared η, or (x, x', z) where none is: the values of [`start_names`](Model::start_names)
     /// for the parameters as they are, not looked at whether they satisfy the constraints, 0 where none is given.
     ///
     /// # Errors

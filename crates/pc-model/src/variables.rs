@@ -1,6 +1,6 @@
 //! The equations of a model in the variables of their state.
 
-use pc_mech::{Canonical, Equations, Expr, LegendreTransform, System};
+use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
 use crate::bound::Form;
 use crate::error::ModelError;
@@ -43,7 +43,9 @@ impl Model {
     pub fn equations_in<'g>(&self, assembly: &Assembly<'g>) -> Result<Equations<'g>, ModelError> {
         match assembly.bound.form() {
             Form::Held(held) => Ok(held.multipliers.equations().clone()),
-            Form::Free | Form::Vanishing(_) => assembly.equations().map_err(|error| self.constraint_error(error)),
+            Form::Free | Form::Vanishing(_) => {
+                assembly.equations().map_err(|error| self.constraint_error(error))
+            }
         }
     }
 
@@ -58,9 +60,11 @@ impl Model {
         variables: Variables,
     ) -> Result<Canonical<'g>, ModelError> {
         let system = self.system_in(assembly, variables)?;
-        let start = assembly.start_of(&state(&system));
+        let start = assembly.start_of(&system.state());
         let n = system.frame().coordinates().len();
-        let canonical = system.canonical().and_then(|canonical| canonical.with_guess(&start[n..]));
+        let canonical = system
+            .canonical()
+            .and_then(|canonical| canonical.with_guess(&start[n..n + system.quasi_velocities().len()]));
         canonical.map_err(|error| self.derivation_error(error))
     }
 
@@ -82,9 +86,4 @@ impl Model {
         };
         transform.map_err(|error| self.derivation_error(error))
     }
-}
-
-/// x, η
-pub(crate) fn state<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
-    [system.frame().coordinates(), system.quasi_velocities()].concat()
 }

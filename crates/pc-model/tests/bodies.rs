@@ -235,8 +235,8 @@ angular_velocity = [0, "φ'", 0]
     let assembly = model(&falling).assemble(&graph).unwrap_or_else(|error| panic!("{error}"));
     let (fallen, floating) = (assembly.system, system(&graph, BODIES));
     let [m, l, g, s, phi] = graph.symbols(["m", "l", "g", "s", "φ"]);
-    let potential = -3.0 * (s / 2.0 - g * s / 10.0)
-        - m * ((s + l * phi.sin()) / 2.0 - g * (s / 10.0 - l * phi.cos()));
+    let potential =
+        -3.0 * (s / 2.0 - g * s / 10.0) - m * ((s + l * phi.sin()) / 2.0 - g * (s / 10.0 - l * phi.cos()));
     assert_eq!(floating.lagrangian() - fallen.lagrangian(), potential);
     assert_eq!(fallen.forces(), [Expr::ZERO; 2]);
     assert!(fallen.energy_rate().is_zero());

@@ -110,10 +110,8 @@ fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>
 fn unused(system: &System<'_>, constraint: &Constraint<'_>) -> String {
     let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
     let taken: Vec<String> = system
-        .frame()
-        .coordinates()
+        .state()
         .iter()
-        .chain(system.quasi_velocities())
         .chain(parameters)
         .filter(|symbol| **symbol != constraint.expression())
         .map(Expr::to_string)

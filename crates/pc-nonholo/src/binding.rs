@@ -78,7 +78,8 @@ impl Binding {
             (0..constraints.len()).partition(|&a| constraints[a].is_nonlinear());
         let (positions, velocities): (Vec<usize>, Vec<usize>) =
             affine.into_iter().partition(|&a| constraints[a].is_holonomic(system));
-        let mut found = Found { system, constraints, rows: Rows::default(), redundant: Vec::new(), open: Vec::new() };
+        let mut found =
+            Found { system, constraints, rows: Rows::default(), redundant: Vec::new(), open: Vec::new() };
         for a in positions.into_iter().chain(velocities) {
             found.add(a)?;
         }
@@ -165,10 +166,17 @@ impl<'g> Found<'_, 'g> {
         let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
             return Ok(());
         };
-        let holonomic: Vec<usize> =
-            self.rows.places.iter().copied().filter(|&a| self.constraints[a].is_holonomic(self.system)).collect();
+        let holonomic: Vec<usize> = self
+            .rows
+            .places
+            .iter()
+            .copied()
+            .filter(|&a| self.constraints[a].is_holonomic(self.system))
+            .collect();
         let positions = self.positions(&holonomic);
-        let on = |place: &Place| if positions.off(place) <= FOLLOWS { Some(place.clone()) } else { positions.near(place) };
+        let on = |place: &Place| {
+            if positions.off(place) <= FOLLOWS { Some(place.clone()) } else { positions.near(place) }
+        };
         let Some(start) = on(&start) else { return Ok(()) };
         let Some(here) = self.at(&positions, std::slice::from_ref(&start)) else { return Ok(()) };
         let mut span = Span::default();
@@ -177,7 +185,9 @@ impl<'g> Found<'_, 'g> {
         }
         let places: Vec<Place> =
             (0..PLACES).filter_map(|index| positions.near(&start.varied(index))).collect();
-        let Some(values) = self.at(&positions, &places).filter(|values| values.len() > 1) else { return Ok(()) };
+        let Some(values) = self.at(&positions, &places).filter(|values| values.len() > 1) else {
+            return Ok(());
+        };
         self.drop_dependent(&values, &start)
     }
 
@@ -203,7 +213,9 @@ impl<'g> Found<'_, 'g> {
         }
         places
             .iter()
-            .map(|place| Some(positions.evaluate(&whole, place)?.chunks(width).map(<[f64]>::to_vec).collect()))
+            .map(|place| {
+                Some(positions.evaluate(&whole, place)?.chunks(width).map(<[f64]>::to_vec).collect())
+            })
             .collect()
     }
 
@@ -271,7 +283,8 @@ impl<'g> Found<'_, 'g> {
 
     /// Whether a condition on positions vanishes wherever, around the start, those kept do.
     fn vanishes(&self, a: usize, start: &Place) -> bool {
-        let holonomic = self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
+        let holonomic =
+            self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
         let (kept, own) = (self.positions(&holonomic.collect::<Vec<_>>()), self.positions(&[a]));
         let places: Vec<Place> = (0..PLACES).filter_map(|index| kept.near(&start.varied(index))).collect();
         places.len() > 1 && places.iter().all(|place| own.off(place) <= FOLLOWS)

@@ -84,6 +84,7 @@ impl<'g> Constrained<'g> {
         let mut rates: Vec<_> = x.iter().copied().zip(self.equations.velocities().iter().copied()).collect();
         rates.extend(all.iter().copied().zip(self.equations.accelerations()));
         rates.push((frame.time(), Expr::ONE));
+        rates.extend(self.equations.system().states().iter().copied());
         let transport = graph.directional(&momenta[free..], &rates);
         let reactions: Vec<Expr<'g>> = (free..all.len())
             .map(|a| graph.sum([transport[a - free], -gyroscopic[a], -potential[a], -forces[a]]))

@@ -73,7 +73,12 @@ impl<'g> Constrained<'g> {
     }
 }
 
-/// ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s of the motion (10), (11).
+/// The symbols of the first-order states.
+fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    system.states().iter().map(|&(z, _)| z).collect()
+}
+
+/// ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11).
 fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, MechError> {
     let graph = free.graph();
     let canonical = free.canonical()?;
@@ -83,7 +88,8 @@ fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, MechError> {
     };
     let x = along(free.frame().coordinates(), canonical.velocities());
     let y = along(canonical.momenta(), canonical.right_hand_side());
-    Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y))], canonical.momenta())[0])
+    let z = along(&states(free), canonical.state_rates());
+    Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y).chain(z))], canonical.momenta())[0])
 }
 
 /// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of `factors`, functions of
@@ -121,8 +127,12 @@ pub fn invariant_measure<'g>(
     }
     let factors = if factors.is_empty() { candidates(system)? } else { factors.to_vec() };
     let x = system.frame().coordinates().iter().copied();
-    let along: Vec<_> =
-        x.zip(canonical.velocities().iter().copied()).chain([(system.frame().time(), Expr::ONE)]).collect();
+    let z = states(system).into_iter().zip(canonical.state_rates().iter().copied());
+    let along: Vec<_> = x
+        .zip(canonical.velocities().iter().copied())
+        .chain(z)
+        .chain([(system.frame().time(), Expr::ONE)])
+        .collect();
     let rates = graph.directional(&factors, &along);
     let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
     let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();

@@ -61,8 +61,7 @@ impl<'g> Derived<'g> {
                 let mut transform = system.velocity_transform()?;
                 let start = transform.to_velocities(assembly.t_start, &assembly.start);
                 let lagrange = held.equations().system();
-                let state = lagrange.frame().coordinates().iter().chain(lagrange.quasi_velocities()).copied();
-                let mut at: Vec<(Expr<'g>, f64)> = state.zip(start).collect();
+                let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
                 at.push((lagrange.frame().time(), assembly.t_start));
                 let voronets = Voronets::new(&held, &at)?;
                 let name =

@@ -7,11 +7,13 @@ use crate::constraints::constraint_objects;
 use crate::derived::Derived;
 use crate::operations::Operations;
 use crate::operator_names;
+use crate::text::rates_of_states;
 
 /// The equations for programs.
 pub(crate) fn poincare(title: &str, derived: &Derived<'_>, operations: &Operations) -> Value {
     let equations = &derived.equations;
-    let mut object = description(title, equations.system(), &derived.vanishing);
+    let mut object =
+        description(title, equations.system(), &derived.vanishing, &rates_of_states(equations.system()));
     if !derived.constraints.is_empty() {
         object.insert("constraints".to_owned(), constraint_objects(derived));
         let reactions =
@@ -29,7 +31,12 @@ pub(crate) fn poincare(title: &str, derived: &Derived<'_>, operations: &Operatio
 }
 
 /// What all forms of the equations have in common.
-fn description(title: &str, system: &System<'_>, vanishing: &[Expr<'_>]) -> Map<String, Value> {
+fn description(
+    title: &str,
+    system: &System<'_>,
+    vanishing: &[Expr<'_>],
+    state_rates: &[Expr<'_>],
+) -> Map<String, Value> {
     let frame = system.frame();
     let name = operator_names(&[system.quasi_velocities(), vanishing].concat(), "0");
     let free = system.quasi_velocities().len();
@@ -49,7 +56,13 @@ fn description(title: &str, system: &System<'_>, vanishing: &[Expr<'_>]) -> Map<
         ("kinematics", json!({ "b": matrix(&frame.b().to_rows()), "b_0": strings(frame.b0()) })),
         ("structure_coefficients", json!(structure)),
     ];
-    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    let mut object: Map<String, Value> =
+        entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    if !state_rates.is_empty() {
+        let rate = |((z, _), rate): (&(Expr<'_>, _), &Expr<'_>)| (z.to_string(), json!(rate.to_string()));
+        object.insert("states".to_owned(), system.states().iter().zip(state_rates).map(rate).collect());
+    }
+    object
 }
 
 /// The expressions as text.
@@ -69,7 +82,7 @@ pub(crate) fn canonical(
     equations: &Canonical<'_>,
     operations: &Operations,
 ) -> Value {
-    let mut object = description(title, equations.system(), &[]);
+    let mut object = description(title, equations.system(), &[], equations.state_rates());
     let solved = equations.is_closed().then(|| strings(equations.quasi_velocities()));
     if !derived.constraints.is_empty() {
         object.insert("constraints".to_owned(), constraint_objects(derived));

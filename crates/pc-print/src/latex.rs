@@ -6,6 +6,7 @@ use pc_mech::{Canonical, Expr, Style, System};
 
 use crate::derived::Derived;
 use crate::momenta;
+use crate::text::{rates_of_states, state_rates};
 
 /// One display for each part of Poincaré's equations, with a comment above it.
 pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {
@@ -20,6 +21,7 @@ pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &derived.vanishing)),
             ("Equations", equations.balance(Style::Latex)),
+            ("States", state_rates(equations.system(), &rates_of_states(equations.system()), Style::Latex)),
             (&titled("Energy", derived), vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
             ("Reactions", set(&derived.reactions)),
         ],
@@ -45,6 +47,7 @@ pub(crate) fn canonical(heading: &str, derived: &Derived<'_>, equations: &Canoni
                 vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))],
             ),
             ("Equations", equations.balance(Style::Latex)),
+            ("States", state_rates(equations.system(), equations.state_rates(), Style::Latex)),
         ],
     )
 }

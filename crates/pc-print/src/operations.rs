@@ -1,5 +1,6 @@
 //! What one evaluation of a right-hand side costs.
 
+use crate::text::rates_of_states;
 use pc_expr::{Cost, ExprError, Inputs, Program};
 use pc_mech::{Canonical, Equations, Expr, System};
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ impl Operations {
     /// [`ExprError`] if the right-hand side cannot be compiled.
     pub fn of(equations: &Equations<'_>) -> Result<Operations, ExprError> {
         let system = equations.system();
-        let rates = [equations.velocities(), &equations.accelerations()].concat();
+        let rates = [equations.velocities(), &equations.accelerations(), &rates_of_states(system)].concat();
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
@@ -29,7 +30,7 @@ impl Operations {
     /// # Errors
     /// As [`of`](Operations::of).
     pub fn of_canonical(equations: &Canonical<'_>) -> Result<Operations, ExprError> {
-        let rates = [equations.velocities(), equations.right_hand_side()].concat();
+        let rates = [equations.velocities(), equations.right_hand_side(), equations.state_rates()].concat();
         let system = equations.system();
         let implicit = if equations.is_closed() { &[] } else { system.quasi_velocities() };
         Operations::counted(system, &[equations.momenta(), implicit].concat(), &rates)
@@ -43,7 +44,9 @@ impl Operations {
     ) -> Result<Operations, ExprError> {
         let graph = system.graph();
         let time = system.frame().time();
-        let state: Vec<Expr<'g>> = system.frame().coordinates().iter().chain(moving).copied().collect();
+        let states = system.states().iter().map(|(z, _)| z);
+        let state: Vec<Expr<'g>> =
+            system.frame().coordinates().iter().chain(moving).chain(states).copied().collect();
         // Parameters, and what else stands in the equations: external forces, reactions.
         let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
         let inputs = Inputs { time: Some(time), parameters: others.collect(), state };

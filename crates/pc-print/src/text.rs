@@ -24,6 +24,7 @@ pub(crate) fn poincare(derived: &Derived<'_>, operations: &Operations) -> String
         ("Brackets", brackets(equations.system(), &derived.vanishing)),
         ("Mass matrix", mass_matrix(equations)),
         ("Equations", balance(equations)),
+        ("States", states(equations.system(), &rates_of_states(equations.system()))),
         ("Energy", derived.with_remark(equations.energy().display(Style::Book))),
         ("Reactions", aligned(reactions.iter().map(|(left, right)| (left, right)))),
         ("Operations of one right-hand side", operations.lines()),
@@ -47,6 +48,7 @@ pub(crate) fn canonical(derived: &Derived<'_>, equations: &Canonical<'_>, operat
         ("Momenta", lines(&momenta(equations, Style::Book))),
         ("Hamiltonian", derived.with_remark(equations.hamiltonian().display(Style::Book))),
         ("Equations", lines(&equations.balance(Style::Book))),
+        ("States", states(system, equations.state_rates())),
         (cost, operations.lines()),
     ])
 }
@@ -73,6 +75,23 @@ pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
     let lines: Vec<(String, String)> =
         rates.zip(velocities).filter(|(rate, velocity)| rate != velocity).collect();
     aligned(lines.iter().map(|(rate, velocity)| (rate, velocity)))
+}
+
+/// ż of the first-order states.
+pub(crate) fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    system.states().iter().map(|&(_, rate)| rate).collect()
+}
+
+/// ż = `rates`, a line each.
+pub(crate) fn states(system: &System<'_>, rates: &[Expr<'_>]) -> Vec<String> {
+    let lines: Vec<(String, String)> = state_rates(system, rates, Style::Book);
+    aligned(lines.iter().map(|(left, right)| (left, right)))
+}
+
+/// The two sides of ż = `rates`.
+pub(crate) fn state_rates(system: &System<'_>, rates: &[Expr<'_>], style: Style) -> Vec<(String, String)> {
+    let left = |z: &Expr<'_>| system.graph().symbol(&format!("{z}'")).display(style);
+    system.states().iter().zip(rates).map(|((z, _), rate)| (left(z), rate.display(style))).collect()
 }
 
 /// M η̇ = r, a line an equation.

@@ -75,7 +75,7 @@ pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equa
 /// state, or that end with a projection to the constraints.
 pub(super) fn say_what_jumps<'g>(list: &mut [Integral<'g>], assembly: &Assembly<'g>) {
     let system = &assembly.system;
-    let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let state = system.state();
     let projected = matches!(assembly.bound.form(), Form::Held(_));
     for reset in assembly.events.iter().map(|event| &event.resets).filter(|reset| !reset.is_empty()) {
         let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
@@ -113,7 +113,7 @@ struct Search<'a, 'g> {
     bound: System<'g>,
     rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
-    /// (t, x, η)
+    /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
     /// Whether the brackets are those of all operators, so that the Lagrangian says everything.
     unconstrained: bool,
@@ -122,15 +122,15 @@ struct Search<'a, 'g> {
 impl<'a, 'g> Search<'a, 'g> {
     fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
         let system = equations.system();
-        let (frame, eta) = (system.frame(), system.quasi_velocities());
+        let (frame, k) = (system.frame(), system.quasi_velocities().len());
         Search {
             graph: system.graph(),
             equations,
             bound: system.with_parameters_bound(),
             rates: equations.rates(),
             near,
-            variables: [frame.time()].iter().chain(frame.coordinates()).chain(eta).copied().collect(),
-            unconstrained: system.structure().operators() == eta.len(),
+            variables: [frame.time()].into_iter().chain(system.state()).collect(),
+            unconstrained: system.structure().operators() == k,
         }
     }
 

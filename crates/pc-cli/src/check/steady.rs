@@ -64,7 +64,8 @@ pub(super) fn steady_motion<'g>(
         .velocities()
         .iter()
         .chain(equations.mass_matrix().entries())
-        .chain(equations.right_hand_side());
+        .chain(equations.right_hand_side())
+        .chain(system.states().iter().map(|(_, rate)| rate));
     if all.any(|&x| bind(system, x).depends_on(time)) {
         return Search::NotAutonomous;
     }
@@ -91,7 +92,8 @@ pub(super) fn steady_motion<'g>(
         let Some(found) = found.ok().filter(|found| largest(&found.first_approximation) <= steepest) else {
             continue;
         };
-        let names = frame.coordinates().iter().chain(system.quasi_velocities()).map(Expr::to_string);
+        let state = system.state();
+        let names = state.iter().map(Expr::to_string);
         let second = bound.second_variation_under(&all, &found.state).ok().map(|second| Variation {
             verdict: second.verdict,
             variables: Some(second.variables).filter(|variables| *variables != found.components),
@@ -139,7 +141,7 @@ impl<'g> Known<'g> {
     fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
         let system = equations.system();
         let (graph, eta) = (system.graph(), system.quasi_velocities());
-        let variables = [system.frame().coordinates(), eta].concat();
+        let variables = system.state();
         let is_of_coordinates = |f: Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
         let mut independent = vec![bind(system, equations.energy())];
         let mut known = Known { integrals: Vec::new(), casimirs: Vec::new(), of_coordinates: Vec::new() };
@@ -186,7 +188,7 @@ impl<'g> Surface<'g> {
     fn new(equations: &Equations<'g>, same: &[(String, Expr<'g>)], start: &[f64]) -> Option<Surface<'g>> {
         let system = equations.system();
         let (graph, x, eta) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
-        let symbols: Vec<Expr<'g>> = x.iter().chain(eta).copied().collect();
+        let symbols = system.state();
         let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
         let of_coordinates = |f: &Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
         let relations: Vec<Expr<'g>> = functions.iter().copied().filter(of_coordinates).collect();

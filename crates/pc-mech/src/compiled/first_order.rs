@@ -20,6 +20,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) state: Vec<Expr<'g>>,
     /// Number of coordinates.
     pub(crate) coordinates: usize,
+    /// Number of first-order states, the last ones.
+    pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
     /// The symbols of w, k of them.

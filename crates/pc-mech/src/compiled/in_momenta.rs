@@ -1,5 +1,7 @@
 //! Motions under constraints with momenta for the components of their state.
 
+use std::ops::Range;
+
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, VectorField};
 
@@ -17,22 +19,25 @@ use crate::multipliers::Multipliers;
 ///
 /// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
 ///
-///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
+///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
+///
+/// First-order states z follow in both.
 #[derive(Clone, Debug)]
 pub(crate) struct InMomenta {
     transform: LegendreTransform,
     inner: Box<Motion>,
-    /// ẏ of (t, (x, η, η̇)).
+    quasi_velocities: usize,
+    /// ẏ of (t, (x, η, z, η̇)).
     transport: Evaluator,
-    /// By x and, where these are asked for, by the parameters.
+    /// By x and z and, where these are asked for, by the parameters.
     jacobian: Option<Slopes>,
     parameter_jacobian: Option<Slopes>,
-    /// x, η, then η̇.
+    /// x, η, z, then η̇.
     known: Vec<f64>,
     full: Pattern,
 }
 
-/// Derivatives by symbols q, all of (t, (x, η, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
+/// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
 /// ∂ẏ/∂η and of M.
 #[derive(Clone, Debug)]
 struct Slopes {
@@ -59,12 +64,13 @@ impl InMomenta {
             .zip(velocities)
             .chain(eta.iter().copied().zip(accelerations.iter().copied()))
             .chain([(system.frame().time(), Expr::ONE)])
+            .chain(system.states().iter().copied())
             .collect();
         let parameters: Vec<Expr<'g>> =
             system.run_time_inputs().into_iter().map(|(symbol, _)| symbol).collect();
         let inputs = Inputs {
             time: Some(system.frame().time()),
-            state: [x, eta, &accelerations].concat(),
+            state: [system.state(), accelerations.clone()].concat(),
             parameters: parameters.clone(),
         };
         let momenta = system.momenta();
@@ -84,21 +90,24 @@ impl InMomenta {
                 entries: derivative(graph, &inputs, &entries, options.backend)?,
             })
         };
-        let dim = x.len() + eta.len();
+        let states = system.states().iter().map(|&(z, _)| z);
+        let unmoved: Vec<Expr<'g>> = x.iter().copied().chain(states).collect();
+        let dim = unmoved.len() + eta.len();
         Ok(InMomenta {
             inner: Box::new(multipliers.compile_for(CompileOptions { jvp: false, ..*options })?),
             transport: Evaluator::new(Program::new(graph, &inputs, &rates)?, Backend::Interpreter),
-            jacobian: options.jacobian.then(|| slopes(x)).transpose()?,
+            jacobian: options.jacobian.then(|| slopes(&unmoved)).transpose()?,
             parameter_jacobian: (options.jacobian && options.parameter_jacobian)
                 .then(|| slopes(&parameters))
                 .transpose()?,
+            quasi_velocities: eta.len(),
             known: vec![0.0; dim + eta.len()],
             full: Pattern::full(dim, dim),
             transform,
         })
     }
 
-    /// The motion of (x, η).
+    /// The motion of (x, η, z).
     pub(crate) fn inner(&self) -> &Motion {
         &self.inner
     }
@@ -140,22 +149,28 @@ impl InMomenta {
         }
     }
 
-    /// Leaves (x, η, η̇) in `known`, and ẋ in `rates`.
-    fn solve(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+    /// The places of η, or of their momenta, in a state.
+    fn moving(&self) -> Range<usize> {
         let n = self.inner.coordinates();
+        n..n + self.quasi_velocities
+    }
+
+    /// Leaves (x, η, z, η̇) in `known`, and ẋ and ż in `rates`.
+    fn solve(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
         let state = self.read(t, y).map_err(Failure::recoverable)?;
         self.inner.rhs(t, &state, rates)?;
+        let moving = self.moving();
         self.known[..y.len()].copy_from_slice(&state);
-        self.known[y.len()..].copy_from_slice(&rates[n..]);
+        self.known[y.len()..].copy_from_slice(&rates[moving]);
         Ok(())
     }
 
     pub(crate) fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.solve(t, y, ydot)?;
-        let n = self.inner.coordinates();
         let parameters = self.inner.parameters();
-        self.transport.eval(t, &self.known, parameters, &mut ydot[n..]);
-        check_finite(&ydot[n..], &self.transport, (t, &self.known, parameters))
+        let rates = &mut ydot[self.moving()];
+        self.transport.eval(t, &self.known, parameters, rates);
+        check_finite(rates, &self.transport, (t, &self.known, parameters))
             .map_err(|fault| self.inner.failure(fault, t, &self.known[..y.len()]))
     }
 
@@ -177,19 +192,26 @@ impl InMomenta {
         }
     }
 
-    /// ∂f/∂y, column after column: with F(t, x, η) = (ẋ, ẏ) and η = h(t, x, y),
+    /// ∂f/∂y, column after column: with F(t, x, η, z) = (ẋ, ẏ, ż) and η = h(t, x, y, z),
     ///
-    ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y.
+    ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y,   ∂f/∂z as ∂f/∂x.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
         let Some(slopes) = self.jacobian.clone() else {
             return Err(Failure::fatal(MechError::NotCompiled { what: "Jacobian" }));
         };
         let of_inner = self.inner_jacobian(t, y)?;
-        entries.copy_from_slice(&self.changes(&slopes, t, &of_inner, |i, q| of_inner[(i, q)])?);
+        let moving = self.moving();
+        let place = |q: usize| if q < moving.start { q } else { q + moving.len() };
+        let columns = self.changes(&slopes, t, &of_inner, |i, q| of_inner[(i, place(q))])?;
+        // Those by x and z come first.
+        let places = (0..slopes.symbols).map(place).chain(moving.clone());
+        for (place, column) in places.zip(columns.chunks_exact(y.len())) {
+            entries[place * y.len()..(place + 1) * y.len()].copy_from_slice(column);
+        }
         Ok(())
     }
 
-    /// The derivative of (ẋ, η̇) by (x, η); leaves (x, η, η̇) in `known`.
+    /// The derivative of (ẋ, η̇, ż) by (x, η, z); leaves (x, η, z, η̇) in `known`.
     fn inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<Matrix<f64>, Failure> {
         let dim = y.len();
         self.solve(t, y, &mut vec![0.0; dim])?;
@@ -216,8 +238,8 @@ impl InMomenta {
         Ok(())
     }
 
-    /// The columns of ∂f/∂q for each symbol q of `slopes`, then those of ∂f/∂y; (ẋ, η̇) has the derivatives `of_inner` by
-    /// (x, η) and `by_symbol` by q.
+    /// The columns of ∂f/∂q for each symbol q of `slopes`, then those of ∂f/∂y; (ẋ, η̇, ż) has the derivatives `of_inner` by
+    /// (x, η, z) and `by_symbol` by q.
     fn changes(
         &mut self,
         slopes: &Slopes,
@@ -225,8 +247,8 @@ impl InMomenta {
         of_inner: &Matrix<f64>,
         by_symbol: impl Fn(usize, usize) -> f64,
     ) -> Result<Vec<f64>, Failure> {
-        let (n, dim) = (self.inner.coordinates(), of_inner.rows());
-        let (k, m) = (dim - n, slopes.multipliers);
+        let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, of_inner.rows());
+        let m = slopes.multipliers;
         let stride = 2 * k + m;
         let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
         slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
@@ -258,6 +280,7 @@ impl InMomenta {
                 let along = |s: usize| by_eta[r + s * k] * h[s] + mass[r + s * k] * inner[n + s];
                 direct + (0..k).map(along).sum::<f64>()
             }));
+            columns.extend_from_slice(&inner[n + k..]);
         }
         Ok(columns)
     }

@@ -50,6 +50,8 @@ pub struct KeptIntegrals {
     gradients: Evaluator,
     /// Zeros of the constraints, then the values of the integrals at the start.
     levels: Vec<f64>,
+    /// Number of first-order states, which a projection leaves alone.
+    states: usize,
 }
 
 impl<'g> Equations<'g> {
@@ -109,6 +111,7 @@ impl<'g> FirstOrder<'g> {
             values: Measured::new(self.graph, &inputs, &functions, Backend::Fastest)?,
             gradients: Evaluator::new(Program::new(self.graph, &inputs, &gradients)?, Backend::Fastest),
             levels: vec![0.0; functions.len()],
+            states: self.states,
         })
     }
 }
@@ -314,7 +317,10 @@ impl KeptIntegrals {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for (place, row) in gradients.iter().enumerate() {
             check_finite(row, &self.gradients, at)?;
-            let gradient = &row[1..];
+            let mut gradient = row[1..].to_vec();
+            let moving = gradient.len() - self.states;
+            gradient[moving..].fill(0.0);
+            let gradient = &gradient[..];
             let difference = self.values.values()[place] - self.levels[place];
             // At the edge of the domain of a function that is part of it an integral may have no bound.
             let error =

@@ -21,12 +21,13 @@ use crate::poincare::Equations;
 /// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
 pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
-/// The first-order system ẏ = f(t, y) of y = (x, η), compiled; owned and independent of the graph.
+/// The first-order system ẏ = f(t, y) of y = (x, η, z), compiled; owned and independent of the graph.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// n coordinates, then k quasi-velocities or momenta.
+    /// n coordinates, then k quasi-velocities or momenta, then first-order states.
     names: Vec<String>,
     coordinates: usize,
+    states: usize,
     /// What the pivots of M belong to: quasi-velocities, then constraints.
     quasi_velocities: Vec<String>,
     parameters: Vec<f64>,
@@ -79,15 +80,22 @@ impl<'g> Equations<'g> {
         FirstOrder {
             graph: system.graph(),
             time: system.frame.time(),
-            state: x.iter().chain(&system.quasi_velocities).copied().collect(),
+            state: system.state(),
             coordinates: x.len(),
+            states: system.states.len(),
             parameters: system.run_time_inputs(),
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             mass: self.mass.clone(),
             implicit: None,
             right: self.right.clone(),
-            rates: self.velocities.iter().chain(&unknowns).copied().collect(),
+            rates: self
+                .velocities
+                .iter()
+                .chain(&unknowns)
+                .chain(system.states.iter().map(|(_, rate)| rate))
+                .copied()
+                .collect(),
             unknowns,
             collected_by: system.collecting_order(),
             observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
@@ -113,6 +121,7 @@ impl FirstOrder<'_> {
         Ok(Motion {
             names: self.state.iter().map(Expr::to_string).collect(),
             coordinates: self.coordinates,
+            states: self.states,
             quasi_velocities: self.names.clone(),
             parameters: self.parameters.iter().map(|&(_, value)| value).collect(),
             form,
@@ -127,7 +136,7 @@ impl FirstOrder<'_> {
 }
 
 impl Motion {
-    /// Names of the components of the state: coordinates, then quasi-velocities or momenta.
+    /// Names of the components of the state: coordinates, then quasi-velocities or momenta, then first-order states.
     pub fn names(&self) -> &[String] {
         &self.names
     }
@@ -135,6 +144,11 @@ impl Motion {
     /// Number n of coordinates, which come first in the state.
     pub fn coordinates(&self) -> usize {
         self.coordinates
+    }
+
+    /// Number of first-order states, which come last in the state.
+    pub fn states(&self) -> usize {
+        self.states
     }
 
     /// The values of the parameters, in the order of declaration.
@@ -193,8 +207,14 @@ impl Motion {
     pub(crate) fn of_momenta(motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
         let inner = motion.inner();
         Motion {
-            names: inner.names[..inner.coordinates].iter().cloned().chain(names).collect(),
+            names: inner.names[..inner.coordinates]
+                .iter()
+                .cloned()
+                .chain(names)
+                .chain(inner.names[inner.names.len() - inner.states..].iter().cloned())
+                .collect(),
             coordinates: inner.coordinates,
+            states: inner.states,
             quasi_velocities: inner.quasi_velocities.clone(),
             parameters: Vec::new(),
             options: inner.options,

@@ -109,7 +109,7 @@ impl Surface {
             lower: conditions.lower,
             solver: Solver::new(k + m, m),
             change: vec![0.0; k + m],
-            displaced: vec![0.0; coordinates + k],
+            displaced: vec![0.0; inputs.state.len()],
             places: conditions.places,
         })
     }
@@ -163,7 +163,8 @@ impl Surface {
     /// surface where f is no larger than the bound of its rounding errors, where a step changes no digit, and where a step is
     /// no longer than such errors would call for: then one whole step more is all that can help.
     fn project_part(&mut self, part: Part, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
-        let range = if part == Part::Position { 0..self.coordinates } else { self.coordinates..y.len() };
+        let n = self.coordinates;
+        let range = if part == Part::Position { 0..n } else { n..n + self.k };
         self.measured(part).try_eval((t, y, p))?;
         for _ in 0..MOST_STEPS {
             let rest = self.measured(part).in_errors();
@@ -202,23 +203,18 @@ impl Surface {
 
     /// Halves a step until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,
     /// Numer. Math. 22, 1974, 289–315), `length` being that of the whole step; none if it never is.
-    fn damped(
-        &mut self,
-        length: f64,
-        mut go: impl FnMut(&mut Surface, f64) -> Option<f64>,
-    ) -> Option<f64> {
-        (0..=HALVINGS).map(|halvings| 0.5f64.powi(halvings)).find(|&fraction| {
-            go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length)
-        })
+    fn damped(&mut self, length: f64, mut go: impl FnMut(&mut Surface, f64) -> Option<f64>) -> Option<f64> {
+        (0..=HALVINGS)
+            .map(|halvings| 0.5f64.powi(halvings))
+            .find(|&fraction| go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length))
     }
 
     /// Whether errors of f, where it was computed last, may call for a step of this length, with the matrix as it is
     /// factorised.
     fn is_rounding(&mut self, part: Part, length: f64, change: &[f64], state: &[f64]) -> bool {
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        let errors: Vec<f64> = (0..self.measured(part).values().len())
-            .map(|place| self.measured(part).error(place))
-            .collect();
+        let errors: Vec<f64> =
+            (0..self.measured(part).values().len()).map(|place| self.measured(part).error(place)).collect();
         if !errors.iter().all(|error| error.is_finite()) {
             return largest(change) <= SHORT * largest(state);
         }
@@ -271,7 +267,8 @@ impl Surface {
             Part::Position => {
                 let mut moved = vec![0.0; n];
                 self.displaced[..n].copy_from_slice(&y[..n]);
-                self.displaced[n..].copy_from_slice(&self.change[..k]);
+                self.displaced[n..n + k].copy_from_slice(&self.change[..k]);
+                self.displaced[n + k..].copy_from_slice(&y[n + k..]);
                 self.displacements.eval(t, &self.displaced, p, &mut moved);
                 moved
             }

@@ -11,7 +11,7 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
 
 /// What ends the names of the macros.
 const MACROS: &[&str] =
-    &["N", "K", "DIM", "PARAMETERS", "INTEGRALS", "OUTPUTS", "T_START", "T_END", "H", "MAIN"];
+    &["N", "K", "STATES", "DIM", "PARAMETERS", "INTEGRALS", "OUTPUTS", "T_START", "T_END", "H", "MAIN"];
 
 /// The macros of the header for a `name`, which must not be names of locals.
 pub(super) fn macros(name: &str) -> Vec<String> {
@@ -107,6 +107,9 @@ fn header(source: &Source<'_>) -> String {
     if let Some(start) = &source.options.start {
         sizes.push(("T_START", source.constants([start.t].into_iter()), "time of the start"));
         sizes.push(("T_END", source.constants([start.t_end].into_iter()), "a time to go to"));
+    }
+    if source.states > 0 {
+        sizes.insert(2, ("STATES", source.states.to_string(), "first-order states"));
     }
     let width = sizes.iter().map(|(_, value, _)| value.len()).max().unwrap_or(0);
     for (size, value, purpose) in sizes {

@@ -8,6 +8,7 @@ use super::{EmittedFile, Extent, Routine, Source};
 pub(super) const CONSTANTS: &[&str] = &[
     "COORDINATES",
     "QUASI_VELOCITIES",
+    "STATES",
     "DIM",
     "PARAMETERS",
     "INTEGRALS",
@@ -84,7 +85,9 @@ fn constants(source: &Source<'_>, text: &mut String) {
         ("INTEGRALS", source.integrals.len(), "Number of integrals"),
         ("OUTPUTS", source.outputs.len(), "Number of outputs"),
     ];
-    for (name, value, purpose) in sizes {
+    let states = ("STATES", source.states, "Number of first-order states, which come last in the state");
+    let states = (source.states > 0).then_some(states);
+    for (name, value, purpose) in sizes[..2].iter().copied().chain(states).chain(sizes[2..].iter().copied()) {
         let _ = writeln!(text, "/// {purpose}.\npub const {name}: usize = {value};");
     }
     let mut array = |name: &str, kind: &str, size: &str, purpose: &str, entries: String| {

@@ -54,7 +54,8 @@ impl<'g> Equations<'g> {
     pub fn rates(&self) -> Rates<'g> {
         let (system, accelerations) = (self.system(), self.accelerations());
         let symbols = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
-        let rates = Rates::new(system, system.quasi_velocities(), self.velocities(), &accelerations);
+        let states = system.states.iter().map(|&(_, rate)| rate).collect();
+        let rates = Rates::new(system, system.quasi_velocities(), self.velocities(), &accelerations, states);
         Rates { accelerations: symbols, ..rates }
     }
 }
@@ -63,7 +64,8 @@ impl<'g> Canonical<'g> {
     /// The derivative along the motion of functions of (t, x, y).
     pub fn rates(&self) -> Rates<'g> {
         let system = self.system();
-        let mut rates = Rates::new(system, self.momenta(), self.velocities(), self.right_hand_side());
+        let states = self.state_rates().to_vec();
+        let mut rates = Rates::new(system, self.momenta(), self.velocities(), self.right_hand_side(), states);
         if !self.is_closed() {
             rates.flow.extend(system.quasi_velocities().iter().copied().zip(self.accelerations()));
             rates.momenta = self.values_of_momenta();
@@ -79,7 +81,8 @@ impl<'g> Canonical<'g> {
     fn accelerations(&self) -> Vec<Expr<'g>> {
         let (system, graph) = (self.system(), self.system().graph());
         let x = system.frame().coordinates().iter().copied().zip(self.velocities().iter().copied());
-        let along: Vec<_> = x.chain([(system.frame().time(), Expr::ONE)]).collect();
+        let states = system.states.iter().copied();
+        let along: Vec<_> = x.chain([(system.frame().time(), Expr::ONE)]).chain(states).collect();
         let transport = graph.directional(self.momenta_of_velocities(), &along);
         let rates = graph.substitute(self.right_hand_side(), &self.values_of_momenta());
         let right: Vec<Expr<'g>> =
@@ -94,10 +97,12 @@ impl<'g> Rates<'g> {
         moving: &[Expr<'g>],
         velocities: &[Expr<'g>],
         right: &[Expr<'g>],
+        states: Vec<Expr<'g>>,
     ) -> Rates<'g> {
         let (time, x) = (system.frame().time(), system.frame().coordinates());
-        let state = x.iter().chain(moving).copied();
-        let flow = state.zip(velocities.iter().chain(right).copied()).chain([(time, Expr::ONE)]);
+        let state = system.state_with(moving).into_iter();
+        let flow = state.zip(velocities.iter().chain(right).copied().chain(states));
+        let flow = flow.chain([(time, Expr::ONE)]);
         Rates {
             graph: system.graph(),
             time,
@@ -171,10 +176,11 @@ impl<'g> System<'g> {
     pub fn energy_rate(&self) -> Expr<'g> {
         let (graph, eta) = (self.graph(), self.quasi_velocities());
         let explicit = self.frame.apply(0, &[self.lagrangian])[0];
+        let of_states = graph.directional(&[self.lagrangian], &self.states)[0];
         let y = self.momenta();
         let drift = self.structure.nonzero().filter(|&(r, ..)| r == 0);
         let drift = drift.map(|(_, r, m, c)| c * eta[r - 1] * y[m - 1]);
         let power = self.forces.iter().zip(eta).map(|(&q, &eta)| q * eta);
-        graph.sum(drift.chain(power).chain([-explicit]))
+        graph.sum(drift.chain(power).chain([-explicit, -of_states]))
     }
 }

@@ -61,6 +61,8 @@ impl LeastSquares {
         let along = |i: usize| left.column(i).zip(b).map(|(u, b)| u * b).sum::<f64>();
         let parts: Vec<f64> =
             values.iter().enumerate().map(|(i, &value)| inverse(i, value) * along(i)).collect();
-        (0..right.rows()).map(|j| parts.iter().enumerate().map(|(i, part)| part * right[(j, i)]).sum()).collect()
+        (0..right.rows())
+            .map(|j| parts.iter().enumerate().map(|(i, part)| part * right[(j, i)]).sum())
+            .collect()
     }
 }

@@ -72,8 +72,7 @@ impl<'g> Equations<'g> {
         state: &[f64],
     ) -> Result<SecondVariation, MechError> {
         let system = self.system();
-        let symbols: Vec<Expr<'g>> =
-            system.frame().coordinates().iter().chain(system.quasi_velocities()).copied().collect();
+        let symbols = system.state();
         check_length("the state", state, symbols.len())?;
         self.check_conserved(integrals, &symbols)?;
 
@@ -103,7 +102,8 @@ impl<'g> Equations<'g> {
     ) -> Result<(), MechError> {
         let (system, graph) = (self.system(), self.system().graph());
         let accelerations = self.accelerations();
-        let rates = self.velocities().iter().chain(&accelerations).copied();
+        let of_states = system.states().iter().map(|(_, rate)| rate);
+        let rates = self.velocities().iter().chain(&accelerations).chain(of_states).copied();
         let along: Vec<_> = symbols.iter().copied().zip(rates).collect();
         let energy = ("energy".to_owned(), self.energy());
         for (name, function) in [&energy].into_iter().chain(integrals) {

@@ -39,7 +39,7 @@ impl<'g> Assembler<'g, '_> {
         eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Body<'g>, ModelError> {
-        let mass = self.scope.resolve(&body.mass, Stage::Position)?;
+        let mass = self.scope.resolve(&body.mass, Stage::Inertia)?;
         let position = self.resolved(&body.position, Stage::Position)?;
         let force = body.force.as_ref().map(|force| self.all_dynamic(force, x_dot)).transpose()?;
         let Some(orientation) = &body.orientation else {
@@ -51,8 +51,8 @@ impl<'g> Assembler<'g, '_> {
         };
         let inertia: Inertia<'g> = match &body.inertia {
             None => [Expr::ZERO; 3].into(),
-            Some(document::Inertia::Principal(moments)) => self.resolved(moments, Stage::Position)?.into(),
-            Some(document::Inertia::Full(entries)) => self.resolved(entries, Stage::Position)?.into(),
+            Some(document::Inertia::Principal(moments)) => self.resolved(moments, Stage::Inertia)?.into(),
+            Some(document::Inertia::Full(entries)) => self.resolved(entries, Stage::Inertia)?.into(),
         };
         let mut rigid = match orientation {
             Orientation::Rotation(entries) => {
@@ -75,7 +75,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(Body::Rigid(Box::new(rigid)))
     }
 
-    /// Functions of what may stand there.
+    /// Functions of what may stand at that stage.
     fn resolved<const N: usize>(
         &mut self,
         list: &[Expression; N],

@@ -115,7 +115,8 @@ impl<'g> Assembler<'g, '_> {
         let multipliers =
             system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
         // As many as are declared where these are completed, and independent then.
-        let multipliers = multipliers.preferring(&system.quasi_velocities()[..self.scope.quasi_velocities().len()]);
+        let multipliers =
+            multipliers.preferring(&system.quasi_velocities()[..self.scope.quasi_velocities().len()]);
         let Some(vanishing) = vanishing else {
             let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
             let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);

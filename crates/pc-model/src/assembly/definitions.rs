@@ -59,7 +59,8 @@ impl<'g> Assembler<'g, '_> {
         let frame = Frame::from_definitions(self.graph, time, x, &velocities, &all);
         let frame = frame.map_err(|error| match error {
             AlgebraError::SingularDefinitions => {
-                let slopes = all.iter().map(|&value| self.graph.gradient(value, &velocities)).collect::<Vec<_>>();
+                let slopes =
+                    all.iter().map(|&value| self.graph.gradient(value, &velocities)).collect::<Vec<_>>();
                 self.dependent(&slopes, &completion, constraints)
             }
             other => self.model.algebra_error(other),
@@ -131,8 +132,7 @@ impl<'g> Assembler<'g, '_> {
     /// parameters, if there are such: those that an elimination with such pivots leaves.
     fn regular_completion(&self, rows: &[Vec<Expr<'g>>], at: &[(Expr<'g>, f64)]) -> Option<Completion<'g>> {
         let graph = self.graph;
-        let parameters: Vec<Expr<'g>> =
-            self.model.parameters().map(|(name, _)| graph.symbol(name)).collect();
+        let parameters: Vec<Expr<'g>> = self.model.parameters().map(|(name, _)| graph.symbol(name)).collect();
         let is_fixed = |entry: &Expr<'g>| graph.symbols_of(&[*entry]).iter().all(|s| parameters.contains(s));
         let mut left = rows.to_vec();
         let mut open: Vec<usize> = (0..self.scope.coordinates().len()).collect();

@@ -17,18 +17,20 @@ impl<'g> Assembler<'g, '_> {
         events.iter().map(|event| self.at_event(&event.when, x_dot)).collect()
     }
 
-    /// The events with these crossings, and their resets, which need have no value before the event.
+    /// The events with these crossings, and their resets, which need have no value before the event. First-order states stand
+    /// in the state from `first_state` on.
     pub(super) fn events(
         &mut self,
         crossings: Vec<Expr<'g>>,
         x_dot: &[(Expr<'g>, Expr<'g>)],
         bound: &Bound<'g>,
+        first_state: usize,
     ) -> Result<Vec<Event<'g>>, ModelError> {
         let mut events = Vec::with_capacity(crossings.len());
         for (event, when) in self.model.document().events.iter().zip(crossings) {
             let mut resets = Vec::with_capacity(event.reset.len());
             for reset in &event.reset {
-                let place = self.reset_place(reset, bound)?;
+                let place = self.reset_place(reset, bound, first_state)?;
                 resets.push((place, self.at_event(&reset.expression, x_dot)?));
             }
             events.push(Event {
@@ -51,8 +53,13 @@ impl<'g> Assembler<'g, '_> {
         Ok(self.graph.substitute(&[value], x_dot)[0])
     }
 
-    /// The component of (x, η) that a reset gives a new value.
-    fn reset_place(&self, reset: &NamedExpression, bound: &Bound<'g>) -> Result<usize, ModelError> {
+    /// The component of (x, η, z) that a reset gives a new value.
+    fn reset_place(
+        &self,
+        reset: &NamedExpression,
+        bound: &Bound<'g>,
+        first_state: usize,
+    ) -> Result<usize, ModelError> {
         let document = self.model.document();
         let name = reset.name.text.as_str();
         let n = document.coordinates.len();
@@ -74,9 +81,14 @@ impl<'g> Assembler<'g, '_> {
         }
         if let Some(place) = document.quasi_velocities.iter().position(|eta| eta.name.text == name) {
             return match vanishes(bound, self.graph.symbol(name)) {
-                true => refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero", bound)),
+                true => {
+                    refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero", bound))
+                }
                 false => Ok(n + place),
             };
+        }
+        if let Some(place) = document.states.iter().position(|state| state.name.text == name) {
+            return Ok(first_state + place);
         }
         let what = match () {
             () if name == "t" => "time",
@@ -92,6 +104,7 @@ impl<'g> Assembler<'g, '_> {
     fn not_reset(&self, name: &str, what: &'static str, bound: &Bound<'g>) -> Fault {
         let document = self.model.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
+        let states = document.states.iter().map(|state| state.name.text.clone());
         let velocities: Vec<String> = match self.is_lagrangian_form() {
             true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).collect(),
             false => {
@@ -99,7 +112,11 @@ impl<'g> Assembler<'g, '_> {
                 document.quasi_velocities.iter().map(|eta| &eta.name.text).filter(moving).cloned().collect()
             }
         };
-        Fault::NotReset { name: name.to_owned(), what, known: coordinates.chain(velocities).collect() }
+        Fault::NotReset {
+            name: name.to_owned(),
+            what,
+            known: coordinates.chain(velocities).chain(states).collect(),
+        }
     }
 }
 

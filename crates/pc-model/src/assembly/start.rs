@@ -24,6 +24,8 @@ pub(super) struct Given {
     is_given: Vec<bool>,
     /// Velocities of coordinates beside quasi-velocities, by their places among `start_velocities`.
     velocities: Vec<f64>,
+    /// First-order states; zero where nothing is given.
+    pub(super) states: Vec<f64>,
 }
 
 impl<'g> Assembler<'g, '_> {
@@ -55,10 +57,17 @@ impl<'g> Assembler<'g, '_> {
             }
             velocities.clear();
         }
-        for &(place, value) in self.model.overridden_starts() {
-            (values[place], is_given[place]) = (value, true);
+        let mut states = Vec::with_capacity(document.states.len());
+        for state in &document.states {
+            states.push(state.start.as_ref().map_or(Ok(0.0), |start| self.start_value(start, parameters))?);
         }
-        Ok(Given { values, is_given, velocities })
+        for &(place, value) in self.model.overridden_starts() {
+            match place.checked_sub(values.len()) {
+                Some(state) => states[state] = value,
+                None => (values[place], is_given[place]) = (value, true),
+            }
+        }
+        Ok(Given { values, is_given, velocities, states })
     }
 
     fn start_value(
@@ -143,7 +152,8 @@ impl<'g> Assembler<'g, '_> {
             };
             let row = [frame.b().row(i), &frame.b0()[i..=i]].concat();
             let values = self.graph.evaluate(&row, at).unwrap_or_default();
-            let Some((drift, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite())) else {
+            let Some((drift, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite()))
+            else {
                 continue;
             };
             if let Some(found) = equations.add(row, given - drift) {

@@ -163,7 +163,7 @@ impl<'g> Trial<'_, 'g> {
     }
 
     fn state_symbols(&self) -> impl Iterator<Item = Expr<'g>> {
-        self.system.frame().coordinates().iter().chain(self.system.quasi_velocities()).copied()
+        self.system.state().into_iter()
     }
 
     fn value(&self, expression: Expr<'g>, state: &[f64]) -> f64 {

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::reader::{Item, Table};
 use super::{
     Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
-    NamedExpression, QuasiVelocity,
+    NamedExpression, QuasiVelocity, State,
 };
 use crate::error::{ErrorKind, ModelError};
 
@@ -52,6 +52,27 @@ fn quasi_velocity(item: &Item<'_>) -> Result<QuasiVelocity, ModelError> {
         return Err(table.error(ErrorKind::Missing { key: "is", example: "is = \"…\", start = 0.0" }));
     }
     Ok(QuasiVelocity { name, is, start })
+}
+
+pub(super) fn states(table: &Table<'_>) -> Result<Vec<State>, ModelError> {
+    table.items().map(|item| state(&item)).collect()
+}
+
+fn state(item: &Item<'_>) -> Result<State, ModelError> {
+    let name = item.new_name()?;
+    let (mut start, mut rate) = (None, None);
+    let table = item.table("a table", "{ start = 0.0, rate = \"…\" }")?;
+    for part in table.items() {
+        match part.key() {
+            "start" => start = Some(part.expression()?),
+            "rate" => rate = Some(part.expression()?),
+            _ => return Err(part.unknown(&["start", "rate"])),
+        }
+    }
+    match rate {
+        Some(rate) => Ok(State { name, start, rate }),
+        None => Err(table.error(ErrorKind::Missing { key: "rate", example: "rate = \"…\"" })),
+    }
 }
 
 pub(super) fn algebra(table: &Table<'_>) -> Result<Algebra, ModelError> {

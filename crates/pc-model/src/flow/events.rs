@@ -26,7 +26,7 @@ pub struct FlowEvents {
     determining: Vec<usize>,
 }
 
-/// Components of (x, η) and their new values.
+/// Components of (x, η, z) and their new values.
 #[derive(Clone, Debug)]
 struct Reset {
     places: Vec<usize>,
@@ -55,8 +55,7 @@ impl FlowEvents {
         watch: &Motion,
     ) -> Result<FlowEvents, ModelError> {
         let system = &assembly.system;
-        let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
-        let inputs = inputs(system, &state);
+        let inputs = inputs(system, &system.state());
         let compiled = |values: &[_]| {
             let program = Program::new(system.graph(), &inputs, values);
             let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;

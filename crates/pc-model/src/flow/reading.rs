@@ -1,4 +1,4 @@
-//! States read as coordinates and all quasi-velocities of a model.
+//! States read as coordinates, all quasi-velocities and first-order states of a model.
 
 use pc_expr::Evaluator;
 use pc_mech::{LegendreTransform, MechError};
@@ -8,7 +8,7 @@ use pc_mech::{LegendreTransform, MechError};
 pub(super) struct Reading {
     /// Number of coordinates.
     pub(super) coordinates: usize,
-    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η) with the free η.
+    /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η, z) with the free η.
     pub(super) quasi_velocities: Evaluator,
     /// Which of them are the free ones.
     pub(super) free: Vec<usize>,
@@ -18,7 +18,7 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// (x, η) with all η of a state.
+    /// (x, η, z) with all η of a state.
     ///
     /// # Errors
     /// [`MechError`] where momenta have no quasi-velocities.
@@ -32,24 +32,27 @@ impl Reading {
         }
     }
 
-    /// (x, η) with all η of one with the free ones.
+    /// (x, η, z) with all η of one with the free ones.
     pub(super) fn complete(&mut self, t: f64, free: &[f64]) -> Vec<f64> {
         let n = self.coordinates;
         let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
         let (coordinates, quasi_velocities) = all.split_at_mut(n);
         coordinates.copy_from_slice(&free[..n]);
         self.quasi_velocities.eval(t, free, &self.parameters, quasi_velocities);
+        all.extend_from_slice(&free[n + self.free.len()..]);
         all
     }
 
-    /// The state of an (x, η) with all η.
+    /// The state of an (x, η, z) with all η.
     ///
     /// # Errors
     /// [`MechError`] where the quasi-velocities have no momenta.
     pub(super) fn write(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
-        let (coordinates, eta) = all.split_at(self.coordinates);
+        let (coordinates, rest) = all.split_at(self.coordinates);
+        let (eta, states) = rest.split_at(self.quasi_velocities.program().outputs_len());
         let mut state = coordinates.to_vec();
         state.extend(self.free.iter().map(|&s| eta[s]));
+        state.extend_from_slice(states);
         match &mut self.transform {
             Some(transform) => transform.to_momenta(t, &state),
             None => Ok(state),

@@ -61,7 +61,7 @@ impl Surface {
             self.change[..self.k].copy_from_slice(&step);
             let (range, moved) = match part {
                 Part::Position => (0..n, self.moved(part, t, y, p)),
-                Part::Velocity => (n..y.len(), step),
+                Part::Velocity => (n..n + self.k, step),
             };
             let still: &[usize] = if part == Part::Position { held.coordinates } else { &[] };
             for (i, (y, moved)) in y[range.clone()].iter_mut().zip(&moved).enumerate() {
@@ -75,17 +75,14 @@ impl Surface {
     }
 
     /// The rows b_i of some coordinates.
-    fn displacements_of(
-        &mut self,
-        coordinates: &[usize],
-        (t, y, p): (f64, &[f64], &[f64]),
-    ) -> Vec<Vec<f64>> {
+    fn displacements_of(&mut self, coordinates: &[usize], (t, y, p): (f64, &[f64], &[f64])) -> Vec<Vec<f64>> {
         let n = self.coordinates;
         let mut rows = vec![vec![0.0; self.k]; coordinates.len()];
         let mut column = vec![0.0; n];
         for s in 0..if coordinates.is_empty() { 0 } else { self.k } {
             self.displaced[..n].copy_from_slice(&y[..n]);
-            self.displaced[n..].fill(0.0);
+            self.displaced[n..n + self.k].fill(0.0);
+            self.displaced[n + self.k..].copy_from_slice(&y[n + self.k..]);
             self.displaced[n + s] = 1.0;
             self.displacements.eval(t, &self.displaced, p, &mut column);
             rows.iter_mut().zip(coordinates).for_each(|(row, &i)| row[s] = column[i]);
