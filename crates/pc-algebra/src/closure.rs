@@ -7,7 +7,7 @@ use crate::error::AlgebraError;
 use crate::frame::Frame;
 use crate::inverse::inverse;
 use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
+use crate::sample::{HIDDEN, Neighbourhood};
 use crate::structure::StructureCoefficients;
 
 /// Points at which an identity that the graph cannot decide is tried numerically.
@@ -121,22 +121,54 @@ impl<'g> Frame<'g> {
         worst
     }
 
-    /// (bᵀb)⁻¹bᵀ, or b⁻¹ where b is square.
+    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square.
     pub(crate) fn left_inverse(&self) -> Matrix<Expr<'g>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
-        let gram_or_b = if b.rows() == k {
-            b.clone()
-        } else {
-            Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), b.column(j)))
-        };
         let undefined = || Matrix::from_fn(k, k, |_, _| Expr::from(Number::UNDEFINED));
-        let inverted = inverse(graph, &gram_or_b).unwrap_or_else(undefined); // rank k excludes this
         if b.rows() == k {
-            return inverted;
+            return inverse(graph, b).unwrap_or_else(undefined); // rank k excludes this
         }
+        let weights = self.weights();
+        let weighted = Matrix::from_fn(b.rows(), k, |i, s| weights[i] * b[(i, s)]);
+        let gram = Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), weighted.column(j)));
+        let inverted = inverse(graph, &gram).unwrap_or_else(undefined); // rank k excludes this
         Matrix::from_fn(k, b.rows(), |m, i| {
-            graph.dot(inverted.row(m).iter().copied(), b.row(i).iter().copied())
+            graph.dot(inverted.row(m).iter().copied(), weighted.row(i).iter().copied())
         })
+    }
+
+    /// 1, but powers of 2 for the coordinates in whose units velocities are small numbers: in bᵀb they would be lost beside
+    /// the others. 0 for those of which nothing but rounding moves.
+    fn weights(&self) -> Vec<Expr<'g>> {
+        const SMALL: f64 = 1e-3;
+        let (b, k) = (self.b(), self.operators());
+        let ones = || vec![Expr::ONE; b.rows()];
+        let near = Neighbourhood::anywhere(self.graph(), b.entries());
+        let samples = near.weighed(self.graph(), b.entries(), TRIALS);
+        if samples.is_empty() {
+            return ones();
+        }
+        let largest = |of: &mut dyn Iterator<Item = usize>| {
+            let sizes = of.flat_map(|place| samples.iter().map(move |sample| sample[place]));
+            sizes
+                .filter(|entry| entry.rest() > HIDDEN)
+                .fold(0.0, |most, entry| f64::max(most, entry.value.abs()))
+        };
+        let columns: Vec<f64> = (0..k).map(|s| largest(&mut (0..b.rows()).map(|i| i * k + s))).collect();
+        let share = |i: usize| {
+            let entry = |s: usize| largest(&mut std::iter::once(i * k + s)) / columns[s];
+            (0..k).filter(|&s| columns[s] > 0.0).map(entry).fold(0.0, f64::max)
+        };
+        let is_noise =
+            |i: usize| samples.iter().any(|sample| sample[i * k..][..k].iter().any(|x| x.value != 0.0));
+        let weight = |i: usize| match share(i) {
+            0.0 if is_noise(i) => Expr::ZERO,
+            share if (f64::MIN_POSITIVE.sqrt()..SMALL).contains(&share) => {
+                Expr::from(2f64.powi(-2 * share.log2().round() as i32))
+            }
+            _ => Expr::ONE,
+        };
+        (0..b.rows()).map(weight).collect()
     }
 
     /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose components are sums.

@@ -82,6 +82,7 @@
 
 mod affine;
 mod bianchi;
+mod block_triangular;
 mod catalogue;
 mod closure;
 mod echelon;

@@ -5,6 +5,9 @@ use pc_expr::{Expr, Graph, Scalar};
 use crate::closure::TRIALS;
 use crate::weighed::Weighed;
 
+/// What is left of the terms of a sum that vanishes identically, after some thousand roundings.
+pub(crate) const HIDDEN: f64 = 1e-12;
+
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbourhood<'g> {
@@ -87,6 +90,25 @@ impl<'g> Neighbourhood<'g> {
             }
         }
         worst
+    }
+
+    /// A neighbourhood in which expressions have numbers, if one is found: where nothing is known of their symbols.
+    pub(crate) fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
+        let symbols = graph.symbols_of(expressions);
+        let about =
+            |value: f64| Neighbourhood { centre: symbols.iter().map(|&symbol| (symbol, value)).collect() };
+        let has_numbers = |near: &Neighbourhood<'g>| near.samples(graph, expressions, 1).len() == 1;
+        [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about).find(has_numbers).unwrap_or_default()
+    }
+
+    /// Whether an expression is zero, or no more than rounding wherever it has numbers near by, although the graph does not
+    /// know it.
+    pub(crate) fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
+        if expression.constant().is_some() {
+            return expression.is_zero();
+        }
+        let samples = self.weighed(graph, &[expression], TRIALS);
+        !samples.is_empty() && samples.iter().flatten().all(|value| value.rest() <= HIDDEN)
     }
 
     /// Values at up to `count` points where all outputs are finite.
