@@ -93,6 +93,7 @@ mod frame;
 mod frame_change;
 mod group;
 mod holonomy;
+mod identity;
 mod integrability;
 mod invariant;
 mod inverse;
@@ -120,6 +121,7 @@ pub use group::{
     RotationMatrices, Side, UnitQuaternions,
 };
 pub use holonomy::Holonomy;
+pub use identity::Identity;
 pub use integrability::Integrability;
 pub use inverse::{determinant, inverse};
 pub use lie_algebra::LieAlgebra;

@@ -53,8 +53,8 @@ impl<'g> Neighbourhood<'g> {
     }
 
     /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about 10⁻¹⁶ where
-    /// f vanishes identically and not even the graph knows, and never more than 1; infinity if there are no such points.
-    /// In Σ|terms| are also the terms that have cancelled in a term.
+    /// f vanishes identically and not even the graph knows, and never more than 1; infinity if there are no such points. It is 0
+    /// only where the graph knows. In Σ|terms| are also the terms that have cancelled in a term.
     ///
     /// It depends on no unit: 10⁻¹⁰ x is no zero.
     ///
@@ -80,7 +80,7 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() {
             return f64::INFINITY;
         }
-        let mut worst = 0.0f64;
+        let mut worst = f64::EPSILON; // numbers prove nothing
         for sample in &samples {
             let mut values = sample.iter().copied();
             for terms in &sums {
@@ -93,7 +93,7 @@ impl<'g> Neighbourhood<'g> {
     }
 
     /// A neighbourhood in which expressions have numbers, if one is found: where nothing is known of their symbols.
-    pub(crate) fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
+    pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
             |value: f64| Neighbourhood { centre: symbols.iter().map(|&symbol| (symbol, value)).collect() };
@@ -103,7 +103,7 @@ impl<'g> Neighbourhood<'g> {
 
     /// Whether an expression is zero, or no more than rounding wherever it has numbers near by, although the graph does not
     /// know it.
-    pub(crate) fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
+    pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {
             return expression.is_zero();
         }

@@ -4,7 +4,7 @@ mod frame;
 mod integrals;
 mod steady;
 
-use pc_mech::{Equations, Expr, Graph, MechError, Motion, Neighbourhood, VectorField};
+use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, VectorField};
 use pc_model::{Assembly, Form, Model, Verdict};
 use pc_nonholo::{Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
@@ -230,10 +230,11 @@ impl<'g> Report<'g> {
 
 /// Whether an identity holds of which numbers leave a residual, relative to its terms.
 fn held(residual: f64) -> String {
-    match residual {
-        0.0 => "holds identically".to_owned(),
-        residual if residual <= Neighbourhood::ROUNDING => format!("holds to {}", small(residual)),
-        residual => format!("is violated: {} of the terms is left", small(residual)),
+    match Identity::of(residual) {
+        Identity::Proved => "holds identically".to_owned(),
+        Identity::Open { rest } if rest.is_finite() => format!("open: holds to {}", small(rest)),
+        Identity::Open { .. } => "open: has no values near the start".to_owned(),
+        Identity::Disproved { rest } => format!("disproved: {} of the terms is left", small(rest)),
     }
 }
 
@@ -314,8 +315,11 @@ mod tests {
     #[test]
     fn what_does_not_hold_is_not_said_to_hold() {
         assert_eq!(held(0.0), "holds identically");
-        assert_eq!(held(2.5e-16), "holds to 2.5e-16");
-        assert_eq!(held(2e-9), "is violated: 2.0e-9 of the terms is left");
-        assert!(held(f64::NAN).starts_with("is violated") && held(f64::INFINITY).starts_with("is violated"));
+        assert_eq!(held(2.5e-16), "open: holds to 2.5e-16");
+        assert_eq!(held(2e-9), "open: holds to 2.0e-9");
+        assert_eq!(held(2e-3), "disproved: 2.0e-3 of the terms is left");
+        assert!(
+            held(f64::NAN).starts_with("open: has no") && held(f64::INFINITY).starts_with("open: has no")
+        );
     }
 }

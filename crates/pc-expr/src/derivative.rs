@@ -1,4 +1,8 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
+//!
+//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope there, and 0 times
+//! that would be no number: a branch that is not defined everywhere is differentiated by itself, and the choice is one
+//! between the derivatives.
 
 use rustc_hash::FxHashMap;
 
@@ -7,9 +11,25 @@ use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::function::Function;
 use crate::number::Number;
 
+/// A node that is the first of the branches where the condition is not negative, and the second elsewhere.
+struct Choice {
+    condition: Atom,
+    branches: [NodeId; 2],
+}
+
 impl Dag {
     /// ∂`output`/∂`symbol` for each of `symbols`, by one reverse sweep.
     pub(crate) fn gradient(&mut self, output: Atom, symbols: &[NodeId]) -> Vec<Atom> {
+        self.gradient_with(output, symbols, &mut FxHashMap::default())
+    }
+
+    /// The same, with the gradients of branches that are known.
+    fn gradient_with(
+        &mut self,
+        output: Atom,
+        symbols: &[NodeId],
+        known: &mut FxHashMap<NodeId, Vec<Atom>>,
+    ) -> Vec<Atom> {
         let cone = Cone::below(self, [output]);
         let active = cone.depending_on(self, symbols);
         let mut adjoints: FxHashMap<NodeId, Vec<(Atom, Number)>> = FxHashMap::default();
@@ -30,6 +50,18 @@ impl Dag {
             if adjoint.is_zero() {
                 continue;
             }
+            if let Some(choice) = self.choice(node) {
+                let [first, second] =
+                    choice.branches.map(|branch| self.branch_gradient(branch, symbols, known));
+                for ((&symbol, first), second) in symbols.iter().zip(first).zip(second) {
+                    let slope = self.call(Function::Step, &[choice.condition, first, second]);
+                    if !slope.is_zero() {
+                        let product = self.product_of(Number::ONE, &[adjoint, slope]);
+                        adjoints.entry(symbol).or_default().push((product, Number::ONE));
+                    }
+                }
+                continue;
+            }
             self.for_each_partial(node, |dag, child, partial, q| {
                 if active.contains(&child) {
                     let product = dag.product_of(Number::ONE, &[adjoint, partial]);
@@ -40,6 +72,56 @@ impl Dag {
         symbols.iter().map(|symbol| gradient.get(symbol).copied().unwrap_or(Atom::ZERO)).collect()
     }
 
+    fn branch_gradient(
+        &mut self,
+        branch: NodeId,
+        symbols: &[NodeId],
+        known: &mut FxHashMap<NodeId, Vec<Atom>>,
+    ) -> Vec<Atom> {
+        if let Some(gradient) = known.get(&branch) {
+            return gradient.clone();
+        }
+        let gradient = self.gradient_with(Atom::Node(branch), symbols, known);
+        known.insert(branch, gradient.clone());
+        gradient
+    }
+
+    /// The choice that a node makes between branches, if one of them is not defined everywhere.
+    fn choice(&mut self, node: NodeId) -> Option<Choice> {
+        let Node::Call { function, args: [a, b, c] } = self.node(node) else { return None };
+        let branches = match function {
+            Function::Step => [b, c],
+            Function::Min | Function::Max => [a, b],
+            _ => return None,
+        };
+        if self.is_defined_everywhere(branches) {
+            return None;
+        }
+        let condition =
+            if function == Function::Step { Atom::Node(a) } else { self.lead(function, branches) };
+        Some(Choice { condition, branches })
+    }
+
+    /// What is not negative where the first argument is taken for the smaller, or the larger: at a tie the one whose node was
+    /// made first.
+    fn lead(&mut self, function: Function, [first, second]: [NodeId; 2]) -> Atom {
+        let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
+        self.sum(Number::ZERO, &[(second, q), (first, -q)])
+    }
+
+    /// Whether some expressions, and their derivatives, have values at all states, none of them beyond all bounds.
+    fn is_defined_everywhere(&self, expressions: [NodeId; 2]) -> bool {
+        use Function::{Abs, Atan, Cos, Max, Min, Sign, Sin, Step, Tanh};
+        let is_bounded = |&node: &NodeId| match self.node(node) {
+            Node::Constant(_) | Node::Symbol(_) | Node::Sum { .. } => true,
+            Node::Product { factors } => self.factors(factors).iter().all(|&(_, e)| e > 0),
+            Node::Call { function, .. } => {
+                matches!(function, Sin | Cos | Tanh | Atan | Abs | Sign | Min | Max | Step)
+            }
+        };
+        Cone::below(self, expressions.map(Atom::Node)).order.iter().all(is_bounded)
+    }
+
     /// The derivatives of `outputs` when each symbol of `seeds` changes at the rate given with it.
     pub(crate) fn directional(&mut self, outputs: &[Atom], seeds: &[(NodeId, Atom)]) -> Vec<Atom> {
         let cone = Cone::below(self, outputs.iter().copied());
@@ -48,6 +130,12 @@ impl Dag {
         let mut rates = Assignment::from_pairs(seeds);
         for &node in &cone.order {
             if !active.contains(&node) || rates.contains(node) {
+                continue;
+            }
+            if let Some(Choice { condition, branches }) = self.choice(node) {
+                let [first, second] = branches.map(|branch| rates.get(branch).unwrap_or(Atom::ZERO));
+                let rate = self.call(Function::Step, &[condition, first, second]);
+                rates.set(node, rate);
                 continue;
             }
             let mut contributions = Vec::new();
@@ -151,17 +239,11 @@ impl Dag {
             Function::Abs => self.call(Function::Sign, &[x]),
             Function::Sign => Atom::ZERO,
             Function::Min | Function::Max => {
-                // The smaller argument alone counts for min, the larger for max; at a tie
-                // the one whose node was made first.
-                let (this, other) = (args[position], args[1 - position]);
-                let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
-                if position == 0 {
-                    let lead = self.sum(Number::ZERO, &[(other, q), (this, -q)]);
-                    self.call(Function::Step, &[lead, Atom::ONE, Atom::ZERO])
-                } else {
-                    let lead = self.sum(Number::ZERO, &[(this, q), (other, -q)]);
-                    self.call(Function::Step, &[lead, Atom::ZERO, Atom::ONE])
-                }
+                // The smaller argument alone counts for min, the larger for max.
+                let lead = self.lead(function, [args[0], args[1]]);
+                let [first, second] =
+                    if position == 0 { [Atom::ONE, Atom::ZERO] } else { [Atom::ZERO, Atom::ONE] };
+                self.call(Function::Step, &[lead, first, second])
             }
             Function::Step => match position {
                 0 => Atom::ZERO, // the jump itself has no derivative

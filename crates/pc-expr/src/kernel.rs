@@ -5,6 +5,7 @@ mod tape;
 use std::sync::Arc;
 
 use crate::error::ExprError;
+use crate::function::Function;
 use crate::program::{Instruction, Program, Register};
 use tape::Tape;
 
@@ -84,7 +85,8 @@ impl Interpreter {
         }
         let mut registers = vec![0.0; program.registers_len()];
         walk(program, &mut registers, t, state, parameters);
-        let culprit = registers.iter().position(|value| !value.is_finite())?;
+        let taken = taken(program, &registers);
+        let culprit = (0..registers.len()).find(|&i| taken[i] && !registers[i].is_finite())?;
         Some(ExprError::NotFinite {
             expression: program.describe(Register(culprit as u32)),
             value: registers[culprit],
@@ -108,6 +110,28 @@ impl Kernel for Interpreter {
     fn fork(&self) -> Box<dyn Kernel> {
         Box::new(self.clone())
     }
+}
+
+/// Which registers count at these values: those of the outputs and what they are computed from, but for branches of `step`
+/// that are not taken.
+fn taken(program: &Program, registers: &[f64]) -> Vec<bool> {
+    let mut taken = vec![false; registers.len()];
+    program.outputs().iter().for_each(|output| taken[output.index()] = true);
+    for (i, instruction) in program.code().iter().enumerate().rev() {
+        if !taken[program.first_result() + i] {
+            continue;
+        }
+        match *instruction {
+            Instruction::Call(Function::Step, [condition, first, second]) => {
+                taken[condition.index()] = true;
+                let condition = registers[condition.index()];
+                taken[first.index()] |= condition >= 0.0;
+                taken[second.index()] |= condition < 0.0;
+            }
+            other => other.operands().for_each(|operand| taken[operand.index()] = true),
+        }
+    }
+    taken
 }
 
 /// Computes all registers of a program, which may hold anything before.

@@ -410,3 +410,55 @@ fn directions_may_be_expressions() {
     assert_eq!(graph.gradient(x, &[x]), [Expr::ONE]);
     assert_eq!(call(Function::Sin, &[x]).derivative(x), x.cos());
 }
+
+/// What is not defined beyond a switch is not asked for there: values and slopes of the first and second order, on both sides.
+#[test]
+fn a_branch_that_is_not_taken_has_no_say() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let root = (-x).pow(Expr::ratio(3, 2));
+    // with the values and slopes that they have where x > 0, and where x < 0
+    let functions = [
+        ((-x).step(root * y, Expr::ZERO), Expr::ZERO, root * y),
+        (x.step(x.log() + y.square(), 1.0 / (x * y)), x.log() + y.square(), 1.0 / (x * y)),
+        (y * x.step((x * y).sqrt(), x.square()), y * (x * y).sqrt(), y * x.square()),
+        (x.step(y, (-40.0 * (x - y)).exp()).sin(), y.sin(), (-40.0 * (x - y)).exp().sin()),
+        (
+            (x.step((x * y).sqrt(), (-x).sqrt()) + y).square(),
+            ((x * y).sqrt() + y).square(),
+            ((-x).sqrt() + y).square(),
+        ),
+        (x.step((x - 1.0).step((x - 1.0).sqrt(), (1.0 - x).log()), Expr::ZERO), (1.0 - x).log(), Expr::ZERO),
+    ];
+    for (i, (function, above, below)) in functions.into_iter().enumerate() {
+        for (side, expected) in [(0.25, above), (-0.25, below)] {
+            let all = |f: Expr<'_>| {
+                let gradient = graph.gradient(f, &[x, y]);
+                let forward = graph.directional(&[f], &[(x, y), (y, 2.0.into())]);
+                let second = gradient.iter().flat_map(|&slope| graph.gradient(slope, &[x, y])).collect();
+                graph
+                    .evaluate(&[vec![f], gradient, forward, second].concat(), &[(x, side), (y, 0.5)])
+                    .unwrap()
+            };
+            let (found, expected) = (all(function), all(expected));
+            for (found, expected) in found.iter().zip(&expected) {
+                // some ten operations
+                assert!(
+                    (found - expected).abs() <= 1e-14 * expected.abs(),
+                    "{i} at {side}: {found} {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// At the corner itself the slopes are those of the branch that is taken.
+#[test]
+fn slopes_of_the_greater_of_two_are_those_of_one() {
+    let graph = Graph::new();
+    let x = graph.symbol("x");
+    let guarded = (x.sqrt() - 1.0).max(-x);
+    let slope = guarded.derivative(x);
+    let values = [0.0, 0.04, 4.0].map(|at| graph.evaluate(&[slope], &[(x, at)]).unwrap()[0]);
+    assert_eq!(values, [-1.0, -1.0, 0.25]);
+}

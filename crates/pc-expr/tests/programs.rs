@@ -7,7 +7,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{Bounded, Tree, trees};
-use pc_expr::{Expr, ExprError, Graph, Inputs, Interpreter, Kernel, Program};
+use pc_expr::{Expr, ExprError, Graph, Inputs, Interpreter, Kernel, Program, compile};
 use proptest::prelude::*;
 
 fn kernel<'g>(graph: &'g Graph, state: &[Expr<'g>], outputs: &[Expr<'g>]) -> Interpreter {
@@ -177,4 +177,23 @@ fn time_state_and_parameters_are_read_in_this_order() {
     let mut out = [0.0];
     Interpreter::new(Arc::new(program)).eval(1.0, &[3.0, 2.0], &[4.0], &mut out);
     assert_eq!(out, [4321.0]);
+}
+
+/// What is not finite in a branch that is not taken is no fault, and not what is named.
+#[test]
+fn a_branch_that_is_not_taken_is_no_culprit() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let inputs = Inputs { time: None, state: vec![x, y], parameters: Vec::new() };
+    let guarded = x.step(x.log(), (-x).sqrt());
+    let named = |value: Expr<'_>| {
+        let program = Arc::new(Program::new(&graph, &inputs, &[value]).unwrap());
+        let value = |kernel: &mut dyn Kernel| run(kernel, &[-4.0, 0.0], 1)[0].to_bits();
+        let mut interpreter = Interpreter::new(Arc::clone(&program));
+        assert_eq!(value(&mut interpreter), value(compile(program).as_mut()));
+        interpreter.diagnose(0.0, &[-4.0, 0.0], &[]).map(|error| error.to_string())
+    };
+    assert_eq!(named(guarded), None);
+    let error = named(guarded + 1.0 / y).unwrap();
+    assert!(error.contains("1/y") && !error.contains("log"), "{error}");
 }

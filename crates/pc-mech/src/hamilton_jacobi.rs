@@ -2,7 +2,7 @@
 
 mod roots;
 
-use pc_algebra::Matrix;
+use pc_algebra::{Matrix, Neighbourhood};
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::canonical::Canonical;
@@ -74,7 +74,8 @@ impl<'g> Canonical<'g> {
     /// The complete integral S = `action` with the constants α of the names given, k of them.
     ///
     /// # Errors
-    /// [`MechError::NotAnAction`] if S does not satisfy the [equation](Canonical::hamilton_jacobi);
+    /// [`MechError::NotAnAction`] if S does not satisfy the [equation](Canonical::hamilton_jacobi): its left side is not folded
+    /// to zero, and in numbers more than rounding;
     /// [`MechError::IncompleteIntegral`] if det ∂(X_s S)/∂α_r = 0 at almost all points; [`MechError::Shape`]
     /// if there are not k constants and k coordinates; [`MechError::Forced`]; [`MechError::NotQuadratic`];
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol).
@@ -93,7 +94,8 @@ impl<'g> Canonical<'g> {
             }
         }
         let remainder = self.hamilton_jacobi(action)?;
-        if !remainder.is_zero() {
+        // Roots and arcs of quotients keep more laws than the graph knows.
+        if !Neighbourhood::anywhere(graph, &[remainder]).vanishes(graph, remainder) {
             return Err(MechError::NotAnAction { remainder: remainder.to_string() });
         }
         let alpha: Vec<Expr<'g>> = constants.iter().map(|name| graph.symbol(name)).collect();

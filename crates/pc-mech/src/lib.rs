@@ -360,8 +360,8 @@ pub use legendre::LegendreTransform;
 pub use multipliers::{Constraint, Multipliers};
 pub use numeric::least_squares::LeastSquares;
 pub use pc_algebra::{
-    AlgebraError, EulerAngles, Frame, LieAlgebra, LieGroup, Matrix, Neighbourhood, RotationMatrices,
-    StructureCoefficients, UnitQuaternions, determinant,
+    AlgebraError, EulerAngles, Frame, Identity, LieAlgebra, LieGroup, Matrix, Neighbourhood,
+    RotationMatrices, StructureCoefficients, UnitQuaternions, determinant,
 };
 pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,

@@ -262,7 +262,12 @@ impl<'g> Assembler<'g, '_> {
         x_dot: &[(Expr<'g>, Expr<'g>)],
         state: &[Expr<'g>],
     ) -> Result<(), ModelError> {
-        let all: Vec<Expr<'g>> = self.scope.written.iter().map(|written| written.value).collect();
+        let velocities =
+            self.graph.evaluate(&x_dot.iter().map(|&(_, value)| value).collect::<Vec<_>>(), values);
+        let velocities = velocities.unwrap_or_default();
+        let velocities = x_dot.iter().map(|&(symbol, _)| symbol).zip(velocities);
+        let written = self.scope.taken(&velocities.chain(values.iter().copied()).collect::<Vec<_>>());
+        let all: Vec<Expr<'g>> = written.iter().map(|written| written.value).collect();
         let all = self.graph.substitute(&all, x_dot);
         // What contains accelerations has no value yet: it is checked when the motion is computed.
         let is_unknown = |symbol: &Expr<'g>| !values.iter().any(|(known, _)| known == symbol);
@@ -270,7 +275,7 @@ impl<'g> Assembler<'g, '_> {
         let at: Vec<(Expr<'g>, f64)> =
             unknown.map(|symbol| (symbol, f64::NAN)).chain(values.iter().copied()).collect();
         let Ok(found) = self.graph.evaluate(&all, &at) else { return Ok(()) }; // every symbol has a value
-        for ((written, &value), found) in self.scope.written.iter().zip(&all).zip(found) {
+        for ((written, &value), found) in written.iter().zip(&all).zip(found) {
             if found.is_finite() {
                 continue;
             }

@@ -2,7 +2,8 @@
 
 mod definitions;
 
-use std::collections::{BTreeMap, HashMap};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
@@ -84,6 +85,27 @@ pub(crate) struct Written<'g> {
     pub(crate) value: Expr<'g>,
     pub(crate) place: Place,
     pub(crate) text: String,
+    context: Context<'g>,
+}
+
+/// Where a part stands: in which definition, if any, and in which branches of `step`.
+#[derive(Clone, Default)]
+struct Context<'g> {
+    definition: Option<(Stage, usize)>,
+    branches: Vec<Branch<'g>>,
+}
+
+/// The first branch of `step(condition, …, …)`, or the second.
+#[derive(Clone)]
+struct Branch<'g> {
+    condition: Expr<'g>,
+    first: bool,
+}
+
+impl Branch<'_> {
+    fn is_taken(&self, condition: f64) -> bool {
+        if self.first { condition >= 0.0 } else { condition < 0.0 }
+    }
 }
 
 /// The declared names of a model as symbols of a graph.
@@ -97,8 +119,10 @@ pub(crate) struct Scope<'g, 'd> {
     places: HashMap<&'d str, usize>,
     /// Definitions that were used already: each is resolved once for a stage.
     definitions: BTreeMap<(Stage, usize), Expr<'g>>,
-    /// The place of the definition that is being resolved; of the parameter in that stage.
-    within: Option<usize>,
+    /// Where definitions were named.
+    uses: Vec<((Stage, usize), Context<'g>)>,
+    /// Where the part stands that is being resolved; the place of a parameter in that stage.
+    context: Context<'g>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
     /// Forces and torques of reactions that were named, each with a place.
@@ -124,7 +148,8 @@ impl<'g, 'd> Scope<'g, 'd> {
             time,
             places: places.collect(),
             definitions: BTreeMap::new(),
-            within: None,
+            uses: Vec::new(),
+            context: Context::default(),
             written: Vec::new(),
             resultants: Vec::new(),
         }
@@ -157,9 +182,9 @@ impl<'g, 'd> Scope<'g, 'd> {
 
     /// The expression that gives parameter number `place` its value.
     pub(crate) fn parameter(&mut self, place: usize) -> Result<Expr<'g>, ModelError> {
-        self.within = Some(place);
+        self.context.definition = Some((Stage::Parameter, place));
         let value = self.resolve(&self.document.parameters[place].expression, Stage::Parameter);
-        self.within = None;
+        self.context = Context::default();
         value
     }
 
@@ -186,7 +211,30 @@ impl<'g, 'd> Scope<'g, 'd> {
 
     fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
-        self.written.push(Written { value, place: expression.place(span), text });
+        let context = self.context.clone();
+        self.written.push(Written { value, place: expression.place(span), text, context });
+    }
+
+    /// What was written, but for branches of `step` that are not taken at these values, in themselves or as all that names a
+    /// definition.
+    pub(crate) fn taken(&self, values: &[(Expr<'g>, f64)]) -> Vec<&Written<'g>> {
+        let is_taken = |branch: &Branch<'g>| {
+            let condition = self.graph.evaluate(&[branch.condition], values);
+            condition.is_ok_and(|condition| branch.is_taken(condition[0]))
+        };
+        // A definition is named by what comes after it, and last of all by what is none.
+        let mut used: BTreeSet<(Stage, usize)> = BTreeSet::new();
+        let mut uses: Vec<_> = self.uses.iter().collect();
+        uses.sort_by_key(|(_, context)| Reverse(context.definition.map_or(usize::MAX, |(_, place)| place)));
+        let counts = |used: &BTreeSet<(Stage, usize)>, context: &Context<'g>| {
+            context.definition.is_none_or(|own| used.contains(&own)) && context.branches.iter().all(is_taken)
+        };
+        for (definition, context) in uses {
+            if counts(&used, context) {
+                used.insert(*definition);
+            }
+        }
+        self.written.iter().filter(|written| counts(&used, &written.context)).collect()
     }
 
     fn ast(&mut self, expression: &Expression, ast: &Ast, stage: Stage) -> Result<Expr<'g>, ModelError> {
@@ -213,8 +261,14 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             AstKind::Call(function, _, args) => {
                 let mut values = Vec::with_capacity(args.len());
-                for arg in args {
-                    values.push(self.ast(expression, arg, stage)?);
+                for (i, arg) in args.iter().enumerate() {
+                    let branch =
+                        (function == "step" && i > 0).then(|| Branch { condition: values[0], first: i == 1 });
+                    let depth = self.context.branches.len();
+                    self.context.branches.extend(branch);
+                    let value = self.ast(expression, arg, stage);
+                    self.context.branches.truncate(depth);
+                    values.push(value?);
                 }
                 let before = self.graph.zero_divisions();
                 let value = call(function, &values, self.graph);
@@ -267,16 +321,17 @@ impl<'g, 'd> Scope<'g, 'd> {
         if name == "pi" {
             return Ok(std::f64::consts::PI.into());
         }
-        let is_late = |own: Option<usize>, place| own.is_some_and(|own| own <= place);
+        let own = self.context.definition.map(|(_, own)| own);
+        let is_late = |place| own.is_some_and(|own| own <= place);
         let late = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
         if let Some(place) = document.parameters.iter().position(|p| p.name.text == name) {
-            if stage == Stage::Parameter && is_late(self.within, place) {
+            if stage == Stage::Parameter && is_late(place) {
                 return Err(self.error(expression, span, late));
             }
             return Ok(self.graph.symbol(name));
         }
         if let Some(&place) = self.places.get(name).filter(|_| stage != Stage::Parameter) {
-            if is_late(self.within, place) {
+            if is_late(place) {
                 return Err(self.error(expression, span, late));
             }
             return self.definition(place, stage);

@@ -1,6 +1,6 @@
 //! Rigid bodies.
 
-use pc_algebra::{Matrix, affine, determinant};
+use pc_algebra::{Matrix, Neighbourhood, affine, determinant};
 use pc_expr::Expr;
 
 use crate::bodies::particle::Particle;
@@ -195,17 +195,25 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
         return Ok(());
     }
     let graph = moving.frame.graph();
-    let product = |i: usize, j: usize| graph.dot(rotation.column(i), rotation.column(j));
+    let near = Neighbourhood::anywhere(graph, rotation.entries());
+    let products = |i: usize, j: usize| (0..3).map(move |row| rotation[(row, i)] * rotation[(row, j)]);
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        let wrong = [product(i, j), product(i, i) - product(j, j)].into_iter().find(|x| !x.is_zero());
-        if let Some(wrong) = wrong {
-            return Err(MechError::NotARotation { columns: (i + 1, j + 1), defect: wrong.to_string() });
+        let lengths: Vec<_> = products(i, i).chain(products(j, j).map(|square| -square)).collect();
+        for terms in [products(i, j).collect(), lengths] {
+            // Numbers such as cos 0.3 are rounded.
+            let defect = graph.sum(terms.iter().copied());
+            if near.residual(graph, &[terms]) > Neighbourhood::ROUNDING {
+                return Err(MechError::NotARotation { columns: (i + 1, j + 1), defect: defect.to_string() });
+            }
         }
     }
-    match determinant(graph, rotation).and_then(Expr::constant) {
-        Some(value) if value.is_negative() => Err(MechError::Reflection { determinant: value.to_f64() }),
-        _ => Ok(()),
+    let Some(determinant) = determinant(graph, rotation) else { return Ok(()) };
+    // det R + |det R| = 0
+    if near.residual(graph, &[vec![determinant, determinant.abs()]]) <= Neighbourhood::ROUNDING {
+        let shown = near.largest(graph, &[determinant]);
+        return Err(MechError::Reflection { determinant: -shown });
     }
+    Ok(())
 }
 
 /// ω_0..ω_k with ω = ω_0 + η_s ω_s.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use pc_expr::Expr;
 use pc_expr::parse::{Ast, AstKind};
 
-use super::{Scope, Stage};
+use super::{Context, Scope, Stage};
 use crate::error::ModelError;
 
 impl<'g> Scope<'g, '_> {
@@ -21,6 +21,7 @@ impl<'g> Scope<'g, '_> {
     /// The definition at `place`, after those that it is made of: they stand before it, so that in this order a long chain of
     /// them needs no deep recursion.
     pub(super) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
+        self.uses.push(((stage, place), self.context.clone()));
         if let Some(&value) = self.definitions.get(&(stage, place)) {
             return Ok(value);
         }
@@ -37,9 +38,10 @@ impl<'g> Scope<'g, '_> {
         }
         let mut value = Expr::ZERO;
         for &place in needed.iter().rev() {
-            self.within = Some(place);
+            let own = Context { definition: Some((stage, place)), branches: Vec::new() };
+            let outer = std::mem::replace(&mut self.context, own);
             let resolved = self.resolve(&definitions[place].expression, stage);
-            self.within = None;
+            self.context = outer;
             value = resolved?;
             self.definitions.insert((stage, place), value);
         }

@@ -1,0 +1,33 @@
+//! What is known of an identity.
+
+/// Whether an identity holds. The graph proves it, or numbers disprove it; between the two it stays open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Identity {
+    /// The graph folds it to zero.
+    Proved,
+    /// The graph does not, but numbers leave so little of its terms that it may be rounding, or there are none (∞).
+    Open {
+        /// The part of the terms that is left.
+        rest: f64,
+    },
+    /// Numbers leave more of its terms than any rounding.
+    Disproved {
+        /// The part of the terms that is left.
+        rest: f64,
+    },
+}
+
+impl Identity {
+    /// What is left of the terms of a sum that differs from zero is of their order; rounding, even where derivatives of
+    /// roots enlarge it a million times, leaves less.
+    const MARGIN: f64 = 1e-6;
+
+    /// What the [residual](crate::Neighbourhood::residual) of an identity says.
+    pub fn of(residual: f64) -> Identity {
+        match residual {
+            0.0 => Identity::Proved,
+            rest if rest.is_finite() && rest > Identity::MARGIN => Identity::Disproved { rest },
+            rest => Identity::Open { rest },
+        }
+    }
+}
