@@ -91,7 +91,7 @@ impl<'g> Report<'g> {
         let near = Neighbourhood { centre };
 
         let mut integrals = integrals::integrals(equations, &near);
-        if assembly.bound.nonlinear().is_some() && assembly.keeps_energy() {
+        if assembly.keeps_energy() && energy_remark(assembly).is_none() {
             integrals::say_energy_is_kept(&mut integrals, equations);
         }
         if energy_remark(assembly).is_some()

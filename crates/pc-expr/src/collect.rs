@@ -153,6 +153,32 @@ impl Graph {
         odd.or_else(rounded).unwrap_or(e)
     }
 
+    /// `outputs` written with no other symbols than `known`, as far as they depend on none. Such a symbol cancels, and comes
+    /// in where a result has the value of an older and cheaper expression that is written with it.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [a, b, z] = graph.symbols(["a", "b", "z"]);
+    /// let written = graph.written_in(&[a * b, a + z], &[a, b]);
+    /// assert_eq!(written, [a * b, a + z]); // z is needed
+    /// ```
+    pub fn written_in<'g>(&'g self, outputs: &[Expr<'g>], known: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let foreign = |list: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            self.symbols_of(list).into_iter().filter(|symbol| !known.contains(symbol)).collect()
+        };
+        if foreign(outputs).is_empty() {
+            return outputs.to_vec();
+        }
+        let without = |e: Expr<'g>, z: Expr<'g>| {
+            let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+            let mut forms = self.forms_without(e, z, true).filter(is_without).peekable();
+            let first = forms.peek().copied();
+            forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
+        };
+        outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
+    }
+
     /// e at those points of z, from simple to odd ones, that do not change its value.
     fn forms_without<'g>(
         &'g self,

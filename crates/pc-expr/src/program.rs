@@ -125,6 +125,9 @@ impl Program {
         } else {
             std::iter::once("t".to_owned()).chain(names).collect()
         };
+        let known: Vec<Expr<'g>> =
+            inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
+        let outputs = graph.written_in(outputs, &known);
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
         let mut program = Program {
             constants: Vec::new(),

@@ -1,4 +1,4 @@
-//! Particles and rigid bodies: what they add to the kinetic energy and, by (8), to the forces.
+//! Particles and rigid bodies: what they add to the kinetic energy, to the force function and, by (8), to the forces.
 
 pub(crate) mod particle;
 pub(crate) mod rigid_body;
@@ -56,8 +56,10 @@ impl<'g> Body<'g> {
 pub(crate) struct Share<'g> {
     /// T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// Q_1..Q_k
+    /// Q_1..Q_k, those aside that come from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
+    /// U(t, x), which has to be part of L.
+    pub(crate) force_function: Expr<'g>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
     /// ω, if it turns.

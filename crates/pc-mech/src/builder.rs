@@ -393,7 +393,7 @@ impl<'g> SystemBuilder<'g> {
         let mut bodies = Bodies { list: Vec::new(), rest: self.graph.sum(terms.clone()) };
         for body in &self.bodies {
             let share = body.share(&moving)?;
-            terms.push(share.kinetic);
+            terms.extend([share.kinetic, share.force_function]);
             if let Some(acceleration) = &self.gravity {
                 moving.check_at_rest("the acceleration of gravity", acceleration)?;
                 terms.push(body.weight(self.graph, acceleration)?);

@@ -63,9 +63,12 @@ pub(super) fn integrals<'g>(equations: &Equations<'g>, near: &Neighbourhood<'g>)
     list
 }
 
-/// Says that the energy is proved to be kept, where its rate vanishes on constraints that the equations do not know.
+/// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
 pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equations<'g>) {
-    for integral in list.iter_mut().filter(|integral| integral.is_energy()) {
+    let open = |integral: &&mut Integral<'g>| {
+        integral.is_energy() && matches!(integral.verdict, Verdict::Rate { .. })
+    };
+    for integral in list.iter_mut().filter(open) {
         let jumps = equations.rates().has_jumps(integral.value);
         integral.verdict = if jumps { Verdict::BetweenJumps } else { Verdict::Conserved };
     }

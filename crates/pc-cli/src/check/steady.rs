@@ -23,6 +23,9 @@ pub(super) struct Steady {
     /// The real part that counts as zero.
     tolerance: f64,
     first_approximation: Verdict,
+    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times, once for each of
+    /// as many independent integrals, and all other real parts negative.
+    neutral: Option<usize>,
     second_variation: Option<Variation>,
 }
 
@@ -100,11 +103,54 @@ pub(super) fn steady_motion<'g>(
         });
         let same = same.into_iter().map(|(name, _)| name).collect();
         let rates = constant_rates(equations, &found);
-        if let Some(steady) = Steady::new(&found, names, start, rates, same, second) {
+        let neutral = neutral_directions(equations, &found, &all);
+        if let Some(steady) = Steady::new(&found, names, start, (rates, neutral), same, second) {
             return Search::Found(Box::new(steady));
         }
     }
     Search::None
+}
+
+/// The number k of neutral directions of a steady motion that is one of a family: the first approximation has λ = 0 in k
+/// blocks of size 1 and negative real parts else, and there are k integrals whose differentials are independent there, so that
+/// on each level near by the steady motion is one alone, and approached (I. G. Malkin's theorem of the critical case of k
+/// zeros).
+fn neutral_directions(
+    equations: &Equations<'_>,
+    found: &SteadyMotion,
+    integrals: &[(String, Expr<'_>)],
+) -> Option<usize> {
+    let spectrum = &found.spectrum;
+    let &[count] = spectrum.zero_blocks() else { return None };
+    let damped = spectrum.eigenvalues().iter().filter(|value| value.real < -spectrum.tolerance()).count();
+    if damped + count != spectrum.eigenvalues().len() || spectrum.neutral() != count {
+        return None;
+    }
+    let (system, graph) = (equations.system(), equations.system().graph());
+    let symbols = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let kept: Vec<Expr<'_>> =
+        symbols.iter().copied().filter(|y| found.components.contains(&y.to_string())).collect();
+    let at: Vec<(Expr<'_>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
+    // One of a cyclic coordinate is none of the other components alone.
+    let of_kept = |f: &Expr<'_>| {
+        graph.symbols_of(&[*f]).iter().all(|symbol| kept.contains(symbol) || !at.iter().any(|(y, _)| y == symbol))
+    };
+    let functions: Vec<Expr<'_>> = integrals.iter().map(|&(_, f)| f).filter(of_kept).collect();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for function in functions {
+        let mut gradient = graph.evaluate(&graph.gradient(function, &kept), &at).ok()?;
+        let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = length(&gradient);
+        for known in &basis {
+            let along: f64 = known.iter().zip(&gradient).map(|(a, b)| a * b).sum();
+            gradient.iter_mut().zip(known).for_each(|(g, known)| *g -= along * known);
+        }
+        let left = length(&gradient);
+        if left > INDEPENDENT * size {
+            basis.push(gradient.iter().map(|g| g / left).collect());
+        }
+    }
+    (basis.len() >= count).then_some(count)
 }
 
 /// The rates of the cyclic coordinates that contain no cyclic coordinate.
@@ -220,7 +266,7 @@ impl Steady {
         found: &SteadyMotion,
         names: impl Iterator<Item = String>,
         start: &[f64],
-        rates: Vec<(String, f64)>,
+        (rates, neutral): (Vec<(String, f64)>, Option<usize>),
         same: Vec<String>,
         second_variation: Option<Variation>,
     ) -> Option<Steady> {
@@ -237,6 +283,7 @@ impl Steady {
             eigenvalues: found.spectrum.eigenvalues().to_vec(),
             tolerance: found.spectrum.tolerance(),
             first_approximation: found.verdict(),
+            neutral,
             second_variation,
         })
     }
@@ -250,6 +297,13 @@ impl Steady {
             }
             (Verdict::Undecided, Some(Variation { variables: Some(variables), .. })) => {
                 format!("stable in {}, by the second variation of the energy", variables.join(", "))
+            }
+            (Verdict::Undecided, None) if self.neutral.is_some() => {
+                let directions = match self.neutral {
+                    Some(1) => "one neutral direction".to_owned(),
+                    count => format!("{} neutral directions", count.unwrap_or_default()),
+                };
+                format!("asymptotically stable but for {directions}, by the first approximation and integrals")
             }
             (Verdict::Undecided, None) if self.second_variation.is_some() => {
                 "undecided by the first approximation and by the second variation of the energy".to_owned()
@@ -326,6 +380,9 @@ impl Search {
 
 /// Where rates are steeper than this many times those at the start, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
+
+/// A differential of which more than this part is left beside others is independent of them.
+const INDEPENDENT: f64 = 1e-8;
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 50;

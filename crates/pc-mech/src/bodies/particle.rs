@@ -8,7 +8,8 @@ use crate::error::{MechError, shape};
 /// A mass point m at the place r(t, x), given by its one, two or three Cartesian components in an inertial frame.
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along the
-/// same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`.
+/// same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One that depends on the place
+/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: L has U, and Q_s nothing.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -23,8 +24,9 @@ use crate::error::{MechError, shape};
 ///     })
 ///     .build()?;
 /// let [phi, rate] = graph.symbols(["φ", "φ'"]);
-/// assert_eq!(pendulum.lagrangian(), m * l.square() * rate.square() / 2.0);
-/// assert_eq!(pendulum.forces()[0], -m * g * l * phi.sin());
+/// assert_eq!(pendulum.lagrangian(), m * l.square() * rate.square() / 2.0 + m * g * l * phi.cos());
+/// assert_eq!(pendulum.forces()[0], 0.into());
+/// assert_eq!(pendulum.energy(), m * l.square() * rate.square() / 2.0 - m * g * l * phi.cos());
 /// # Ok::<(), pc_mech::MechError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -71,13 +73,47 @@ impl<'g> Particle<'g> {
         let displacements = moving.operators("the position", &self.position)?;
         let velocity = moving.combine(&displacements);
         let kinetic = self.mass * graph.dot(velocity.iter().copied(), velocity.iter().copied()) / 2.0;
-        let forces = match &self.force {
-            None => vec![Expr::ZERO; moving.eta.len()],
+        let none = vec![Expr::ZERO; moving.eta.len()];
+        let (forces, force_function) = match &self.force {
+            None => (none, Expr::ZERO),
             Some(force) => {
                 shape("the force on a body", force.len(), self.position.len())?;
-                moving.work(&moving.in_quasi_velocities(force), &displacements)
+                let force = moving.in_quasi_velocities(force);
+                match self.force_function(&force, moving, &displacements) {
+                    Some(function) => (none, function),
+                    None => (moving.work(&force, &displacements), Expr::ZERO),
+                }
             }
         };
-        Ok(Share { kinetic, forces, velocity, angular_velocity: None })
+        Ok(Share { kinetic, forces, force_function, velocity, angular_velocity: None })
+    }
+
+    /// U(t, x) with F · X_s r = X_s U, of a force that depends on the place alone. With F homogeneous of degree d in r, as a
+    /// constant force, that of a spring and that of gravitation are, U = F · r/(d + 1) by Euler's theorem: where F · X_s r is
+    /// the same multiple of X_s (F · r) for all s, its 1-form is exact.
+    fn force_function(
+        &self,
+        force: &[Expr<'g>],
+        moving: &Moving<'_, 'g>,
+        displacements: &[Vec<Expr<'g>>],
+    ) -> Option<Expr<'g>> {
+        let graph = moving.frame.graph();
+        let time = moving.frame.time();
+        if force.iter().any(|f| f.depends_on(time) || moving.eta.iter().any(|&eta| f.depends_on(eta))) {
+            return None;
+        }
+        let product = graph.dot(force.iter().copied(), self.position.iter().copied());
+        let slopes: Vec<Expr<'g>> =
+            (1..=moving.eta.len()).map(|s| moving.frame.apply(s, &[product])[0]).collect();
+        let work = moving.work(force, displacements);
+        let mut factor = Expr::ONE;
+        if let Some(s) = (0..work.len()).find(|&s| !work[s].is_zero()) {
+            if slopes[s].is_zero() {
+                return None;
+            }
+            factor = Expr::from((work[s] / slopes[s]).constant()?);
+        }
+        let is_exact = work.iter().zip(&slopes).all(|(&work, &slope)| (work - factor * slope).is_zero());
+        is_exact.then(|| factor * product)
     }
 }

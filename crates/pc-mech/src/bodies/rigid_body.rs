@@ -149,7 +149,7 @@ impl<'g> RigidBody<'g> {
 
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         moving.check_at_rest("the inertia", &self.inertia.0)?;
-        let Share { kinetic, mut forces, velocity, .. } = self.centre.share(moving)?;
+        let Share { kinetic, mut forces, force_function, velocity, .. } = self.centre.share(moving)?;
         let turning = match &self.orientation {
             Orientation::Rotation(rotation) => angular_velocities(rotation, moving)?,
             Orientation::AngularVelocity(omega) => affine_parts(omega, moving)?,
@@ -162,7 +162,8 @@ impl<'g> RigidBody<'g> {
                 *force += turn;
             }
         }
-        Ok(Share { kinetic: kinetic + rotational, forces, velocity, angular_velocity: Some(omega) })
+        let (kinetic, angular_velocity) = (kinetic + rotational, Some(omega));
+        Ok(Share { kinetic, forces, force_function, velocity, angular_velocity })
     }
 }
 

@@ -208,7 +208,7 @@ impl Motion {
     }
 
     /// Whether the rate of change of an integral at (t, y) is rounding of ẏ: it is another where the last digits of the state
-    /// are. Which of them change, and how, is the same on every run.
+    /// and of the equations are. Which of them change, and how, is the same on every run.
     fn is_uncertain(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -219,13 +219,12 @@ impl Motion {
     ) -> bool {
         let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
         (0..PROBES).any(|_| {
-            let moved = |y: &f64| {
+            let factor = || {
                 bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let part = (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-                y * (1.0 + LAST_DIGITS * part)
+                1.0 + LAST_DIGITS * part
             };
-            let probe: Vec<f64> = y.iter().map(moved).collect();
-            let Ok(rates) = self.rates(t, &probe) else { return false };
+            let Ok((probe, rates)) = self.perturbed_rates(t, y, factor) else { return false };
             let (there, _) = integrals.rates_of_change((t, &probe, self.parameters()), &rates)[place];
             (there - rate).abs() > UNCERTAIN * rate.abs()
         })

@@ -329,6 +329,29 @@ impl Motion {
         projected.map_err(|fault| self.failure(fault, t, y))
     }
 
+    /// ẏ with each component of the state, and each number of the equations where these are solved in numbers, times a
+    /// `factor`, which is another one each time.
+    pub(crate) fn perturbed_rates(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        mut factor: impl FnMut() -> f64,
+    ) -> Result<(Vec<f64>, Vec<f64>), MechError> {
+        let state: Vec<f64> = y.iter().map(|y| y * factor()).collect();
+        let mut rates = vec![0.0; y.len()];
+        let outcome = match &mut self.form {
+            Form::Staged(staged) => {
+                staged.perturbed_rhs((t, &state, &self.parameters), &mut rates, factor)
+            }
+            Form::Unrolled(_) | Form::InMomenta(_) => {
+                self.rhs(t, &state, &mut rates)?;
+                Ok(())
+            }
+        };
+        outcome.map_err(|fault| MechError::from(self.failure(fault, t, &state)))?;
+        Ok((state, rates))
+    }
+
     /// Moves the η of a state to where the constraints hold, and leaves its x as they are.
     ///
     /// # Errors

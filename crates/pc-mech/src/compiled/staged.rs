@@ -109,6 +109,25 @@ impl Staged {
         check_finite(ydot, &self.rates, (t, &self.known, p))
     }
 
+    /// The same with each number of M w = r times a `factor`, which is another one each time.
+    pub(crate) fn perturbed_rhs(
+        &mut self,
+        (t, y, p): (f64, &[f64], &[f64]),
+        ydot: &mut [f64],
+        mut factor: impl FnMut() -> f64,
+    ) -> Result<(), Fault> {
+        self.solve(t, y, p)?;
+        if let Unknowns::Linear { lower, values, .. } = &mut self.unknowns {
+            values.iter_mut().for_each(|value| *value *= factor());
+            let (mass, right) = values.split_at(lower.len());
+            self.solver.factorise(lower, mass)?;
+            self.known[self.dim..].copy_from_slice(right);
+            self.solver.solve(&mut self.known[self.dim..]);
+        }
+        self.rates.eval(t, &self.known, p, ydot);
+        check_finite(ydot, &self.rates, (t, &self.known, p))
+    }
+
     /// Observables of w are not finite where w cannot be solved for.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
         if self.solve(t, y, p).is_err() {

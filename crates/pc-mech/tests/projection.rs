@@ -1,0 +1,84 @@
+//! Projection to constraints of states that satisfy them but for rounding, whatever the units.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_mech::{Constraint, Graph, Multipliers, System, VectorField};
+
+/// Numbers in −1..1, the same on every run.
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A particle of mass m on a circle of radius r, with a wheel of radius r/3 that rolls as it goes.
+fn wheel(graph: &Graph) -> Multipliers<'_> {
+    let [m, r, x, y, vx, vy, spin] = graph.symbols(["m", "r", "x", "y", "x'", "y'", "φ'"]);
+    let system = System::builder(graph)
+        .parameter(m, 1.0)
+        .parameter(r, 1.0)
+        .coordinates(["x", "y", "φ"])
+        .lagrangian(|_, _, v| m * (v[0].square() + v[1].square() + (r / 3.0).square() * v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let circle = Constraint::new("circle", x.square() + y.square() - r.square());
+    let rolling = Constraint::new("rolling", (x * vy - y * vx) / r - r / 3.0 * spin);
+    system.with_multipliers(&[circle, rolling]).unwrap()
+}
+
+/// The smallest squares of radii are just above the numbers that have fewer digits, the largest just below infinity.
+#[test]
+fn a_state_on_its_constraints_but_for_rounding_stays_there() {
+    let graph = Graph::new();
+    let mut motion = wheel(&graph).compile().unwrap();
+    let mut next = numbers(11);
+    for radius in [1e-150, 3e-80, 1e-8, 1.0, 7e8, 1e80, 1e150] {
+        for mass in [1e-100, 1e-3, 1.0, 1e100] {
+            motion.parameters_mut().copy_from_slice(&[mass, radius]);
+            for _ in 0..40 {
+                let (angle, rate) = (3.0 * next(), 10f64.powf(6.0 * next()));
+                let (sine, cosine) = angle.sin_cos();
+                let speed = rate * radius;
+                let there =
+                    [radius * cosine, radius * sine, angle, -speed * sine, speed * cosine, 3.0 * rate];
+                let given = there.map(|y| y * (1.0 + 4.0 * f64::EPSILON * next()));
+                let mut state = given;
+                motion.project(0.0, &mut state).unwrap();
+                let sizes = [radius, radius, 1.0 + rate, speed, speed, rate];
+                for i in 0..6 {
+                    let moved = (state[i] - given[i]).abs();
+                    // Moved by no more than it was off, some roundings of each component.
+                    assert!(moved <= 32.0 * f64::EPSILON * sizes[i], "{radius:e} {mass:e}: {given:?} {state:?}");
+                }
+                let mut again = state;
+                motion.project(0.0, &mut again).unwrap();
+                for i in 0..6 {
+                    let moved = (state[i] - again[i]).abs();
+                    assert!(moved <= 4.0 * f64::EPSILON * sizes[i], "{radius:e} {mass:e}: {state:?} {again:?}");
+                }
+            }
+        }
+    }
+}
+
+/// From farther away it comes to the constraints, to rounding.
+#[test]
+fn a_state_near_its_constraints_comes_to_them() {
+    let graph = Graph::new();
+    let mut motion = wheel(&graph).compile().unwrap();
+    let mut next = numbers(12);
+    for radius in [1e-150, 1e-8, 1.0, 1e150] {
+        motion.parameters_mut().copy_from_slice(&[2.0, radius]);
+        for _ in 0..40 {
+            let angle = 3.0 * next();
+            let mut state = [angle.cos() * radius, angle.sin() * radius, 0.0, radius, -radius, 1.0]
+                .map(|y| y * (1.0 + 0.3 * next()));
+            motion.project(0.0, &mut state).unwrap();
+            assert!((state[0].hypot(state[1]) / radius - 1.0).abs() < 1e-14, "{state:?}");
+            let radial = (state[0] / radius) * (state[3] / radius) + (state[1] / radius) * (state[4] / radius);
+            assert!(radial.abs() < 1e-14, "{state:?}");
+        }
+    }
+}
