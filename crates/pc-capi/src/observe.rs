@@ -7,7 +7,6 @@ use crate::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
 ///
-/// In the canonical form of a model whose constraints are held by multipliers there is the energy alone.
 /// An observable is not finite where the model has no value for it; one with accelerations in it, also where external
 /// forces cannot be computed.
 #[unsafe(no_mangle)]
