@@ -128,6 +128,24 @@ impl Flow {
         row
     }
 
+    /// The state of coordinates and all quasi-velocities of the system, of which those that are not free are not looked at.
+    ///
+    /// # Errors
+    /// [`MechError`] where the quasi-velocities have no momenta.
+    pub fn state_of(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
+        self.reading.write(t, all)
+    }
+
+    /// The places, among all quasi-velocities of the system, of the free ones: those of the state, or of its momenta.
+    pub fn free_quasi_velocities(&self) -> &[usize] {
+        &self.reading.free
+    }
+
+    /// Whether the state has momenta.
+    pub fn has_momenta(&self) -> bool {
+        self.reading.transform.is_some()
+    }
+
     /// Names of the constraints held by multipliers, and of those solved for velocities.
     pub fn constraint_names(&self) -> Vec<String> {
         self.motion.constraint_names().to_vec()

@@ -1,0 +1,567 @@
+//! The comparison of the two derivations.
+
+use std::fmt;
+
+use pc_mech::{Backend, Expr, Graph, Motion, VectorField};
+use pc_model::document::ConstraintKind;
+use pc_model::{Assembly, Flow, Model, Variables};
+
+use crate::derivation::{Derivation, Place};
+use crate::error::{Disagreement, Irregular, VerifyError};
+use crate::linear::pseudo_inverse;
+use crate::quantities::{Quantity, Sized};
+use crate::rounding::{Random, Rounding};
+use crate::structure::Structure;
+use crate::text::{Text, Velocities};
+
+/// The largest difference of two values that agree, relative to the size of their terms.
+///
+/// Both routes sum some hundred terms in different orders and lead them through linear equations: some thousand roundings of
+/// the largest term, and how far rounding is amplified is measured at each state. A forgotten or turned term is an error of
+/// order one of its own size, which at random states is seldom below 1e-6 of the largest.
+pub const TOLERANCE: f64 = 1e-12;
+
+/// A difference that ordinary rounding makes. Where one is larger, it is measured how far rounding is amplified.
+const ORDINARY: f64 = 1e-14;
+
+/// How much is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Number of states at which the derivations are compared.
+    pub states: usize,
+    /// From which the states are drawn: other seeds, other states.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    /// 100 states.
+    fn default() -> Options {
+        Options { states: 100, seed: 0 }
+    }
+}
+
+/// That, and how closely, two derivations agree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Agreement {
+    /// States at which all forms were compared.
+    pub states: usize,
+    /// States that were passed over since the equations are singular or not defined there.
+    pub skipped: usize,
+    /// Why the last of these was.
+    pub reason: Option<String>,
+    /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`].
+    pub error: f64,
+    /// What differs by it.
+    pub quantity: String,
+    /// The forms compared: `poincare`, `canonical`, `emit`.
+    pub forms: Vec<String>,
+    /// What was not compared, each with the reason.
+    pub not_compared: Vec<String>,
+}
+
+impl fmt::Display for Agreement {
+    /// `agrees to 3e-15 at 100 states`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plural = if self.states == 1 { "" } else { "s" };
+        if self.error == 0.0 {
+            write!(f, "agrees to the last digit at {} state{plural}", self.states)
+        } else {
+            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)
+        }
+    }
+}
+
+/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy and its rate,
+/// integrals and outputs, of the equations in quasi-velocities and in momenta that are integrated, and of those that are
+/// written as source.
+///
+/// # Errors
+/// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
+/// derivation refuses the model; [`VerifyError::Unable`] if the second cannot be made;
+/// [`VerifyError::NothingCompared`] if no state is regular.
+pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError> {
+    let mut observed = model.clone();
+    observed.observe_reactions(true);
+    let graph = Graph::new();
+    let assembly = observed.assemble(&graph)?;
+    let second = Second::new(&observed, &assembly)?;
+    let mut agreement = second.nothing_yet();
+    let mut firsts = Vec::new();
+    let flow = Flow::new(&observed, &assembly, Variables::QuasiVelocities)?;
+    firsts.push(First::flow("poincare", flow, &second, &assembly, &mut agreement));
+    match Flow::new(&observed, &assembly, Variables::Momenta) {
+        Ok(flow) => firsts.push(First::flow("canonical", flow, &second, &assembly, &mut agreement)),
+        Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
+    }
+    let plain_graph = Graph::new();
+    let plain = model.assemble(&plain_graph)?;
+    match First::emitted(model, &plain, &second, &mut agreement) {
+        Ok(first) => firsts.push(first),
+        Err(reason) => agreement.leave_out("emit", &reason),
+    }
+    agreement.forms = firsts.iter().map(|first| first.form.clone()).collect();
+    let mut number = 0;
+    while agreement.states < options.states && number < TRIES * options.states {
+        let seed = (options.seed << 32) as usize + number;
+        number += 1;
+        let compared = second.derivation.random(&second.start, seed).map_err(Passed::from);
+        match compared.and_then(|place| second.compare(&mut firsts, &place, &mut agreement)) {
+            Ok(()) => agreement.states += 1,
+            Err(passed) => agreement.pass_over(passed)?,
+        }
+    }
+    agreement.finished(number)
+}
+
+/// States that are tried for each that is to be compared.
+const TRIES: usize = 3;
+
+/// Why a state gave no comparison.
+enum Passed {
+    /// It is not regular.
+    Irregular(Irregular),
+    /// The derivations differ.
+    Error(VerifyError),
+}
+
+impl From<Irregular> for Passed {
+    fn from(irregular: Irregular) -> Passed {
+        match irregular {
+            Irregular::Unable(unable) => Passed::Error(unable.into()),
+            irregular => Passed::Irregular(irregular),
+        }
+    }
+}
+
+impl Agreement {
+    fn leave_out(&mut self, what: &str, reason: &str) {
+        let line = format!("{what}: {reason}");
+        if !self.not_compared.contains(&line) {
+            self.not_compared.push(line);
+        }
+    }
+
+    fn pass_over(&mut self, passed: Passed) -> Result<(), VerifyError> {
+        match passed {
+            Passed::Error(error) => Err(error),
+            Passed::Irregular(irregular) => {
+                self.skipped += 1;
+                self.reason = Some(irregular.to_string());
+                Ok(())
+            }
+        }
+    }
+
+    fn finished(self, tried: usize) -> Result<Agreement, VerifyError> {
+        if self.states == 0 {
+            let reason = self.reason.unwrap_or_else(|| "none was tried".to_owned());
+            return Err(VerifyError::NothingCompared { tried, reason });
+        }
+        Ok(self)
+    }
+}
+
+/// The second derivation of a model.
+#[derive(Clone, Debug)]
+pub struct Second {
+    derivation: Derivation,
+    /// What the columns of a table are called.
+    columns: Vec<String>,
+    start: Place,
+    external: Vec<String>,
+}
+
+/// Points at which ranks are looked at.
+const RANK_POINTS: usize = 6;
+
+impl Second {
+    /// The second derivation of a model, at the start of the first.
+    ///
+    /// # Errors
+    /// [`VerifyError::Unable`].
+    pub fn new(model: &Model, assembly: &Assembly<'_>) -> Result<Second, VerifyError> {
+        let text = Text::new(model)?;
+        let n = text.coordinates();
+        let columns = match text.names.quasi_velocities.as_slice() {
+            [] => text.names.coordinates.iter().map(|x| format!("{x}'")).collect(),
+            declared => declared.to_vec(),
+        };
+        let nonlinear = |c: &pc_model::document::Constraint| {
+            c.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
+        };
+        let mut derivation = Derivation {
+            on_positions: text.on_positions()?,
+            nonlinear: model.document().constraints.iter().map(nonlinear).collect(),
+            kept: Vec::new(),
+            structure: Structure::Frame,
+            text,
+        };
+        let (x, eta) = assembly.start.split_at(n);
+        let stated = Passed::from;
+        let refused = |passed: Passed| match passed {
+            Passed::Error(error) => error,
+            Passed::Irregular(irregular) => {
+                VerifyError::NothingCompared { tried: 1, reason: irregular.to_string() }
+            }
+        };
+        let w = derivation.velocities_of(assembly.t_start, x, &eta[..columns.len()]);
+        let w = w.map_err(|irregular| refused(stated(irregular)))?;
+        let start = Place { t: assembly.t_start, x: x.to_vec(), w };
+        if let Velocities::Quasi(_) = derivation.text.velocities {
+            derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
+        }
+        if !derivation.on_positions.is_empty() {
+            let mut kept = derivation.independent(&start).unwrap_or_default();
+            for number in 0..RANK_POINTS {
+                let place = derivation.random(&start, number);
+                let found = place.and_then(|place| derivation.independent(&place)).unwrap_or_default();
+                if found.len() > kept.len() {
+                    kept = found;
+                }
+            }
+            derivation.kept = kept;
+        }
+        Ok(Second { derivation, columns, start, external: model.external_forces() })
+    }
+
+    /// Compares what is integrated, here called `form`, with the second derivation at one of its states.
+    ///
+    /// # Errors
+    /// As for [`verify`].
+    pub fn agrees(
+        &self,
+        form: &str,
+        flow: &Flow,
+        assembly: &Assembly<'_>,
+        t: f64,
+        state: &[f64],
+    ) -> Result<Agreement, VerifyError> {
+        let mut agreement = self.nothing_yet();
+        let mut flow = flow.clone();
+        let mut row = flow.row(t, state);
+        row.truncate(flow.names.len());
+        let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
+        agreement.forms.push(form.to_owned());
+        let (x, eta) = row.split_at(self.start.x.len());
+        let place = self.derivation.velocities_of(t, x, eta).map(|w| Place { t, x: x.to_vec(), w });
+        let compared = place.map_err(Passed::from);
+        match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
+            Ok(()) => agreement.states += 1,
+            Err(passed) => agreement.pass_over(passed)?,
+        }
+        agreement.finished(1)
+    }
+
+    /// No state compared.
+    fn nothing_yet(&self) -> Agreement {
+        let mut agreement = Agreement {
+            states: 0,
+            skipped: 0,
+            reason: None,
+            error: 0.0,
+            quantity: String::new(),
+            forms: Vec::new(),
+            not_compared: Vec::new(),
+        };
+        for force in &self.external {
+            agreement.leave_out(&format!("the force on {force} computed outside"), "taken for 0");
+        }
+        agreement
+    }
+
+    /// The column of this name, or what a constraint of this name fixes at 0.
+    fn velocity(&self, name: &str) -> Option<Quantity> {
+        let column = self.columns.iter().position(|column| column == name).map(Quantity::Column);
+        let constraint = || self.derivation.text.names.constraints.iter().any(|c| c == name);
+        column.or_else(|| constraint().then_some(Quantity::Zero))
+    }
+
+    /// The rate of a component of the state.
+    fn rate(&self, name: &str) -> Option<Quantity> {
+        let coordinates = &self.derivation.text.names.coordinates;
+        let coordinate = coordinates.iter().position(|x| x == name).map(Quantity::Velocity);
+        coordinate.or_else(|| {
+            self.velocity(name).map(|quantity| match quantity {
+                Quantity::Column(s) => Quantity::ColumnRate(s),
+                other => other,
+            })
+        })
+    }
+
+    /// An observable.
+    fn observable(&self, name: &str) -> Option<Quantity> {
+        let text = &self.derivation.text;
+        if name == "energy" {
+            return Some(Quantity::Energy);
+        }
+        let observed = text.observed.iter().position(|(known, _)| known == name).map(Quantity::Observed);
+        observed.or_else(|| {
+            let constraint = name.strip_prefix("λ_")?;
+            text.names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
+        })
+    }
+
+    /// Compares all that is compiled with the second derivation at a place.
+    fn compare(&self, firsts: &mut [First<'_>], at: &Place, agreement: &mut Agreement) -> Result<(), Passed> {
+        let columns = self.columns_at(at)?;
+        let exact = Rounding::none();
+        let derived = self.derivation.at(at, &exact)?;
+        let mut scattered = None;
+        let mut differences = Vec::new();
+        for first in firsts {
+            let (wanted, free) = (first.quantities(), first.free.as_deref());
+            let mut seconds = self.derivation.quantities(&derived, &wanted, free, &exact)?;
+            let values = first.values(at, &columns);
+            if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
+                if scattered.is_none() {
+                    scattered = Some(self.derivation.scattered(&derived)?);
+                }
+                let scattered = scattered.as_deref().unwrap_or_default();
+                self.derivation.scatter(&mut seconds, scattered, &wanted, first.free.as_deref())?;
+            }
+            for (place, (label, _)) in first.wanted.iter().enumerate() {
+                let (one, two) = (values[place], seconds[place]);
+                let error = error(one, two);
+                // Written so that NaN disagrees.
+                if !(error <= TOLERANCE) {
+                    return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
+                        form: first.form.clone(),
+                        quantity: label.clone(),
+                        first: one,
+                        second: two.value,
+                        size: two.size,
+                        t: at.t,
+                        state: self.named(at, &columns),
+                    }))));
+                }
+                differences.push((error, label.clone()));
+            }
+        }
+        for (error, label) in differences {
+            if error > agreement.error || agreement.quantity.is_empty() {
+                (agreement.error, agreement.quantity) = (error, label);
+            }
+        }
+        Ok(())
+    }
+
+    fn columns_at(&self, at: &Place) -> Result<Vec<f64>, Irregular> {
+        let exact = Rounding::none();
+        self.derivation.columns(&self.derivation.still(at, &exact))
+    }
+
+    fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
+        let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
+        let all = coordinates.chain(self.columns.iter().zip(columns));
+        all.map(|(name, &value)| (name.clone(), value)).collect()
+    }
+}
+
+/// The difference of two values relative to the size of their terms.
+fn error(one: f64, two: Sized) -> f64 {
+    let difference = (one - two.value).abs();
+    if difference == 0.0 { 0.0 } else { difference / two.size }
+}
+
+impl Derivation {
+    /// The rank of b, the largest of those at some points near a place.
+    fn rank(&self, near: &Place) -> usize {
+        let exact = Rounding::none();
+        let mut random = Random::new(0);
+        let mut largest = 0;
+        for number in 0..RANK_POINTS {
+            let scale = if number == 0 { 0.0 } else { 0.1 };
+            let x = near.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect();
+            let Ok(frame) = self.frame(&Place { x, ..near.clone() }, &exact) else { continue };
+            let b = nalgebra::DMatrix::from_fn(near.x.len(), near.w.len(), |i, s| frame[s][i]);
+            largest = pseudo_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
+        }
+        largest
+    }
+}
+
+/// Equations of the first derivation, compiled.
+struct First<'g> {
+    form: String,
+    /// Names of what is compared, with what it is.
+    wanted: Vec<(String, Quantity)>,
+    /// Places of these among the values of the first derivation.
+    places: Vec<usize>,
+    /// The columns that are free quasi-velocities, where momenta or energies of these are compared.
+    free: Option<Vec<usize>>,
+    compiled: Compiled<'g>,
+}
+
+enum Compiled<'g> {
+    /// What is integrated, with what each quasi-velocity of the system is.
+    Flow { flow: Box<Flow>, quasi_velocities: Vec<Quantity> },
+    /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
+    /// state.
+    Emitted { motion: Box<Motion>, free: Vec<usize>, energy_rate: EnergyRate<'g> },
+}
+
+/// dH/dt as a function of time, coordinates, quasi-velocities and parameters.
+struct EnergyRate<'g> {
+    graph: &'g Graph,
+    rate: Expr<'g>,
+    inputs: Vec<Expr<'g>>,
+    parameters: Vec<(Expr<'g>, f64)>,
+}
+
+impl EnergyRate<'_> {
+    fn at(&self, t: f64, state: &[f64]) -> f64 {
+        let values = std::iter::once(t).chain(state.iter().copied());
+        let mut place: Vec<_> = self.inputs.iter().copied().zip(values).collect();
+        place.extend(&self.parameters);
+        self.graph.evaluate(&[self.rate], &place).map_or(f64::NAN, |values| values[0])
+    }
+}
+
+impl<'g> First<'g> {
+    /// What is integrated.
+    fn flow(
+        form: &str,
+        flow: Flow,
+        second: &Second,
+        assembly: &Assembly<'_>,
+        agreement: &mut Agreement,
+    ) -> First<'g> {
+        let system = &assembly.system;
+        let names: Vec<String> = system.quasi_velocities().iter().map(ToString::to_string).collect();
+        let of_name = |name: &String| second.velocity(name).unwrap_or(Quantity::Zero);
+        let quasi_velocities = names.iter().map(of_name).collect();
+        let n = flow.motion.coordinates();
+        let state = flow.motion.names();
+        let canonical = flow.has_momenta();
+        let columns = flow.free_quasi_velocities().iter().map(|&s| match second.velocity(&names[s]) {
+            Some(Quantity::Column(column)) => Some(column),
+            _ => None,
+        });
+        let free: Option<Vec<usize>> = if canonical { columns.collect() } else { None };
+        let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
+        for (i, name) in state.iter().enumerate() {
+            let momentum = (canonical && i >= n && free.is_some()).then(|| Quantity::Momentum(i - n));
+            let is_input = !canonical || i < n;
+            candidates.push((name.clone(), if is_input { Some(Quantity::Zero) } else { momentum }));
+        }
+        for (i, name) in state.iter().enumerate() {
+            let momentum = || free.is_some().then(|| Quantity::MomentumRate(i - n));
+            let rate = if canonical && i >= n { momentum() } else { second.rate(name) };
+            candidates.push((format!("the rate of {name}"), rate));
+        }
+        for (i, name) in flow.names.iter().enumerate() {
+            let value = if i < n { Some(Quantity::Zero) } else { second.velocity(name) };
+            candidates.push((name.clone(), value));
+        }
+        candidates.extend(
+            flow.observed().observable_names().iter().map(|name| (name.clone(), second.observable(name))),
+        );
+        let inputs = [0..if canonical { n } else { state.len() }, 2 * state.len()..2 * state.len() + n];
+        let compiled = Compiled::Flow { flow: Box::new(flow), quasi_velocities };
+        First::comparing(form, candidates, &inputs, free, compiled, agreement)
+    }
+
+    /// What is written as source.
+    fn emitted(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        second: &Second,
+        agreement: &mut Agreement,
+    ) -> Result<First<'g>, String> {
+        let equations = assembly
+            .equations()
+            .map_err(|error| model.constraint_error(error).diagnostic().message.clone())?;
+        let system = equations.system();
+        let motion = equations.compile_for(Backend::Interpreter).map_err(|error| error.to_string())?;
+        let column = |eta: &Expr<'_>| match second.velocity(&eta.to_string()) {
+            Some(Quantity::Column(column)) => Ok(column),
+            _ => Err(format!("`{eta}` is not a column")),
+        };
+        let free: Vec<usize> = system.quasi_velocities().iter().map(column).collect::<Result<_, _>>()?;
+        let rates = motion.names().iter().map(|name| (format!("the rate of {name}"), second.rate(name)));
+        let observables = motion.observable_names().iter().map(|name| match second.observable(name) {
+            Some(Quantity::Energy) => (name.clone(), Some(Quantity::FreeEnergy)),
+            other => (name.clone(), other),
+        });
+        let mut candidates: Vec<(String, Option<Quantity>)> = rates.chain(observables).collect();
+        candidates.push(("the rate of energy".to_owned(), Some(Quantity::FreeEnergyRate)));
+        let system = assembly.free_system().map_err(|error| error.to_string())?;
+        if !system.quasi_velocities().iter().map(column).eq(free.iter().map(|&f| Ok(f))) {
+            return Err("its quasi-velocities are not those of the free system".to_owned());
+        }
+        let frame = system.frame();
+        let state = frame.coordinates().iter().chain(system.quasi_velocities());
+        let energy_rate = EnergyRate {
+            graph: system.graph(),
+            rate: system.energy_rate(),
+            inputs: std::iter::once(frame.time()).chain(state.copied()).collect(),
+            parameters: system.parameters().to_vec(),
+        };
+        let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate };
+        Ok(First::comparing("emit", candidates, &[], Some(free), compiled, agreement))
+    }
+
+    /// Compares those candidates that the second derivation has, but for what is given to the first.
+    fn comparing(
+        form: &str,
+        candidates: Vec<(String, Option<Quantity>)>,
+        inputs: &[std::ops::Range<usize>],
+        free: Option<Vec<usize>>,
+        compiled: Compiled<'g>,
+        agreement: &mut Agreement,
+    ) -> First<'g> {
+        let (mut wanted, mut places) = (Vec::new(), Vec::new());
+        for (place, (label, quantity)) in candidates.into_iter().enumerate() {
+            match quantity {
+                _ if inputs.iter().any(|inputs| inputs.contains(&place)) => {}
+                Some(quantity) => {
+                    wanted.push((label, quantity));
+                    places.push(place);
+                }
+                None => agreement.leave_out(&label, "the second derivation does not have it"),
+            }
+        }
+        First { form: form.to_owned(), wanted, places, free, compiled }
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        self.wanted.iter().map(|(_, quantity)| quantity.clone()).collect()
+    }
+
+    /// What is compared at a place with these columns; NaN where it cannot be evaluated.
+    fn values(&mut self, at: &Place, columns: &[f64]) -> Vec<f64> {
+        let values = match &mut self.compiled {
+            Compiled::Flow { flow, quasi_velocities } => {
+                let value = |quantity: &Quantity| match quantity {
+                    Quantity::Column(s) => columns[*s],
+                    _ => 0.0,
+                };
+                let mut all = at.x.clone();
+                all.extend(quasi_velocities.iter().map(value));
+                match flow.state_of(at.t, &all) {
+                    Ok(state) => {
+                        let mut rates = vec![f64::NAN; state.len()];
+                        if flow.motion.rhs(at.t, &state, &mut rates).is_err() {
+                            rates.fill(f64::NAN);
+                        }
+                        let row = flow.row(at.t, &state);
+                        [state, rates, row].concat()
+                    }
+                    Err(_) => Vec::new(),
+                }
+            }
+            Compiled::Emitted { motion, free, energy_rate } => {
+                let mut state = at.x.clone();
+                state.extend(free.iter().map(|&f| columns[f]));
+                let mut rates = vec![f64::NAN; state.len()];
+                if motion.rhs(at.t, &state, &mut rates).is_err() {
+                    rates.fill(f64::NAN);
+                }
+                let observed = motion.observe(at.t, &state);
+                let rate = energy_rate.at(at.t, &state);
+                [rates, observed, vec![rate]].concat()
+            }
+        };
+        self.places.iter().map(|&place| values.get(place).copied().unwrap_or(f64::NAN)).collect()
+    }
+}

@@ -1,0 +1,37 @@
+//! A second derivation of the equations of motion of a text model, and its comparison with the first.
+//!
+//! The first turns the text into expressions of a graph, which is simplified by fingerprints, and these into machine code.
+//! The second shares nothing with it but the parsed text. It evaluates the syntax trees over dual numbers, which gives
+//! every derivative, sets up Lagrange's equations with multipliers at one state and solves them by dense elimination with
+//! pivoting: no graph, no frame with its brackets where the frame determines these, no rewriting. Where the rank of the
+//! frame is below the number of quasi-velocities, the equations (9) are taken by their definition, with the brackets given.
+//!
+//! [`verify`] compares both at random states on the constraints, in each form that the program offers. What it compares
+//! are ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
+//!
+//! ```
+//! use pc_model::{Builtin, Model};
+//! use pc_verify::{Options, verify};
+//!
+//! let model = Model::new(Builtin::named("chaplygin-sleigh").unwrap().document()?);
+//! let agreement = verify(&model, &Options::default())?;
+//! assert_eq!(agreement.states, 100);
+//! assert!(agreement.error < 1e-13);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod compare;
+mod derivation;
+mod error;
+mod linear;
+mod number;
+mod point;
+mod quantities;
+mod rounding;
+mod states;
+mod structure;
+mod term;
+mod text;
+
+pub use compare::{Agreement, Options, Second, TOLERANCE, verify};
+pub use error::{Disagreement, Unable, VerifyError};

@@ -1,0 +1,242 @@
+//! What is compared, with the size of the rounding errors in it.
+
+use crate::derivation::{Derivation, Derived, Direction};
+use crate::error::Irregular;
+use crate::linear::{matrix, solve};
+use crate::rounding::{Rounding, UNIT};
+
+/// A quantity that both derivations have.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Quantity {
+    /// ẋ_i
+    Velocity(usize),
+    /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
+    Column(usize),
+    /// η̇_s of the columns.
+    ColumnRate(usize),
+    /// What constraint number α fixes at 0, or its rate.
+    Zero,
+    /// λ_α by the number of the constraint.
+    Reaction(usize),
+    /// y·η − L of all velocities.
+    Energy,
+    /// y_f of the free quasi-velocities, by their place among these.
+    Momentum(usize),
+    MomentumRate(usize),
+    /// y_f η_f − L of the free quasi-velocities, and its rate.
+    FreeEnergy,
+    FreeEnergyRate,
+    /// An integral or output, by its place in the text.
+    Observed(usize),
+}
+
+/// A value, and how large the terms are that it is made up of.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sized {
+    pub(crate) value: f64,
+    pub(crate) size: f64,
+}
+
+/// Momenta of independent quasi-velocities, others following from the constraints.
+struct Momenta {
+    values: Vec<Sized>,
+    rates: Vec<Sized>,
+    energy: Sized,
+    energy_rate: Sized,
+    condition: f64,
+}
+
+/// Evaluations with rounding errors made at will.
+const REPETITIONS: u64 = 3;
+
+/// Condition past which equations say little.
+const WORST_CONDITION: f64 = 1e10;
+
+/// Condition past which a choice of independent velocities is taken to fail.
+const WORST_CHOICE: f64 = 1e4;
+
+impl Derivation {
+    /// The same equations with rounding errors made at will, as often as these are repeated.
+    pub(crate) fn scattered(&self, derived: &Derived) -> Result<Vec<(Rounding, Derived)>, Irregular> {
+        let again = |seed| {
+            let rounding = Rounding::made(seed);
+            let place = self.near(&derived.place, &derived.velocity_sizes, &rounding);
+            let derived = self.at(&place, &rounding)?;
+            Ok((rounding, derived))
+        };
+        (1..=REPETITIONS).map(again).collect()
+    }
+
+    /// Quantities of the equations at a place, each with the largest of its terms, led through the linear equations.
+    pub(crate) fn quantities(
+        &self,
+        derived: &Derived,
+        wanted: &[Quantity],
+        free: Option<&[usize]>,
+        rounding: &Rounding,
+    ) -> Result<Vec<Sized>, Irregular> {
+        let at = &derived.place;
+        if !(derived.condition <= WORST_CONDITION) {
+            return Err(Irregular::IllConditioned);
+        }
+        let momenta = free.map(|free| self.momenta(derived, free, rounding)).transpose()?;
+        if momenta.as_ref().is_some_and(|momenta| !(momenta.condition <= WORST_CHOICE)) {
+            return Err(Irregular::IllConditioned);
+        }
+        let along = motion(derived);
+        let columns = self.columns(&self.once(at, &along, rounding))?;
+        let column_sizes = self.column_sizes(derived)?;
+        let energy = self.energy(derived, rounding)?;
+        let observed = self.observed(derived, wanted, rounding)?;
+        let of_momenta = |pick: &dyn Fn(&Momenta) -> Sized| momenta.as_ref().map(pick).unwrap_or_default();
+        let quantity = |(place, wanted): (usize, &Quantity)| match *wanted {
+            Quantity::Velocity(i) => Sized { value: derived.velocities[i], size: 0.0 },
+            Quantity::Column(s) => Sized { value: columns[s].re, size: column_sizes[s].0 },
+            Quantity::ColumnRate(s) => Sized { value: columns[s].eps, size: column_sizes[s].1 },
+            Quantity::Zero => Sized::default(),
+            Quantity::Reaction(a) => match self.kept.iter().position(|&kept| kept == a) {
+                Some(place) => Sized { value: derived.reactions[place], size: derived.reaction_sizes[place] },
+                None => Sized::default(),
+            },
+            Quantity::Energy => energy,
+            Quantity::Momentum(f) => of_momenta(&|momenta| momenta.values[f]),
+            Quantity::MomentumRate(f) => of_momenta(&|momenta| momenta.rates[f]),
+            Quantity::FreeEnergy => of_momenta(&|momenta| momenta.energy),
+            Quantity::FreeEnergyRate => of_momenta(&|momenta| momenta.energy_rate),
+            Quantity::Observed(_) => Sized { value: observed[place], size: 0.0 },
+        };
+        let sized = |(place, wanted)| {
+            let Sized { value, size } = quantity((place, wanted));
+            let size = if value.abs() <= size { size } else { value.abs() };
+            if size.is_finite() {
+                Ok(Sized { value, size })
+            } else {
+                Err(Irregular::NotFinite { what: "a quantity" })
+            }
+        };
+        wanted.iter().enumerate().map(sized).collect()
+    }
+
+    /// The same with sizes that are also as large as they scatter, in units of rounding, where the computation is repeated with
+    /// rounding errors.
+    pub(crate) fn scatter(
+        &self,
+        quantities: &mut [Sized],
+        scattered: &[(Rounding, Derived)],
+        wanted: &[Quantity],
+        free: Option<&[usize]>,
+    ) -> Result<(), Irregular> {
+        for (rounding, derived) in scattered {
+            let moved = self.quantities(derived, wanted, free, rounding)?;
+            for (quantity, moved) in quantities.iter_mut().zip(moved) {
+                quantity.size = quantity.size.max((moved.value - quantity.value).abs() / UNIT);
+            }
+        }
+        Ok(())
+    }
+
+    /// |∂η_s/∂w_r| times the terms of w_r, and times those of ẇ_r: the largest.
+    fn column_sizes(&self, derived: &Derived) -> Result<Vec<(f64, f64)>, Irregular> {
+        let rows = self.quasi_velocity_matrix(&derived.place, &Rounding::none())?;
+        let led = |row: &[f64], sizes: &[f64]| {
+            row.iter().zip(sizes).map(|(a, size)| (a * size).abs()).fold(0.0, f64::max)
+        };
+        let both =
+            |row: &Vec<f64>| (led(row, &derived.velocity_sizes), led(row, &derived.acceleration_sizes));
+        Ok(rows.iter().map(both).collect())
+    }
+
+    /// p·(w − b_0) − L, which is y·η − L.
+    fn energy(&self, derived: &Derived, rounding: &Rounding) -> Result<Sized, Irregular> {
+        let at = &derived.place;
+        let [drift, _] = self.drift(at, &derived.velocities, rounding)?;
+        let terms = (0..at.w.len()).map(|s| derived.momenta[s] * (at.w[s] - drift[s]));
+        Ok(sum(terms.chain([-derived.lagrangian])))
+    }
+
+    /// The integrals and outputs wanted, at the places where they are wanted.
+    fn observed(
+        &self,
+        derived: &Derived,
+        wanted: &[Quantity],
+        rounding: &Rounding,
+    ) -> Result<Vec<f64>, Irregular> {
+        let mut reactions = vec![0.0; self.on_positions.len()];
+        self.kept.iter().zip(&derived.reactions).for_each(|(&a, &value)| reactions[a] = value);
+        let point = self.still(&derived.place, rounding).on_motion(derived.accelerations.clone(), reactions);
+        let value = |wanted: &Quantity| match wanted {
+            Quantity::Observed(j) => point.value(&self.text.observed[*j].1),
+            _ => Ok(0.0),
+        };
+        wanted.iter().map(value).collect()
+    }
+
+    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
+    /// satisfy the constraints unless all are free.
+    fn momenta(&self, derived: &Derived, free: &[usize], rounding: &Rounding) -> Result<Momenta, Irregular> {
+        let at = &derived.place;
+        let k = at.w.len();
+        let binding: &[usize] = if free.len() == k { &[] } else { &self.kept };
+        let l = binding.len();
+        if l + free.len() != k {
+            return Err(Irregular::Singular);
+        }
+        let exact = Rounding::none();
+        let motion = motion(derived);
+        // The matrix whose rows are ∂φ_α/∂w and ∂η_f/∂w, and its rate.
+        let (mut rows, mut rates) = (vec![vec![0.0; k]; k], vec![vec![0.0; k]; k]);
+        for s in 0..k {
+            let point = self.twice(at, &at.along_velocity(s), &motion, rounding);
+            let columns = self.columns(&point)?;
+            for (place, &a) in binding.iter().enumerate() {
+                let value = point.velocity_constraint(a, self.on_positions[a])?;
+                (rows[place][s], rates[place][s]) = (value.re.eps, value.eps.eps);
+            }
+            for (place, &f) in free.iter().enumerate() {
+                (rows[l + place][s], rates[l + place][s]) = (columns[f].re.eps, columns[f].eps.eps);
+            }
+        }
+        let nothing = vec![0.0; k];
+        let solution = solve(&matrix(&rows, k), &nothing, &nothing)?;
+        let virtual_velocities = solution.inverse.columns(l, free.len()).into_owned();
+        let virtual_rates = -(&solution.inverse * (matrix(&rates, k) * &virtual_velocities));
+        let of = |f: usize| -> [Sized; 2] {
+            let (w, rate) = (virtual_velocities.column(f), virtual_rates.column(f));
+            let mut value = sum((0..k).map(|s| derived.momenta[s] * w[s]));
+            let terms = (0..k).map(|s| (derived.momentum_sizes[s] * w[s]).abs());
+            value.size = terms.fold(value.size, f64::max);
+            let mut change =
+                sum((0..k).flat_map(|s| [derived.momentum_rates[s] * w[s], derived.momenta[s] * rate[s]]));
+            let led = (0..k).map(|s| (derived.momentum_rate_sizes[s] * w[s]).abs());
+            change.size = led.fold(change.size, f64::max);
+            [value, change]
+        };
+        let (values, momentum_rates): (Vec<Sized>, Vec<Sized>) =
+            (0..free.len()).map(|f| of(f)).map(|[value, rate]| (value, rate)).unzip();
+        let columns = self.columns(&self.once(at, &motion, &exact))?;
+        let eta: Vec<_> = free.iter().map(|&f| columns[f]).collect();
+        let energy = sum((0..free.len()).map(|f| values[f].value * eta[f].re).chain([-derived.lagrangian]));
+        let rates =
+            (0..free.len()).flat_map(|f| [momentum_rates[f].value * eta[f].re, values[f].value * eta[f].eps]);
+        let mut energy_rate = sum(rates.chain([-derived.lagrangian_rate]));
+        let led = (0..free.len()).map(|f| (momentum_rates[f].size * eta[f].re).abs());
+        let eta_sizes = self.column_sizes(derived)?;
+        let also = (0..free.len()).map(|f| (values[f].value * eta_sizes[free[f]].1).abs());
+        energy_rate.size = led.chain(also).fold(energy_rate.size, f64::max);
+        Ok(Momenta { values, rates: momentum_rates, energy, energy_rate, condition: solution.condition })
+    }
+}
+
+/// The direction of the motion: time, ẋ and ẇ.
+fn motion(derived: &Derived) -> Direction {
+    let w = derived.accelerations.clone();
+    Direction { w, ..derived.place.in_time(&derived.velocities) }
+}
+
+/// A sum, with the largest of its terms.
+fn sum(terms: impl Iterator<Item = f64>) -> Sized {
+    terms.fold(Sized::default(), |sum, term| Sized {
+        value: sum.value + term,
+        size: if term.abs() <= sum.size { sum.size } else { term.abs() },
+    })
+}

@@ -1,0 +1,218 @@
+//! What a model says, as terms of time, coordinates and velocities.
+
+use pc_model::Model;
+use pc_model::document::{AlgebraDefinition, Document, Expression, Inertia, NamedExpression, Orientation};
+
+use crate::error::Unable;
+use crate::term::{Names, Term};
+
+/// Everything that a model says about its motion.
+#[derive(Clone, Debug)]
+pub(crate) struct Text {
+    pub(crate) names: Names,
+    /// Values of the parameters.
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) definitions: Vec<Term>,
+    pub(crate) velocities: Velocities,
+    pub(crate) brackets: Option<Brackets>,
+    pub(crate) constraints: Vec<Term>,
+    pub(crate) kinetic: Option<Term>,
+    pub(crate) potential: Option<Term>,
+    /// The Lagrangian as a whole.
+    pub(crate) lagrangian: Option<Term>,
+    pub(crate) dissipation: Option<Term>,
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) forces: Vec<(Forced, Term)>,
+    /// `[integrals]` and `[outputs]`, those that can be understood.
+    pub(crate) observed: Vec<(String, Term)>,
+}
+
+/// The velocities w in which the equations are written, of which ẋ and η are functions.
+#[derive(Clone, Debug)]
+pub(crate) enum Velocities {
+    /// w = ẋ, the quasi-velocities, if there are any, being defined by ẋ: η_s = a_s(t, x, ẋ).
+    Ordinary(Vec<Term>),
+    /// w = η, ẋ_i = u_i(t, x, η) being given.
+    Quasi(Vec<Term>),
+}
+
+/// What a force acts on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Forced {
+    Coordinate(usize),
+    QuasiVelocity(usize),
+}
+
+/// A body or a mass point.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub(crate) mass: Term,
+    pub(crate) position: Vec<Term>,
+    /// The matrix, row by row.
+    pub(crate) inertia: Option<Vec<Term>>,
+    pub(crate) turning: Option<Turning>,
+    pub(crate) force: Vec<Term>,
+    pub(crate) torque: Vec<Term>,
+}
+
+/// How a body turns.
+#[derive(Clone, Debug)]
+pub(crate) enum Turning {
+    /// The matrix from body to space, row by row.
+    Rotation(Vec<Term>),
+    /// The components of the angular velocity.
+    AngularVelocity(Vec<Term>),
+}
+
+/// Brackets as given: [X_r, X_s] = Σ value X_m, 0 for time.
+#[derive(Clone, Debug)]
+pub(crate) enum Brackets {
+    Catalogue(String),
+    /// r, s, and the right-hand side, linear in the quasi-velocities, which stand for their fields.
+    Table(Vec<(usize, usize, Term)>),
+}
+
+impl Text {
+    /// What the document of a model says, with the values that its parameters have.
+    pub(crate) fn new(model: &Model) -> Result<Text, Unable> {
+        let document = model.document();
+        let named = |list: &[NamedExpression]| list.iter().map(|entry| entry.name.text.clone()).collect();
+        let names = Names {
+            coordinates: named(&document.coordinates),
+            quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
+            parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
+            definitions: named(&document.definitions),
+            constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
+        };
+        let term = |expression: &Expression| names.resolve(&expression.ast);
+        let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
+        let energy = document.lagrangian.as_ref();
+        let part = |part: Option<&Expression>| part.map(term).transpose();
+        let observed = document.integrals.iter().chain(&document.outputs);
+        let observed =
+            observed.filter_map(|o| Some((o.name.text.clone(), term(&o.expression).ok()?))).collect();
+        let bodies = document.bodies.iter().map(|body| {
+            Ok(Body {
+                mass: term(&body.mass)?,
+                position: terms(&body.position)?,
+                inertia: body.inertia.as_ref().map(|inertia| matrix(inertia, term)).transpose()?,
+                turning: match &body.orientation {
+                    Some(Orientation::Rotation(r)) => Some(Turning::Rotation(terms(&r[..])?)),
+                    Some(Orientation::AngularVelocity(w)) => Some(Turning::AngularVelocity(terms(&w[..])?)),
+                    None => None,
+                },
+                force: body.force.as_ref().map_or(Ok(Vec::new()), |force| terms(force))?,
+                torque: body.torque.as_ref().map_or(Ok(Vec::new()), |torque| terms(torque))?,
+            })
+        });
+        Ok(Text {
+            parameters: model.parameters().map(|(_, value)| value).collect(),
+            definitions: document
+                .definitions
+                .iter()
+                .map(|d| term(&d.expression))
+                .collect::<Result<_, _>>()?,
+            velocities: velocities(document, &names)?,
+            brackets: brackets(document, &names)?,
+            constraints: document
+                .constraints
+                .iter()
+                .map(|c| term(&c.expression))
+                .collect::<Result<_, _>>()?,
+            kinetic: part(energy.and_then(|l| l.kinetic.as_ref()))?,
+            potential: part(energy.and_then(|l| l.potential.as_ref()))?,
+            lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
+            dissipation: part(energy.and_then(|l| l.dissipation.as_ref()))?,
+            bodies: bodies.collect::<Result<_, Unable>>()?,
+            forces: document
+                .forces
+                .iter()
+                .map(|force| Ok((forced(&names, &force.name.text)?, term(&force.expression)?)))
+                .collect::<Result<_, Unable>>()?,
+            observed,
+            names,
+        })
+    }
+
+    /// Of each constraint, whether it contains no velocities, itself or by its definitions.
+    pub(crate) fn on_positions(&self) -> Result<Vec<bool>, Unable> {
+        let mut moving: Vec<bool> = Vec::with_capacity(self.definitions.len());
+        for term in &self.definitions {
+            let has = term
+                .has_velocities(&moving)
+                .ok_or_else(|| Unable::Circular { name: self.names.definitions[moving.len()].clone() })?;
+            moving.push(has);
+        }
+        // All definitions are known by now.
+        Ok(self.constraints.iter().map(|term| term.has_velocities(&moving) == Some(false)).collect())
+    }
+
+    /// n
+    pub(crate) fn coordinates(&self) -> usize {
+        self.names.coordinates.len()
+    }
+}
+
+/// The 9 entries of a matrix of inertia; [`Inertia::Full`] has Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
+fn matrix(
+    inertia: &Inertia,
+    term: impl Fn(&Expression) -> Result<Term, Unable>,
+) -> Result<Vec<Term>, Unable> {
+    let entries: Vec<Term> = match inertia {
+        Inertia::Principal(list) => list.iter().map(term).collect::<Result<_, _>>()?,
+        Inertia::Full(list) => list.iter().map(term).collect::<Result<_, _>>()?,
+    };
+    let entry = |row: usize, column: usize| match (row.min(column), row.max(column)) {
+        (a, b) if a == b => a,
+        (0, 1) => 3,
+        (1, 2) => 4,
+        _ => 5,
+    };
+    let value = |i: usize| entries.get(i).cloned().unwrap_or(Term::Number(0.0));
+    Ok((0..9).map(|i| entry(i / 3, i % 3)).map(value).collect())
+}
+
+fn velocities(document: &Document, names: &Names) -> Result<Velocities, Unable> {
+    let declared = &document.quasi_velocities;
+    if document.kinematics.is_empty() && !document.coordinates.is_empty() {
+        let definition = |eta: &pc_model::document::QuasiVelocity| {
+            let undefined = || Unable::Undefined { name: eta.name.text.clone() };
+            names.resolve(&eta.is.as_ref().ok_or_else(undefined)?.ast)
+        };
+        return Ok(Velocities::Ordinary(declared.iter().map(definition).collect::<Result<_, _>>()?));
+    }
+    let rate = |name: &String| {
+        let entry = document.kinematics.iter().find(|entry| entry.name.text == *name);
+        let entry = entry.ok_or_else(|| Unable::UnknownName { name: format!("{name}'") })?;
+        names.resolve(&entry.expression.ast)
+    };
+    Ok(Velocities::Quasi(names.coordinates.iter().map(rate).collect::<Result<_, _>>()?))
+}
+
+fn brackets(document: &Document, names: &Names) -> Result<Option<Brackets>, Unable> {
+    let Some(algebra) = &document.algebra else { return Ok(None) };
+    Ok(Some(match &algebra.definition {
+        AlgebraDefinition::Catalogue(name) => Brackets::Catalogue(name.value.clone()),
+        AlgebraDefinition::Brackets(list) => {
+            let field = |name: &str| match name {
+                "t" => Ok(0),
+                name => match names.quasi_velocities.iter().position(|eta| eta == name) {
+                    Some(s) => Ok(s + 1),
+                    None => Err(Unable::UnknownName { name: name.to_owned() }),
+                },
+            };
+            let entry = |bracket: &pc_model::document::Bracket| {
+                let value = names.resolve(&bracket.value.ast)?;
+                Ok((field(&bracket.left.text)?, field(&bracket.right.text)?, value))
+            };
+            Brackets::Table(list.iter().map(entry).collect::<Result<_, Unable>>()?)
+        }
+    }))
+}
+
+fn forced(names: &Names, name: &str) -> Result<Forced, Unable> {
+    let place = |list: &[String]| list.iter().position(|known| known == name);
+    None.or_else(|| place(&names.quasi_velocities).map(Forced::QuasiVelocity))
+        .or_else(|| place(&names.coordinates).map(Forced::Coordinate))
+        .ok_or_else(|| Unable::UnknownName { name: name.to_owned() })
+}
