@@ -5,21 +5,21 @@ use std::fmt;
 use num_dual::Dual64;
 
 use super::execution::{Execution, Happening, Motion, Refusal};
-use super::specimen::{Frame, Restricts, Specimen};
+use super::expression::Expression;
+use super::specimen::{Constraint, Frame, Restricts, Specimen};
 use super::start::Start;
 use super::text::SHOWN;
 
 /// Relative to a number or to 1: some hundred times the tolerance of the integration, which has a few dozen steps.
 const TOLERANCE: f64 = 1e-9;
 
-/// How much larger the error of a motion may be than what tolerances a hundred times as large change in it: the error of the
-/// other form, whose variables are others, at a safety factor.
-const GROWTH: f64 = 10.0;
+/// How much larger the error of a motion may be than what tolerances a hundred times as large change in it.
+const GROWTH: f64 = 3.0;
 
 /// A column that looser tolerances change by so much, relative to its size or to 1, is not resolved and judges nothing.
 const RESOLVED: f64 = 1e-5;
 
-/// An event that looser tolerances change the number of is a matter of rounding.
+/// An event is located on the computed motion, which passes its zero at an angle of some hundredths at least.
 const SAME_TIME: f64 = 1e-8;
 
 /// A finding: something that must agree does not, or a panic.
@@ -44,10 +44,7 @@ fn finding(kind: &'static str, detail: String) -> Finding {
 /// Everything that does not agree within one model.
 pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let (motion, loose) = (&execution.motion, &execution.loose);
-    if !same_events(motion, loose) {
-        return findings; // not resolved
-    }
+    let motion = &execution.motion;
     let forms = [
         ("canonical form differs", &execution.canonical),
         ("projected motion differs", &execution.projected),
@@ -55,17 +52,17 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
     for (kind, other) in forms {
         if let Some(Ok(other)) = other {
             let same = |name: &str| Some(name.to_owned());
-            findings.extend(compare(kind, motion, loose, other, same));
+            findings.extend(compare(kind, motion, other, same));
         }
     }
     let kept = execution.keeps_energy.then_some("energy").into_iter();
     let integrals = execution.conserved.iter().flatten().map(String::as_str);
     let jumps = specimen.events.iter().any(|event| !event.reset.is_empty());
     for name in kept.chain(integrals.filter(|_| !jumps)) {
-        findings.extend(drift("claimed to be kept, but changes", name, motion, loose));
+        findings.extend(drift("claimed to be kept, but changes", name, motion));
     }
     if is_conservative(specimen) && !jumps {
-        findings.extend(drift("energy must be kept, but changes", "energy", motion, loose));
+        findings.extend(drift("energy must be kept, but changes", "energy", motion));
     }
     if let Some((name, residual)) = &motion.residual
         && !(*residual <= TOLERANCE)
@@ -83,12 +80,14 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
 
 /// What does not agree between a model and its twin in ordinary velocities.
 pub fn between(specimen: &Specimen, start: &Start, model: &Execution, twin: &Execution) -> Option<Finding> {
-    if !same_events(&model.motion, &model.loose) || !same_events(&twin.motion, &twin.loose) {
-        return None;
-    }
     let eta = specimen.quasi_velocities();
     let carried: Vec<&str> = specimen.carried.iter().map(|carried| carried.name.as_str()).collect();
-    let drifts = specimen.has_drift();
+    // y·η − L and p·ẋ − L are the same where ẋ is linear in η. A constraint beside definitions is one more of these.
+    let drifts = specimen.has_drift()
+        || is_defined(specimen)
+            && specimen.constraints.iter().any(|constraint| {
+                constraint.restricts == Restricts::Velocities && !is_homogeneous(specimen, constraint)
+            });
     let name_in_twin = |name: &str| match name {
         "energy" => (!drifts).then(|| name.to_owned()),
         // Which of several that follow from each other is dropped is a choice.
@@ -99,7 +98,7 @@ pub fn between(specimen: &Specimen, start: &Start, model: &Execution, twin: &Exe
         }
         name => Some(name.to_owned()),
     };
-    compare("motion in ordinary velocities differs", &model.motion, &model.loose, &twin.motion, name_in_twin)
+    compare("motion in ordinary velocities differs", &model.motion, &twin.motion, name_in_twin)
 }
 
 /// Whether brackets that the frame of a specimen does not determine must be given, and are not.
@@ -118,17 +117,16 @@ fn size(motion: &Motion, column: usize) -> f64 {
     motion.rows.iter().fold(1.0, |size, row| f64::max(size, row[column].abs()))
 }
 
-/// How far looser tolerances move a column; none where that is so far that it judges nothing.
-fn uncertainty(motion: &Motion, loose: &Motion, column: usize) -> Option<f64> {
-    let mut moved = motion.rows.iter().zip(&loose.rows).map(|(a, b)| (a[column] - b[column]).abs());
-    let worst = moved.try_fold(0.0, |worst, moved| moved.is_finite().then(|| f64::max(worst, moved)));
-    worst.filter(|worst| *worst <= RESOLVED * size(motion, column))
+/// How far a column may be off: none where looser tolerances move it so far that it judges nothing.
+fn allowance(motion: &Motion, column: usize) -> Option<f64> {
+    let moved = motion.moved.as_ref()?.columns[column];
+    let size = size(motion, column);
+    (moved <= RESOLVED * size).then_some(TOLERANCE * size + GROWTH * moved)
 }
 
 fn compare(
     kind: &'static str,
     motion: &Motion,
-    loose: &Motion,
     other: &Motion,
     name_in_other: impl Fn(&str) -> Option<String>,
 ) -> Option<Finding> {
@@ -136,11 +134,13 @@ fn compare(
         let said = motion.happenings.iter().map(|h| format!("{} at {}", h.event, h.time));
         said.collect::<Vec<_>>().join(", ")
     };
+    let (Some(moved), Some(moved_other)) = (&motion.moved, &other.moved) else { return None };
     if !same_events(motion, other) {
         return Some(finding(kind, format!("events: {}; not: {}", said(other), said(motion))));
     }
-    for ((a, b), loose) in motion.happenings.iter().zip(&other.happenings).zip(&loose.happenings) {
-        let allowed = SAME_TIME * a.time.abs().max(1.0) + GROWTH * (a.time - loose.time).abs();
+    for (i, (a, b)) in motion.happenings.iter().zip(&other.happenings).enumerate() {
+        let moved = moved.happenings[i] + moved_other.happenings[i];
+        let allowed = SAME_TIME * a.time.abs().max(1.0) + GROWTH * moved;
         if !((a.time - b.time).abs() <= allowed) {
             return Some(finding(kind, format!("{} occurs at {}, not at {}", a.event, b.time, a.time)));
         }
@@ -150,8 +150,8 @@ fn compare(
         let Some(k) = other.columns.iter().position(|name| *name == wanted) else {
             return Some(finding(kind, format!("there is no column {wanted}")));
         };
-        let Some(uncertainty) = uncertainty(motion, loose, j) else { continue };
-        let allowed = TOLERANCE * size(motion, j) + GROWTH * uncertainty;
+        let (Some(here), Some(there)) = (allowance(motion, j), allowance(other, k)) else { continue };
+        let allowed = here + there;
         for ((t, row), other) in motion.times.iter().zip(&motion.rows).zip(&other.rows) {
             let (a, b) = (row[j], other[k]);
             if !((a - b).abs() <= allowed) && !(a.is_nan() && b.is_nan()) {
@@ -166,9 +166,9 @@ fn compare(
     None
 }
 
-fn drift(kind: &'static str, name: &str, motion: &Motion, loose: &Motion) -> Option<Finding> {
+fn drift(kind: &'static str, name: &str, motion: &Motion) -> Option<Finding> {
     let column = motion.columns.iter().position(|column| column == name)?;
-    let allowed = TOLERANCE * size(motion, column) + GROWTH * uncertainty(motion, loose, column)?;
+    let allowed = allowance(motion, column)?;
     let first = motion.rows.first()?[column];
     let last = motion.rows.iter().map(|row| row[column]).find(|value| !((value - first).abs() <= allowed))?;
     Some(finding(kind, format!("{name} from {first:?} to {last:?}; {allowed:.0e} allowed")))
@@ -184,14 +184,7 @@ fn is_conservative(specimen: &Specimen) -> bool {
     let drifts = specimen.has_drift();
     let restricts = specimen.constraints.iter().all(|constraint| match constraint.restricts {
         Restricts::Positions => true,
-        Restricts::Velocities => {
-            let rest: Vec<_> = specimen.chart.iter().map(super::specimen::at_rest).collect();
-            let eta = specimen.quasi_velocities();
-            let zero = eta.into_iter().map(|eta| (eta, super::expression::Expression::Number(0.0)));
-            let rest: Vec<_> = rest.into_iter().chain(zero).collect();
-            constraint.expression.substitute(&rest).is_zero()
-        }
-        Restricts::Nonlinearly => false,
+        Restricts::Velocities | Restricts::Nonlinearly => is_homogeneous(&specimen, constraint),
     });
     let moving = specimen.expressions_mut().iter().any(|expression| expression.mentions("t"));
     let group_moves = match &specimen.frame {
@@ -199,6 +192,23 @@ fn is_conservative(specimen: &Specimen) -> bool {
         _ => false,
     };
     !acts && !drifts && restricts && !moving && !group_moves
+}
+
+/// Whether quasi-velocities are defined by `is`.
+fn is_defined(specimen: &Specimen) -> bool {
+    match &specimen.frame {
+        Frame::Velocities | Frame::Group { .. } => false,
+        Frame::Triangular(frame) => frame.by_definitions,
+        Frame::Definitions(_) => true,
+    }
+}
+
+/// Whether a constraint of velocities is linear in them.
+fn is_homogeneous(specimen: &Specimen, constraint: &Constraint) -> bool {
+    let zero = |name: String| (name, Expression::Number(0.0));
+    let mut rest: Vec<_> = specimen.chart.iter().map(super::specimen::at_rest).collect();
+    rest.extend(specimen.quasi_velocities().into_iter().map(zero));
+    constraint.restricts == Restricts::Velocities && constraint.expression.substitute(&rest).is_zero()
 }
 
 /// Whether the function of an event passes through zero in its direction where the event occurs.

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::comparison::{self, Finding};
 use super::emission;
-use super::execution::{Forms, Refusal, execute};
+use super::execution::{Forms, GIVEN_UP, Refusal, execute};
 use super::generator;
 use super::specimen::Specimen;
 use super::start::Start;
@@ -99,7 +99,12 @@ fn examine_texts(
         Ok(execution) => execution,
         Err(refusal) => {
             examined.rightly_refused = undetermined;
-            examined.refusals.push(refusal);
+            let twin = twin.map(|twin| execute("twin.toml", twin, Forms { all: false, emitted: false }));
+            let stage = match (refusal.stage, twin) {
+                (GIVEN_UP, Some(Ok(_))) => "given up, though not in ordinary velocities",
+                (stage, _) => stage,
+            };
+            examined.refusals.push(Refusal { stage, ..refusal });
             return examined;
         }
     };

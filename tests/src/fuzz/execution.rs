@@ -23,6 +23,9 @@ const MOST_STEPS: u64 = 20_000;
 /// The part of the time span by which a state is moved to both sides of an event.
 const ASIDE: f64 = 1e-7;
 
+/// The stage of a motion that could not be followed to its end.
+pub const GIVEN_UP: &str = "integration";
+
 /// Something that the product did not do, at which stage, and what it said.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
@@ -37,19 +40,26 @@ impl Refusal {
         Refusal { stage, message: message.to_string() }
     }
 
-    /// The kind of refusal: its first line without place, names and numbers.
+    /// The kind of refusal: what its first line says, without place, names, numbers and states.
     pub fn cause(&self) -> String {
         let line = self.message.lines().next().unwrap_or_default();
-        let line = line.split_once(": ").map_or(line, |(_, rest)| rest);
+        let mut parts = line.splitn(3, ": ");
+        let message = match (parts.next(), parts.next(), parts.next()) {
+            (Some(_), Some(entry), Some(message)) if entry.starts_with('[') => message,
+            _ => line,
+        };
         let mut cause = String::new();
-        let mut quoted = false;
-        for c in line.chars() {
+        let (mut quoted, mut depth) = (false, 0u32);
+        for c in message.chars() {
             match c {
                 '`' => {
                     quoted = !quoted;
                     cause.push_str(if quoted { "`…" } else { "`" });
                 }
                 _ if quoted => {}
+                '(' | '[' => depth += 1,
+                ')' | ']' => depth = depth.saturating_sub(1),
+                _ if depth > 0 => {}
                 c if c.is_ascii_digit() => {
                     if !cause.ends_with('#') {
                         cause.push('#');
@@ -63,7 +73,7 @@ impl Refusal {
                 cause = cause.replace(noise, "#");
             }
         }
-        format!("{}: {cause}", self.stage)
+        format!("{}: {}", self.stage, cause.trim_end())
     }
 }
 
@@ -93,8 +103,20 @@ pub struct Motion {
     pub rows: Vec<Vec<f64>>,
     /// What occurred, in order.
     pub happenings: Vec<Happening>,
+    /// How far tolerances a hundred times as large move each column, and the time of each event; none where other events
+    /// occur then, or the motion is not followed.
+    pub moved: Option<Moved>,
     /// The largest residual of a constraint, with its name.
     pub residual: Option<(String, f64)>,
+}
+
+/// How far looser tolerances move a motion.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// Each column, at most.
+    pub columns: Vec<f64>,
+    /// The time of each event.
+    pub happenings: Vec<f64>,
 }
 
 /// A model run through the product.
@@ -102,8 +124,6 @@ pub struct Motion {
 pub struct Execution {
     /// Its motion in quasi-velocities.
     pub motion: Motion,
-    /// The same with less precision.
-    pub loose: Motion,
     /// Its motion in momenta.
     pub canonical: Option<Result<Motion, Refusal>>,
     /// Its motion, projected to its energy; where that is claimed to be kept.
@@ -148,14 +168,13 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     let assembly = model.assemble(&graph).map_err(|e| Refusal::new("model", e))?;
     let mut flow =
         Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(|e| Refusal::new("model", e))?;
-    let motion = follow(&mut flow, &model, &assembly, 1.0)?;
-    let loose = follow(&mut flow, &model, &assembly, LOOSE)?;
+    let motion = follow(&mut flow, &model, &assembly)?;
     let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
     let keeps_energy = assembly.keeps_energy() && !resets;
     let canonical = forms.all.then(|| {
         let flow = Flow::new(&model, &assembly, Variables::Momenta);
         let mut flow = flow.map_err(|error| Refusal::new("canonical form", error))?;
-        follow(&mut flow, &model, &assembly, 1.0)
+        follow(&mut flow, &model, &assembly)
     });
     let projected = (forms.all && keeps_energy).then(|| projected(model.clone()));
     let refused = |error| Refusal::new("independent velocities", model.constraint_error(error));
@@ -166,7 +185,7 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
         (_, false) => Ok(Vec::new()),
     };
     let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
-    Ok(Execution { motion, loose, canonical, projected, keeps_energy, conserved, emitted })
+    Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted })
 }
 
 fn projected(mut model: Model) -> Result<Motion, Refusal> {
@@ -175,7 +194,7 @@ fn projected(mut model: Model) -> Result<Motion, Refusal> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph).map_err(refused)?;
     let mut flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(refused)?;
-    follow(&mut flow, &model, &assembly, 1.0)
+    follow(&mut flow, &model, &assembly)
 }
 
 fn conserved(equations: &Equations<'_>) -> Vec<String> {
@@ -207,7 +226,34 @@ fn emission(name: &str, assembly: &Assembly<'_>, equations: &Equations<'_>) -> R
     Ok(Emission { source, inputs, rates })
 }
 
-fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -> Result<Motion, Refusal> {
+/// The motion, and how far looser tolerances move it.
+fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>) -> Result<Motion, Refusal> {
+    let motion = integrate(flow, model, assembly, 1.0)?;
+    let moved = integrate(flow, model, assembly, LOOSE).ok().and_then(|loose| moved(&motion, &loose));
+    Ok(Motion { moved, ..motion })
+}
+
+fn moved(motion: &Motion, loose: &Motion) -> Option<Moved> {
+    let names = |motion: &Motion| motion.happenings.iter().map(|h| h.event.clone()).collect::<Vec<_>>();
+    if names(motion) != names(loose) || motion.times.len() != loose.times.len() {
+        return None;
+    }
+    let rows = motion.rows.iter().zip(&loose.rows);
+    let largest = |j: usize| {
+        // f64::max would lose what is no number
+        rows.clone().fold(0.0, |worst: f64, (a, b)| match (a[j] - b[j]).abs() {
+            moved if moved <= worst => worst,
+            moved => moved,
+        })
+    };
+    let happenings = motion.happenings.iter().zip(&loose.happenings).map(|(a, b)| (a.time - b.time).abs());
+    Some(Moved {
+        columns: (0..motion.columns.len()).map(largest).collect(),
+        happenings: happenings.collect(),
+    })
+}
+
+fn integrate(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -> Result<Motion, Refusal> {
     let t_start = assembly.t_start;
     let t_end = model.document().simulation.t_end.as_ref().map_or(t_start, |t| t.value);
     let last = (SAMPLES - 1) as f64;
@@ -216,7 +262,7 @@ fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -
     let options = options.max_steps(MOST_STEPS);
     let start = flow.start.clone();
     let solved = solve_with_events(&mut flow.motion, t_start, &start, &times, &options, &mut flow.events);
-    let solved = solved.map_err(|failure| Refusal::new("integration", failure.error))?;
+    let solved = solved.map_err(|failure| Refusal::new(GIVEN_UP, failure.error))?;
     let residual = residual(flow, &solved.trajectory);
     let names: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let aside = ASIDE * (t_end - t_start);
@@ -233,7 +279,7 @@ fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -
         .collect();
     let columns = flow.names.iter().chain(flow.motion.observable_names()).cloned().collect();
     let (times, rows) = solved.trajectory.iter().map(|(t, y)| (t, flow.row(t, y))).unzip();
-    Ok(Motion { columns, times, rows, happenings, residual })
+    Ok(Motion { columns, times, rows, happenings, moved: None, residual })
 }
 
 fn residual(flow: &mut Flow, trajectory: &Trajectory) -> Option<(String, f64)> {

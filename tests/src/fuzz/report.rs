@@ -5,11 +5,13 @@ use std::fmt::Write as _;
 
 use super::examination::Examined;
 
-/// A cause with how often it was met, and the first model that it was met with.
+/// So many models are named for a cause.
+const NAMED: usize = 12;
+
+/// A cause with the models that it was met with, and what was said of the first.
 #[derive(Clone, Debug)]
 struct Cause {
-    count: usize,
-    first: u64,
+    models: Vec<u64>,
     example: String,
 }
 
@@ -54,7 +56,7 @@ impl Report {
 
     /// The kinds of findings, each with the first model that has it.
     pub fn kinds(&self) -> impl Iterator<Item = (&str, u64)> {
-        self.findings.iter().map(|(kind, cause)| (kind.as_str(), cause.first))
+        self.findings.iter().map(|(kind, cause)| (kind.as_str(), cause.models[0]))
     }
 
     /// Numbers, and a table of findings and one of refusals, each cause with an example.
@@ -66,13 +68,16 @@ impl Report {
         );
         for (title, causes) in [("findings", &self.findings), ("refusals", &self.refusals)] {
             let mut sorted: Vec<(&String, &Cause)> = causes.iter().collect();
-            sorted.sort_by_key(|(_, cause)| std::cmp::Reverse(cause.count));
+            sorted.sort_by_key(|(_, cause)| std::cmp::Reverse(cause.models.len()));
             let _ = writeln!(text, "\n{title}");
             if sorted.is_empty() {
                 text.push_str("  none\n");
             }
-            for (cause, Cause { count, first, example }) in sorted {
-                let _ = writeln!(text, "{count:6}  {cause}  (first: model {first})");
+            for (cause, Cause { models, example }) in sorted {
+                let named: Vec<String> = models.iter().take(NAMED).map(u64::to_string).collect();
+                let more = if models.len() > NAMED { ", …" } else { "" };
+                let _ =
+                    writeln!(text, "{:6}  {cause}\n        models {}{more}", models.len(), named.join(", "));
                 for line in example.lines().take(6) {
                     let _ = writeln!(text, "          {line}");
                 }
@@ -83,7 +88,6 @@ impl Report {
 }
 
 fn note(causes: &mut BTreeMap<String, Cause>, cause: String, index: u64, example: &str) {
-    let cause =
-        causes.entry(cause).or_insert_with(|| Cause { count: 0, first: index, example: example.to_owned() });
-    cause.count += 1;
+    let new = || Cause { models: Vec::new(), example: example.to_owned() };
+    causes.entry(cause).or_insert_with(new).models.push(index);
 }

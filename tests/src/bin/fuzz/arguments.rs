@@ -1,11 +1,12 @@
 //! The command line of the differential tester.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use pc_tests::fuzz::campaign::Campaign;
 
-pub(crate) const USAGE: &str =
-    "usage: fuzz models [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N]";
+pub(crate) const USAGE: &str = "usage: fuzz models [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N] \
+     [--save DIR]";
 
 /// What is to be done.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub(crate) struct Arguments {
     pub(crate) campaign: Campaign,
     /// The one model that is shown.
     pub(crate) model: Option<u64>,
+    /// Where models with findings are written.
+    pub(crate) save: Option<PathBuf>,
 }
 
 impl Arguments {
@@ -23,10 +26,15 @@ impl Arguments {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let limit = Duration::from_secs(60);
         let campaign = Campaign { seed: 1, first: 0, count: 20_000, threads, emitted_every: 50, limit };
-        let mut arguments = Arguments { campaign, model: None };
+        let mut arguments = Arguments { campaign, model: None, save: None };
         while let Some(word) = words.next() {
+            let mut text = || words.next().ok_or_else(|| format!("`{word}` needs a value"));
+            if word == "--save" {
+                arguments.save = Some(text()?.into());
+                continue;
+            }
             let mut number = || -> Result<u64, String> {
-                let text = words.next().ok_or_else(|| format!("`{word}` needs a number"))?;
+                let text = text()?;
                 text.parse().map_err(|_| format!("`{word}` needs a number, not `{text}`"))
             };
             let campaign = &mut arguments.campaign;

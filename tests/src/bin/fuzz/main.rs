@@ -1,10 +1,14 @@
-//! The differential tester: `cargo xtask fuzz models [--count N] [--seed S] [--model K] [--threads T]`.
+//! The differential tester: `cargo xtask fuzz models [--count N] [--seed S] [--model K] [--threads T]
+//! [--save DIR]`.
 //!
 //! It runs random models over the whole text format and compares what the product makes of them with independent
-//! computations. The same seed gives the same models with any number of threads; `--model K` shows one of them.
+//! computations. The same seed gives the same models with any number of threads; `--model K` shows one of them, `--save DIR`
+//! writes those with findings.
 
 mod arguments;
 
+use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -26,7 +30,7 @@ fn main() -> ExitCode {
     note_panics();
     match arguments.model {
         Some(index) => one(&arguments.campaign, index),
-        None => many(&arguments.campaign),
+        None => many(&arguments),
     }
 }
 
@@ -42,7 +46,8 @@ fn one(campaign: &Campaign, index: u64) -> ExitCode {
     ExitCode::from(u8::from(!kinds.is_empty()))
 }
 
-fn many(campaign: &Campaign) -> ExitCode {
+fn many(arguments: &Arguments) -> ExitCode {
+    let campaign = &arguments.campaign;
     let begin = Instant::now();
     let results = campaign.run(|done| {
         if done % 1000 == 0 {
@@ -52,10 +57,24 @@ fn many(campaign: &Campaign) -> ExitCode {
     let report = Report::of(&results);
     println!("seed {}, {:.0} s", campaign.seed, begin.elapsed().as_secs_f64());
     print!("{}", report.text());
+    if let Some(Err(error)) =
+        arguments.save.as_ref().map(|directory| save(directory, campaign.seed, &results))
+    {
+        eprintln!("fuzz: models cannot be saved: {error}");
+    }
     for (kind, first) in report.kinds() {
         show_shrunk(campaign, first, kind);
     }
     ExitCode::from(u8::from(!report.is_clean()))
+}
+
+/// Writes the models with findings, each with what was found.
+fn save(directory: &Path, seed: u64, results: &[(u64, Examined)]) -> std::io::Result<()> {
+    fs::create_dir_all(directory)?;
+    for (index, examined) in results.iter().filter(|(_, examined)| !examined.findings.is_empty()) {
+        fs::write(directory.join(format!("{seed}-{index}.toml")), shown(examined))?;
+    }
+    Ok(())
 }
 
 fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
@@ -66,11 +85,16 @@ fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
 }
 
 fn show(examined: &Examined) {
-    for finding in &examined.findings {
-        println!("# {}", finding.to_string().replace('\n', "\n#   "));
-    }
-    println!("{}", examined.text);
-    if let Some(twin) = &examined.twin {
-        println!("# the same in ordinary velocities\n# {}", twin.trim_end().replace('\n', "\n# "));
-    }
+    println!("{}", shown(examined));
+}
+
+/// The text with what was found, and the twin as a comment.
+fn shown(examined: &Examined) -> String {
+    let comment = |text: &str| format!("# {}\n", text.trim_end().replace('\n', "\n# "));
+    let findings: String = examined.findings.iter().map(|finding| comment(&finding.to_string())).collect();
+    let twin = examined
+        .twin
+        .as_ref()
+        .map_or_else(String::new, |twin| format!("# the same in ordinary velocities\n{}", comment(twin)));
+    format!("{findings}{}{twin}", examined.text)
 }

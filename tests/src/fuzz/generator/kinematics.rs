@@ -26,7 +26,7 @@ impl Builder {
         self.coordinates(count);
         let frame = self.triangular(count);
         self.specimen.frame = Frame::Triangular(frame);
-        if self.random.chance(45) {
+        if self.random.chance(55) {
             self.carry();
         }
     }
@@ -35,16 +35,21 @@ impl Builder {
         let names = self.moving();
         let eta: Vec<String> = QUASI_VELOCITIES[..count].iter().map(|&name| name.to_owned()).collect();
         let diagonal = (0..count)
-            .map(|_| match self.random.chance(50) {
-                true => Expression::Number(1.0),
-                false => self.function(true, &names),
+            .map(|_| match self.random.below(10) {
+                0..4 => Expression::Number(1.0),
+                4..6 => self.coefficient(0.4, 1.4),
+                _ => self.function(true, &names),
             })
             .collect();
         let mut lower = Vec::new();
         for i in 0..count {
             for j in 0..i {
                 if self.random.chance(55) {
-                    let function = self.function(false, &names);
+                    // Often of the coordinate itself, so that brackets differ from zero.
+                    let own = &names[i..=i];
+                    let of = if self.random.chance(40) { own } else { &names[..] };
+                    let regular = self.random.chance(50);
+                    let function = self.function(regular, of);
                     let factor = if self.random.chance(50) { 1.0 } else { self.random.decimal(-1.0, 1.0) };
                     lower.push((i, j, function.times(factor)));
                 }
@@ -73,7 +78,9 @@ impl Builder {
     fn carry(&mut self) {
         let Some(velocities) = self.specimen.chart_velocities() else { return };
         for i in 0..=self.random.below(2) {
+            // Rather the later ones, whose rates have more terms.
             let of = self.random.below(self.specimen.chart.len());
+            let of = of.max(self.random.below(self.specimen.chart.len()));
             let name = self.specimen.chart[of].name.clone();
             let (value, derivative) = self.carried_function(&name);
             let factor = if self.random.chance(70) { 1.0 } else { self.random.decimal(0.3, 1.2) };
