@@ -19,6 +19,9 @@ const GROWTH: f64 = 3.0;
 /// A column that looser tolerances change by so much, relative to its size or to 1, is not resolved and judges nothing.
 const RESOLVED: f64 = 1e-5;
 
+/// A column that looser tolerances change by so much, though not that of the same motion in another form, is noise.
+const NOISE: f64 = 1e-3;
+
 /// An event is located on the computed motion, which passes its zero at an angle of some hundredths at least.
 const SAME_TIME: f64 = 1e-8;
 
@@ -117,11 +120,20 @@ fn size(motion: &Motion, column: usize) -> f64 {
     motion.rows.iter().fold(1.0, |size, row| f64::max(size, row[column].abs()))
 }
 
-/// How far a column may be off: none where looser tolerances move it so far that it judges nothing.
-fn allowance(motion: &Motion, column: usize) -> Option<f64> {
-    let moved = motion.moved.as_ref()?.columns[column];
+/// How far a number may be off: none where looser tolerances move it so far that it judges nothing.
+fn allowance(motion: &Motion, row: usize, column: usize) -> Option<f64> {
+    let moved = motion.moved.as_ref()?.rows[row][column];
     let size = size(motion, column);
     (moved <= RESOLVED * size).then_some(TOLERANCE * size + GROWTH * moved)
+}
+
+/// Whether looser tolerances move the last row of a column beyond use, though not that of the other motion.
+fn is_noise(motion: &Motion, column: usize, other: &Motion, other_column: usize) -> Option<f64> {
+    let last = |motion: &Motion, column: usize| {
+        motion.moved.as_ref()?.rows.last().map(|row| row[column] / size(motion, column))
+    };
+    let (here, there) = (last(motion, column)?, last(other, other_column)?);
+    (!(here <= NOISE) && there <= TOLERANCE).then_some(here)
 }
 
 fn compare(
@@ -150,10 +162,17 @@ fn compare(
         let Some(k) = other.columns.iter().position(|name| *name == wanted) else {
             return Some(finding(kind, format!("there is no column {wanted}")));
         };
-        let (Some(here), Some(there)) = (allowance(motion, j), allowance(other, k)) else { continue };
-        let allowed = here + there;
-        for ((t, row), other) in motion.times.iter().zip(&motion.rows).zip(&other.rows) {
-            let (a, b) = (row[j], other[k]);
+        if let Some(noise) = is_noise(motion, j, other, k) {
+            return Some(finding(
+                kind,
+                format!("tolerances move {name} by {noise:.0e} of its size, but not there"),
+            ));
+        }
+        let rows = motion.times.iter().zip(&motion.rows).zip(&other.rows).enumerate();
+        for (i, ((t, row), other_row)) in rows {
+            let (a, b) = (row[j], other_row[k]);
+            let (Some(here), Some(there)) = (allowance(motion, i, j), allowance(other, i, k)) else { break };
+            let allowed = here + there;
             if !((a - b).abs() <= allowed) && !(a.is_nan() && b.is_nan()) {
                 let t = t - motion.times[0];
                 return Some(finding(
@@ -168,7 +187,7 @@ fn compare(
 
 fn drift(kind: &'static str, name: &str, motion: &Motion) -> Option<Finding> {
     let column = motion.columns.iter().position(|column| column == name)?;
-    let allowed = allowance(motion, column)?;
+    let allowed = allowance(motion, motion.rows.len().checked_sub(1)?, column)?;
     let first = motion.rows.first()?[column];
     let last = motion.rows.iter().map(|row| row[column]).find(|value| !((value - first).abs() <= allowed))?;
     Some(finding(kind, format!("{name} from {first:?} to {last:?}; {allowed:.0e} allowed")))

@@ -8,11 +8,14 @@ use std::time::Duration;
 
 use super::comparison::{self, Finding};
 use super::emission;
-use super::execution::{Forms, GIVEN_UP, Refusal, execute};
+use super::execution::{Forms, GIVEN_UP, Motion, Refusal, execute};
 use super::generator;
 use super::specimen::Specimen;
 use super::start::Start;
 use super::text;
+
+/// How far from zero a coordinate is that has not passed it between two rows.
+const MARGIN: f64 = 0.05;
 
 /// The main thread of the program has as much.
 const STACK: usize = 8 << 20;
@@ -100,11 +103,15 @@ fn examine_texts(
         Err(refusal) => {
             examined.rightly_refused = undetermined;
             let twin = twin.map(|twin| execute("twin.toml", twin, Forms { all: false, emitted: false }));
-            let stage = match (refusal.stage, twin) {
-                (GIVEN_UP, Some(Ok(_))) => "given up, though not in ordinary velocities",
-                (stage, _) => stage,
-            };
-            examined.refusals.push(Refusal { stage, ..refusal });
+            match (refusal.stage, twin) {
+                (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, &twin.motion) => {
+                    examined.findings.push(Finding {
+                        kind: "given up, though not in ordinary velocities",
+                        detail: refusal.message,
+                    })
+                }
+                _ => examined.refusals.push(refusal),
+            }
             return examined;
         }
     };
@@ -127,6 +134,13 @@ fn examine_texts(
         }
     }
     examined
+}
+
+/// Whether all coordinates stay positive: beyond zero, roots of them end, and with these the frame.
+fn stays_regular(specimen: &Specimen, twin: &Motion) -> bool {
+    let place = |name: &String| twin.columns.iter().position(|column| column == name);
+    let mut places = specimen.chart.iter().filter_map(|x| place(&x.name));
+    places.all(|place| twin.rows.iter().all(|row| row[place] > MARGIN))
 }
 
 thread_local! {

@@ -113,8 +113,8 @@ pub struct Motion {
 /// How far looser tolerances move a motion.
 #[derive(Clone, Debug)]
 pub struct Moved {
-    /// Each column, at most.
-    pub columns: Vec<f64>,
+    /// Each column of each row, at most until then.
+    pub rows: Vec<Vec<f64>>,
     /// The time of each event.
     pub happenings: Vec<f64>,
 }
@@ -238,19 +238,18 @@ fn moved(motion: &Motion, loose: &Motion) -> Option<Moved> {
     if names(motion) != names(loose) || motion.times.len() != loose.times.len() {
         return None;
     }
-    let rows = motion.rows.iter().zip(&loose.rows);
-    let largest = |j: usize| {
-        // f64::max would lose what is no number
-        rows.clone().fold(0.0, |worst: f64, (a, b)| match (a[j] - b[j]).abs() {
-            moved if moved <= worst => worst,
-            moved => moved,
-        })
-    };
+    let mut worst = vec![0.0; motion.columns.len()];
+    let rows = motion.rows.iter().zip(&loose.rows).map(|(a, b)| {
+        for (worst, (a, b)) in worst.iter_mut().zip(a.iter().zip(b)) {
+            let moved = f64::abs(a - b);
+            // f64::max would lose what is no number
+            *worst = if moved <= *worst { *worst } else { moved };
+        }
+        worst.clone()
+    });
+    let rows = rows.collect();
     let happenings = motion.happenings.iter().zip(&loose.happenings).map(|(a, b)| (a.time - b.time).abs());
-    Some(Moved {
-        columns: (0..motion.columns.len()).map(largest).collect(),
-        happenings: happenings.collect(),
-    })
+    Some(Moved { rows, happenings: happenings.collect() })
 }
 
 fn integrate(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -> Result<Motion, Refusal> {
