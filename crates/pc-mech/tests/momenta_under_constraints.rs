@@ -91,7 +91,7 @@ fn derivatives_are_those_of_quotients() {
     let (mut jacobian, mut by_parameter) = (vec![0.0; 64], vec![0.0; 8]);
     motion.jacobian(t, &y, &mut jacobian).unwrap();
     motion.parameter_jacobian(t, &y, &mut by_parameter).unwrap();
-    let mut rates = |motion: &mut Motion, y: &[f64]| {
+    let rates = |motion: &mut Motion, y: &[f64]| {
         let mut rates = vec![0.0; 8];
         motion.rhs(t, y, &mut rates).unwrap();
         rates

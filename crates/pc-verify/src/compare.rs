@@ -454,7 +454,7 @@ impl<'g> First<'g> {
             candidates.push((name.clone(), value));
         }
         candidates.extend(
-            flow.observed().observable_names().iter().map(|name| (name.clone(), second.observable(name))),
+            flow.motion.observable_names().iter().map(|name| (name.clone(), second.observable(name))),
         );
         let inputs = [0..if canonical { n } else { state.len() }, 2 * state.len()..2 * state.len() + n];
         let compiled = Compiled::Flow { flow: Box::new(flow), quasi_velocities };
