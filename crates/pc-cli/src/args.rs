@@ -130,6 +130,9 @@ pub struct RunArguments {
     /// virtual work determines them: a component across all motion that is possible is 0 here, whatever holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
+    /// Do not compare the motion at its start and at its end with a second derivation
+    #[arg(long)]
+    pub no_verify: bool,
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

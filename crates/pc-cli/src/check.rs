@@ -8,6 +8,7 @@ use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood
 use pc_model::{Assembly, Form, Model, Verdict};
 use pc_nonholo::{Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
+use pc_verify::{Agreement, Options, VerifyError, verify};
 use serde_json::{Value, json};
 
 use self::frame::FrameFacts;
@@ -18,6 +19,7 @@ use crate::binding::{NEGATIVE_ENERGY, dropped, say_moved};
 use crate::error::CliError;
 use crate::input;
 use crate::text::{assignments, labelled, print, short, small, wrapped};
+use crate::verification;
 
 /// Prints what can be said of a model before it is run.
 ///
@@ -28,7 +30,11 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let graph = Graph::new();
     let (assembly, equations) = input::derive(&model, &graph)?;
     say_moved(&assembly);
-    let report = Report::new(&model, &assembly, &equations)?;
+    let second = match verify(&model, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", report.text()),
         Format::Json => writeln!(out, "{:#}", report.json()),
@@ -64,6 +70,7 @@ struct Report<'g> {
     integrals: Vec<Integral<'g>>,
     steady: Search,
     operations: Operations,
+    second: Option<Result<Agreement, VerifyError>>,
 }
 
 impl<'g> Report<'g> {
@@ -124,6 +131,7 @@ impl<'g> Report<'g> {
             steady: steady_motion(assembly, equations, motion, &integrals),
             integrals,
             operations,
+            second: None,
         })
     }
 
@@ -178,6 +186,9 @@ impl<'g> Report<'g> {
         for (label, lines) in &entries {
             text += &labelled(label, LABEL, lines);
         }
+        if let Some(second) = &self.second {
+            text += &labelled("second derivation", LABEL, &verification::lines(second, WIDTH));
+        }
         let width = self.integrals.iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
         let mut integrals = Vec::new();
         for integral in &self.integrals {
@@ -224,6 +235,7 @@ impl<'g> Report<'g> {
             "start_residual": self.start_residual,
             "integrals": integrals,
             "steady_motion": self.steady.object(),
+            "second_derivation": self.second.as_ref().map(verification::object),
         })
     }
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
+use pc_verify::VerifyError;
 
 use crate::plot::PlotError;
 use crate::saving::SavingError;
@@ -98,6 +99,9 @@ pub enum CliError {
     /// Something wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The equations are not those of a second derivation: one of the two is wrong, by a defect of this program.
+    #[error("{0}; nothing is returned, since one of them is wrong by a defect of this program")]
+    Verify(Box<VerifyError>),
     /// Something wrong with checkpoints.
     #[error(transparent)]
     Saving(#[from] SavingError),
@@ -130,6 +134,7 @@ impl CliError {
         match self {
             CliError::Model(error) => error.category().exit_code(),
             CliError::Sweep(error) => error.exit_code(),
+            CliError::Verify(_) => 4,
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }

@@ -33,5 +33,6 @@ pub mod summary;
 pub mod sweep;
 pub mod table;
 pub mod text;
+pub mod verification;
 
 pub use error::CliError;

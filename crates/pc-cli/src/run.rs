@@ -17,6 +17,7 @@ use crate::plot::Picture;
 use crate::progress::Progress;
 use crate::saving::{Saving, SavingArguments};
 use crate::table::Table;
+use crate::verification::Verification;
 use crate::{input, interrupt, summary, text};
 
 /// A motion as far as it was computed, and how that went.
@@ -44,6 +45,8 @@ pub struct Run {
     pub occurrences: Vec<(usize, f64)>,
     /// How it ended.
     pub ending: Ending,
+    /// What a second derivation says; none where it was not asked.
+    pub verification: Option<Verification>,
     /// The work done.
     pub statistics: Statistics,
     /// The time it took.
@@ -94,7 +97,8 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let form = Plan::form(&model, arguments);
-    let run = integrate_saved(&model, form, &arguments.saving, || Plan::new(&model, arguments))?;
+    let verify = !arguments.no_verify;
+    let run = integrate_saved(&model, form, verify, &arguments.saving, || Plan::new(&model, arguments))?;
 
     let written = write(&run, &destination, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
@@ -108,25 +112,28 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 }
 
 /// Derives, compiles and integrates the motion of a model; `plan` is asked for once the model is known to be sound.
-/// Whatever the form, the table shows quasi-velocities.
+/// Whatever the form, the table shows quasi-velocities. At the start and, where that is soon done, at the end the
+/// equations are compared with a second derivation.
 ///
 /// # Errors
-/// [`CliError`] if there is no motion at all; one that could not be completed is a [`Run`].
+/// [`CliError`] if there is no motion at all, or the second derivation disagrees; one that could not be completed is a
+/// [`Run`].
 pub fn integrate(
     model: &Model,
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    integrate_saved(model, form, &SavingArguments::default(), plan)
+    integrate_saved(model, form, true, &SavingArguments::default(), plan)
 }
 
-/// As [`integrate`], with checkpoints.
+/// As [`integrate`], with checkpoints, and without the second derivation unless `verify` says so.
 ///
 /// # Errors
 /// As there, and what is wrong with a checkpoint to go on from.
 pub fn integrate_saved(
     model: &Model,
     form: RunForm,
+    verify: bool,
     saving: &SavingArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
@@ -138,6 +145,11 @@ pub fn integrate_saved(
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
     let mut saving = Saving::new(saving, model, &plan, form)?;
+
+    let mut verification = verify.then(|| Verification::new(model, &assembly, form));
+    if let Some(verification) = &mut verification {
+        verification.compare(&flow, &assembly, "the start", plan.t_start, &flow.start)?;
+    }
 
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
@@ -154,6 +166,12 @@ pub fn integrate_saved(
     drop(progress);
 
     let HybridMotion { trajectory, occurrences, ending } = solved;
+    if let (Some(verification), Some((t, y))) = (&mut verification, trajectory.last())
+        && t != plan.t_start
+        && !verification.is_long()
+    {
+        verification.compare(&flow, &assembly, "the end", t, y)?;
+    }
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let ending = match (ending, error) {
         (_, Some(error)) => Ending::Failed(Box::new(error)),
@@ -174,6 +192,7 @@ pub fn integrate_saved(
         events,
         occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
         ending,
+        verification,
         wall,
     })
 }

@@ -38,6 +38,9 @@ pub fn text(run: &Run) -> String {
     }
     let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
     line("dropped", &dropped.collect::<Vec<_>>());
+    if let Some(verification) = &run.verification {
+        line("verified", &verification.lines());
+    }
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.states().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());

@@ -19,6 +19,7 @@ Heavy top of Lagrange
   rates there        finite at t = 0, the largest 1.72
   operations         parameters free   22 = 3 div + 5 fma + 10 mul + 1 neg + 3 sub
                      parameters bound  10 = 5 fma + 4 mul + 1 neg
+  second derivation  agrees at 100 states
   integrals          area    conserved (proved), a Casimir
                      norm    conserved (proved), a Casimir
                      spin    conserved for these parameters (proved)
@@ -43,6 +44,7 @@ Euler's top
   rates there        finite at t = 0, the largest 1
   operations         parameters free   13 = 3 div + 6 mul + 1 neg + 3 sub
                      parameters bound  6 = 4 mul + 2 neg
+  second derivation  agrees at 100 states
   integrals          momentum  conserved (proved), a Casimir
                      energy    conserved (proved)
   steady motion      ω1 = 0, ω2 = 0, ω3 = 1.05409
@@ -66,6 +68,7 @@ Charged particle in a pulsating magnetic field
   rates there        finite at t = 0, the largest 2
   operations         parameters free   16 = 1 add + 1 cos + 1 div + 3 fma + 8 mul + 1 neg + 1 sin
                      parameters bound  15 = 2 add + 1 cos + 1 div + 3 fma + 6 mul + 1 neg + 1 sin
+  second derivation  agrees at 100 states
   integrals          momentum  conserved (proved)
                      energy    dE/dt = -½ B0 ε ρ η2 cos(t), -0.25 at the start
 ";
@@ -122,11 +125,19 @@ fn without_integrals(model: &str) -> String {
     format!("{before}[{after}").replace(project, "")
 }
 
+/// The report but for how closely the derivations agree, which is a matter of the processor.
+fn without_digits(report: &str) -> String {
+    let (before, rest) = report.split_once("second derivation  agrees to ").expect("an agreement");
+    let (digits, after) = rest.split_once(' ').expect("more");
+    assert!(digits.parse::<f64>().is_ok_and(|error| error < 1e-13), "{digits}");
+    format!("{before}second derivation  agrees {after}")
+}
+
 #[test]
 fn a_check_in_print() {
-    assert_eq!(check("heavy-top-lagrange"), LAGRANGE);
-    assert_eq!(check("euler-top"), EULER);
-    assert_eq!(check("charged-particle-induction"), INDUCTION);
+    assert_eq!(without_digits(&check("heavy-top-lagrange")), LAGRANGE);
+    assert_eq!(without_digits(&check("euler-top")), EULER);
+    assert_eq!(without_digits(&check("charged-particle-induction")), INDUCTION);
 }
 
 #[test]

@@ -252,6 +252,16 @@ impl Second {
         agreement.finished(1)
     }
 
+    #[cfg(test)]
+    pub(crate) fn derivation(&self) -> &Derivation {
+        &self.derivation
+    }
+
+    #[cfg(test)]
+    pub(crate) fn start(&self) -> &Place {
+        &self.start
+    }
+
     /// No state compared.
     fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
@@ -299,6 +309,19 @@ impl Second {
             let constraint = name.strip_prefix("λ_")?;
             text.names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
         })
+    }
+
+    /// Whether an observable is a component of a reaction on a body, as in `F_CONSTRAINT_BODY_x`.
+    fn is_body_reaction(&self, name: &str) -> bool {
+        let rest = name.strip_prefix("F_").or_else(|| name.strip_prefix("N_"));
+        let constraints = &self.derivation.text.names.constraints;
+        rest.is_some_and(|rest| constraints.iter().any(|c| rest.starts_with(&format!("{c}_"))))
+    }
+
+    /// How many terms of the text are evaluated for the equations at one state, roughly.
+    pub fn cost(&self) -> usize {
+        let k = self.start.w.len();
+        (k * (k + 1) / 2 + 4 * k + 4).saturating_mul(self.derivation.text.terms())
     }
 
     /// Compares all that is compiled with the second derivation at a place.
@@ -458,7 +481,7 @@ impl<'g> First<'g> {
         );
         let inputs = [0..if canonical { n } else { state.len() }, 2 * state.len()..2 * state.len() + n];
         let compiled = Compiled::Flow { flow: Box::new(flow), quasi_velocities };
-        First::comparing(form, candidates, &inputs, free, compiled, agreement)
+        First::comparing(form, candidates, &inputs, second, free, compiled, agreement)
     }
 
     /// What is written as source.
@@ -498,7 +521,7 @@ impl<'g> First<'g> {
             parameters: system.parameters().to_vec(),
         };
         let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate };
-        Ok(First::comparing("emit", candidates, &[], Some(free), compiled, agreement))
+        Ok(First::comparing("emit", candidates, &[], second, Some(free), compiled, agreement))
     }
 
     /// Compares those candidates that the second derivation has, but for what is given to the first.
@@ -506,6 +529,7 @@ impl<'g> First<'g> {
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,
         inputs: &[std::ops::Range<usize>],
+        second: &Second,
         free: Option<Vec<usize>>,
         compiled: Compiled<'g>,
         agreement: &mut Agreement,
@@ -518,7 +542,10 @@ impl<'g> First<'g> {
                     wanted.push((label, quantity));
                     places.push(place);
                 }
-                None => agreement.leave_out(&label, "the second derivation does not have it"),
+                None if second.is_body_reaction(&label) => {
+                    agreement.leave_out("reactions as forces and torques on bodies", "it does not have them");
+                }
+                None => agreement.leave_out(&label, "it does not have it"),
             }
         }
         First { form: form.to_owned(), wanted, places, free, compiled }

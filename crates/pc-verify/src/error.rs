@@ -30,8 +30,8 @@ pub enum VerifyError {
 /// A quantity with two values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the two derivations disagree: {quantity} of the form {form} is {first}, by the second derivation {second}, of terms up \
-     to {size}, at {}",
+    "the two derivations disagree: {quantity} of the form {form} is {first:?}, by the second derivation {second:?}, of terms \
+     up to {size:?}, at {}",
     State { t: *t, values: state }
 )]
 pub struct Disagreement {
@@ -58,8 +58,8 @@ struct State<'a> {
 
 impl fmt::Display for State<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "t = {}", self.t)?;
-        self.values.iter().try_for_each(|(name, value)| write!(f, ", {name} = {value}"))
+        write!(f, "t = {:?}", self.t)?;
+        self.values.iter().try_for_each(|(name, value)| write!(f, ", {name} = {value:?}"))
     }
 }
 

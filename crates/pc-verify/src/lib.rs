@@ -31,6 +31,8 @@ mod rounding;
 mod states;
 mod structure;
 mod term;
+#[cfg(test)]
+mod tests;
 mod text;
 
 pub use compare::{Agreement, Options, Second, TOLERANCE, verify};

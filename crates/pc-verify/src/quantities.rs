@@ -114,7 +114,10 @@ impl Derivation {
                 Err(Irregular::NotFinite { what: "a quantity" })
             }
         };
-        wanted.iter().enumerate().map(sized).collect()
+        let mut quantities =
+            wanted.iter().enumerate().map(sized).collect::<Result<Vec<Sized>, Irregular>>()?;
+        raise(&mut quantities, wanted);
+        Ok(quantities)
     }
 
     /// The same with sizes that are also as large as they scatter, in units of rounding, where the computation is repeated with
@@ -226,6 +229,23 @@ impl Derivation {
         Ok(Momenta { values, rates: momentum_rates, energy, energy_rate, condition: solution.condition })
     }
 }
+
+/// Quantities that one elimination gives are as uncertain as some roundings of the largest of them.
+fn raise(quantities: &mut [Sized], wanted: &[Quantity]) {
+    for kind in wanted.iter().map(std::mem::discriminant) {
+        if kind == std::mem::discriminant(&Quantity::Observed(0)) {
+            continue;
+        }
+        let alike = |other: &Quantity| std::mem::discriminant(other) == kind;
+        let sizes = quantities.iter().zip(wanted).filter(|(_, other)| alike(other));
+        let largest = sizes.fold(0.0, |largest, (quantity, _)| f64::max(largest, quantity.size));
+        let raised = quantities.iter_mut().zip(wanted).filter(|(_, other)| alike(other));
+        raised.for_each(|(quantity, _)| quantity.size = quantity.size.max(SHARED * largest));
+    }
+}
+
+/// Of 1e-12 of the size of the terms, what is some units in the last place of the largest.
+const SHARED: f64 = 1e-3;
 
 /// The direction of the motion: time, ẋ and ẇ.
 fn motion(derived: &Derived) -> Direction {

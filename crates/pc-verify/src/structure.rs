@@ -237,7 +237,8 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let b = DMatrix::from_row_slice(brackets.len(), k, &fields);
     let right = DMatrix::from_fn(brackets.len(), pairs, |i, j| brackets[i][j]);
     let (inverse, rank) = pseudo_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
-    let solved = &inverse * &right;
+    let mut solved = &inverse * &right;
+    solved -= &inverse * (&b * &solved - &right); // takes away what the pseudo-inverse is wrong by
     let rest = &b * &solved - &right;
     if rank < k || !(rest.amax() <= 1e-8 * (1.0 + right.amax())) {
         return Err(Unable::NoBrackets.into());
@@ -277,4 +278,31 @@ fn commutators(
         brackets.push(left.iter().zip(right).map(|(a, b)| a - b).collect());
     }
     Ok((frame, brackets))
+}
+
+#[cfg(test)]
+mod tests {
+    use pc_algebra::{CATALOGUE, LieAlgebra};
+
+    use super::*;
+
+    #[test]
+    fn the_table_is_that_of_the_catalogue() {
+        let families = ["so5", "so6", "gl1", "gl3", "heisenberg5", "heisenberg7", "bianchi1"];
+        let parameters = ["bianchi6(-1/4)", "bianchi6(-2)", "bianchi7(0.25)", "bianchi7( 3/4 )"];
+        for name in CATALOGUE.iter().map(|entry| entry.name).chain(families).chain(parameters) {
+            let (ours, known) = (Constants::named(name).unwrap(), LieAlgebra::named(name).unwrap());
+            assert_eq!(ours.k, known.dim(), "{name}");
+            for (r, s, m) in
+                (0..ours.k).flat_map(|r| (0..ours.k).flat_map(move |s| (0..ours.k).map(move |m| (r, s, m))))
+            {
+                assert_eq!(
+                    ours.get(r + 1, s + 1, m),
+                    known.constant(r, s, m).to_f64(),
+                    "{name}: [{r}, {s}], {m}"
+                );
+            }
+        }
+        assert_eq!(Constants::named("so17"), None);
+    }
 }

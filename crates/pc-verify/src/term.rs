@@ -76,6 +76,17 @@ const FUNCTIONS: [(&str, Function); 19] = [
 ];
 
 impl Term {
+    /// The number of terms that it is made up of, itself included.
+    pub(crate) fn size(&self) -> usize {
+        1 + match self {
+            Term::Sum(parts) | Term::Product(parts) => parts.iter().map(|(_, part)| part.size()).sum(),
+            Term::Negative(inner) | Term::Rate(inner) => inner.size(),
+            Term::Power(base, exponent) => base.size() + exponent.size(),
+            Term::Call(_, arguments) => arguments.iter().map(Term::size).sum(),
+            _ => 0,
+        }
+    }
+
     /// Whether there are velocities in it; `definitions` says so of those above, and none is known of one that is not among
     /// them.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {

@@ -147,6 +147,23 @@ impl Text {
         Ok(self.constraints.iter().map(|term| term.has_velocities(&moving) == Some(false)).collect())
     }
 
+    /// The number of terms that the energy and the constraints are written with.
+    pub(crate) fn terms(&self) -> usize {
+        let velocities = match &self.velocities {
+            Velocities::Ordinary(terms) | Velocities::Quasi(terms) => terms,
+        };
+        let energy = [&self.kinetic, &self.potential, &self.lagrangian].into_iter().flatten();
+        let of_body = |body: &Body| -> usize {
+            let turning = match &body.turning {
+                Some(Turning::Rotation(terms) | Turning::AngularVelocity(terms)) => terms.as_slice(),
+                None => &[],
+            };
+            body.position.iter().chain(turning).map(Term::size).sum()
+        };
+        let all = velocities.iter().chain(&self.definitions).chain(&self.constraints).chain(energy);
+        all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
+    }
+
     /// n
     pub(crate) fn coordinates(&self) -> usize {
         self.names.coordinates.len()

@@ -85,6 +85,7 @@ impl SweepArguments {
             form: self.form,
             project: self.project.clone(),
             outputs: None,
+            no_verify: true,
             output: None,
             plot: None,
             saving: SavingArguments::default(),

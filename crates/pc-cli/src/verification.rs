@@ -1,0 +1,126 @@
+//! What a second derivation says of the equations.
+
+use pc_model::{Assembly, Flow, Model};
+use pc_print::columns;
+use pc_verify::{Agreement, Second, VerifyError};
+use serde_json::{Value, json};
+
+use crate::args::RunForm;
+use crate::error::CliError;
+
+/// The comparison of a motion with a second derivation, at some of its states.
+#[derive(Debug)]
+pub struct Verification {
+    second: Result<Second, VerifyError>,
+    form: &'static str,
+    /// Where it was compared, and what came of it.
+    outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
+}
+
+impl Verification {
+    /// Of the equations of a model in a form, not compared anywhere yet.
+    pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Verification {
+        let form = match form {
+            RunForm::Poincare => "poincare",
+            RunForm::Canonical => "canonical",
+        };
+        Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
+    }
+
+    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    pub fn is_long(&self) -> bool {
+        self.second.as_ref().is_ok_and(|second| second.cost() > LONG)
+    }
+
+    /// Compares at one state.
+    ///
+    /// # Errors
+    /// [`CliError::Verify`] if the derivations disagree. That the second cannot be made, or a state is singular, is none.
+    pub fn compare(
+        &mut self,
+        flow: &Flow,
+        assembly: &Assembly<'_>,
+        place: &'static str,
+        t: f64,
+        state: &[f64],
+    ) -> Result<(), CliError> {
+        let Ok(second) = &self.second else { return Ok(()) };
+        let outcome = second.agrees(self.form, flow, assembly, t, state);
+        if let Err(error @ VerifyError::Disagreement(_)) = outcome {
+            return Err(CliError::Verify(Box::new(error)));
+        }
+        self.outcomes.push((place, outcome));
+        Ok(())
+    }
+
+    /// What was compared, in words.
+    pub fn lines(&self) -> Vec<String> {
+        if let Err(error) = &self.second {
+            return vec![error.to_string()];
+        }
+        let (mut places, mut worst, mut lines) = (Vec::new(), 0.0f64, Vec::new());
+        for (place, outcome) in &self.outcomes {
+            match outcome {
+                Ok(agreement) => {
+                    places.push(*place);
+                    worst = worst.max(agreement.error);
+                    lines.extend(agreement.not_compared.iter().map(|what| format!("but for {what}")));
+                }
+                Err(error) => lines.push(format!("not at {place}: {error}")),
+            }
+        }
+        if !places.is_empty() {
+            let places = places.join(" and at ");
+            lines.insert(0, format!("by a second derivation, which agrees to {worst:.0e} at {places}"));
+        }
+        lines.dedup();
+        lines
+    }
+}
+
+/// Terms that are evaluated in some milliseconds.
+const LONG: usize = 100_000;
+
+/// An agreement in the lines of a report of so many columns.
+pub fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
+    match outcome {
+        Ok(agreement) => {
+            let passed_over = match agreement.skipped {
+                0 => String::new(),
+                skipped => format!(", {skipped} singular ones passed over"),
+            };
+            let more = agreement.not_compared.iter();
+            let more = more.map(|what| clipped(&format!("not compared: {what}"), width));
+            [format!("{agreement}{passed_over}")].into_iter().chain(more).collect()
+        }
+        Err(VerifyError::Unable(unable)) => vec![clipped(&format!("not made: {unable}"), width)],
+        Err(error) => vec![clipped(&error.to_string(), width)],
+    }
+}
+
+/// The first line of a text, as much as there is room for.
+fn clipped(text: &str, width: usize) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    if columns(line) <= width {
+        return line.to_owned();
+    }
+    let mut short: String = line.chars().take(width.saturating_sub(1)).collect();
+    short.push('…');
+    short
+}
+
+/// The same for programs.
+pub fn object(outcome: &Result<Agreement, VerifyError>) -> Value {
+    match outcome {
+        Ok(agreement) => json!({
+            "states": agreement.states,
+            "skipped": agreement.skipped,
+            "reason": agreement.reason,
+            "error": agreement.error,
+            "quantity": agreement.quantity,
+            "forms": agreement.forms,
+            "not_compared": agreement.not_compared,
+        }),
+        Err(error) => json!({ "states": 0, "reason": error.to_string() }),
+    }
+}

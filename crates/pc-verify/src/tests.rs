@@ -1,0 +1,246 @@
+//! The second derivation alone, against motions known in closed form.
+
+use pc_mech::Graph;
+use pc_model::{Document, Flow, Model, Source, Variables};
+
+use crate::compare::Second;
+use crate::derivation::{Derived, Place};
+use crate::error::VerifyError;
+use crate::rounding::Rounding;
+
+fn model(text: &str) -> Model {
+    Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+}
+
+/// The second derivation at the start.
+fn at_start(text: &str) -> Derived {
+    let (graph, model) = (Graph::new(), model(text));
+    let second = Second::new(&model, &model.assemble(&graph).unwrap()).unwrap();
+    second.derivation().at(second.start(), &Rounding::none()).unwrap()
+}
+
+/// Some hundred roundings of numbers near 1.
+fn assert_near(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len());
+    let near = found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-13);
+    assert!(near, "{found:?}, not {expected:?}");
+}
+
+/// λ of x² + y² = 1 is (y − v²)/2 for a unit mass under unit gravity; its sign is that of 2xλ as a force along x.
+#[test]
+fn a_rod_pulls_with_its_multiplier() {
+    let derived = at_start(
+        r#"
+[coordinates]
+x = 0.6
+y = -0.8
+[quasi_velocities]
+"x'" = 0.8
+"y'" = 0.6
+[constraints]
+rod = "x^2 + y^2 - 1"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+potential = "y"
+"#,
+    );
+    let lambda = (-0.8 - 1.0) / 2.0;
+    assert_near(&derived.reactions, &[lambda]);
+    assert_near(&derived.accelerations, &[2.0 * 0.6 * lambda, -1.0 - 2.0 * 0.8 * lambda]);
+}
+
+/// A_1 ω̇_1 = (A_2 − A_3) ω_2 ω_3 and cyclically: the brackets of so(3) where there are no coordinates.
+#[test]
+fn a_free_body_obeys_eulers_equations() {
+    let derived = at_start(
+        r#"
+[quasi_velocities]
+w1 = 1.0
+w2 = 2.0
+w3 = 3.0
+[algebra]
+name = "so3"
+[lagrangian]
+kinetic = "(2*w1^2 + 3*w2^2 + 5*w3^2)/2"
+"#,
+    );
+    assert_near(
+        &derived.accelerations,
+        &[(3.0 - 5.0) * 6.0 / 2.0, (5.0 - 2.0) * 3.0 / 3.0, (2.0 - 3.0) * 2.0 / 5.0],
+    );
+}
+
+/// The same with Euler's angles, of which the frame determines the brackets; and with Poisson's vertical, for which
+/// constants are found.
+#[test]
+fn brackets_come_from_the_frame_or_fit_everywhere() {
+    let angles = r#"
+[coordinates]
+"ψ" = 0.3
+"θ" = 1.1
+"φ" = 0.7
+[quasi_velocities]
+w1 = 1.0
+w2 = 2.0
+w3 = 3.0
+[kinematics]
+"θ" = "w1*cos(φ) - w2*sin(φ)"
+"ψ" = "(w1*sin(φ) + w2*cos(φ))/sin(θ)"
+"φ" = "w3 - cot(θ)*(w1*sin(φ) + w2*cos(φ))"
+[lagrangian]
+kinetic = "(2*w1^2 + 3*w2^2 + 5*w3^2)/2"
+"#;
+    let vertical = r#"
+[coordinates]
+g1 = 0.6
+g2 = 0.0
+g3 = 0.8
+[quasi_velocities]
+w1 = 1.0
+w2 = 2.0
+w3 = 3.0
+[kinematics]
+g1 = "g2*w3 - g3*w2"
+g2 = "g3*w1 - g1*w3"
+g3 = "g1*w2 - g2*w1"
+[lagrangian]
+kinetic = "(2*w1^2 + 3*w2^2 + 5*w3^2)/2"
+"#;
+    for text in [angles, vertical] {
+        assert_near(&at_start(text).accelerations, &[-6.0, 3.0, -0.4]);
+    }
+}
+
+/// v̇ = a ω², (J + m a²) ω̇ = −m a v ω, and the blade holds with λ = v ω (m − m² a²/(m a² + J)).
+#[test]
+fn a_sleigh_is_held_by_its_blade() {
+    let derived = at_start(
+        r#"
+[parameters]
+m = 2.0
+J = 1.5
+a = 0.5
+[coordinates]
+x = 0.0
+y = 0.0
+"φ" = 0.0
+[quasi_velocities]
+v = { is = "cos(φ)*x' + sin(φ)*y'", start = 0.7 }
+"ω" = { is = "φ'", start = 1.2 }
+[constraints]
+blade = "-sin(φ)*x' + cos(φ)*y'"
+[lagrangian]
+kinetic = "m/2*(x'^2 + y'^2) + m*a*ω*(cos(φ)*y' - sin(φ)*x') + (J + m*a^2)/2*ω^2"
+"#,
+    );
+    let (m, inertia, a, v, w): (f64, f64, f64, f64, f64) = (2.0, 1.5, 0.5, 0.7, 1.2);
+    let turning = -m * a * v * w / (inertia + m * a * a);
+    // At φ = 0 the acceleration across is that of the turning frame, v ω.
+    assert_near(&derived.accelerations, &[a * w * w, v * w, turning]);
+    assert_near(&derived.reactions, &[v * w * (m - m * m * a * a / (m * a * a + inertia))]);
+}
+
+/// I φ̈ = N − m g l sin φ for a body that turns about an axle, given by its rotation.
+#[test]
+fn forces_and_torques_act_on_bodies() {
+    let derived = at_start(
+        r#"
+[coordinates]
+"φ" = 0.5
+[quasi_velocities]
+"φ'" = 2.0
+[bodies.b]
+mass = 2.0
+position = ["0.3*sin(φ)", "-0.3*cos(φ)", 0]
+rotation = ["cos(φ)", "-sin(φ)", 0, "sin(φ)", "cos(φ)", 0, 0, 0, 1]
+inertia = [1, 2, 0.4]
+force = [0, -20, 0]
+torque = [0, 0, 0.7]
+"#,
+    );
+    assert_near(&derived.accelerations, &[(0.7 - 20.0 * 0.3 * 0.5f64.sin()) / (0.4 + 2.0 * 0.09)]);
+}
+
+/// z̈ = −g/(1 + k²) along a straight line, λ = −k² g ż/(ẋ² + ẏ² + k⁴ ż²) in ẍ = λ ẋ; here λ is that of ½ the constraint.
+#[test]
+fn chetaevs_condition_holds_a_nonlinear_constraint() {
+    let derived = at_start(
+        r#"
+[coordinates]
+x = 0.0
+y = 0.0
+z = 0.0
+[quasi_velocities]
+"x'" = 0.45
+"y'" = 0.6
+"z'" = -1.0
+[constraints]
+drive = { expr = "(x'^2 + y'^2 - 0.75^2*z'^2)/2", kind = "nonlinear" }
+[lagrangian]
+kinetic = "(x'^2 + y'^2 + z'^2)/2"
+potential = "10*z"
+"#,
+    );
+    let k2 = 0.5625;
+    let lambda = k2 * 10.0 / (k2 + k2 * k2);
+    assert_near(&derived.accelerations, &[0.45 * lambda, 0.6 * lambda, -10.0 / (1.0 + k2)]);
+    assert_near(&derived.reactions, &[lambda]);
+}
+
+/// ẍ = −2 ζ x' − x by Rayleigh's function, and a force on a coordinate.
+#[test]
+fn dissipation_brakes() {
+    let derived = at_start(
+        r#"
+[coordinates]
+x = 1.0
+[quasi_velocities]
+"x'" = 3.0
+[lagrangian]
+kinetic = "x'^2"
+potential = "x^2"
+dissipation = "0.2*x'^2"
+[forces]
+x = "5*t + 1"
+"#,
+    );
+    assert_near(&derived.accelerations, &[(1.0 - 2.0 - 0.4 * 3.0) / 2.0]);
+}
+
+/// A mass that is a thousandth larger in one of the derivations: the acceleration tells.
+#[test]
+fn a_difference_is_an_error_with_both_values() {
+    let text = "[coordinates]\nx = 1.0\n[parameters]\nm = 2.0\n[lagrangian]\nkinetic = \"m*x'^2/2\"\npotential = \"x^2/2\"";
+    let (mut heavier, graph) = (model(text), Graph::new());
+    let light = model(text);
+    let assembly = light.assemble(&graph).unwrap();
+    let flow = Flow::new(&light, &assembly, Variables::QuasiVelocities).unwrap();
+    heavier.set("m", 2.002).unwrap();
+    let second = Second::new(&heavier, &assembly).unwrap();
+    let found = second.agrees("poincare", &flow, &assembly, 0.0, &[1.0, 0.0]);
+    let Err(VerifyError::Disagreement(disagreement)) = found else { panic!("{found:?}") };
+    assert_eq!(disagreement.quantity, "the rate of x'");
+    assert_near(&[disagreement.first, disagreement.second], &[-0.5, -1.0 / 2.002]);
+    let message = VerifyError::Disagreement(disagreement).to_string();
+    assert!(message.ends_with("at t = 0.0, x = 1.0, x' = 0.0"), "{message}");
+}
+
+/// A random state satisfies constraints on positions and on velocities.
+#[test]
+fn states_are_on_the_constraints() {
+    let text = r#"
+[coordinates]
+x = 0.6
+y = -0.8
+[constraints]
+rod = "x^2 + y^2 - 1"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+"#;
+    let (graph, model) = (Graph::new(), model(text));
+    let second = Second::new(&model, &model.assemble(&graph).unwrap()).unwrap();
+    for number in 0..20 {
+        let Place { x, w, .. } = second.derivation().random(second.start(), number).unwrap();
+        assert_near(&[x[0] * x[0] + x[1] * x[1], x[0] * w[0] + x[1] * w[1]], &[1.0, 0.0]);
+    }
+}
