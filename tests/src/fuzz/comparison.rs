@@ -3,6 +3,7 @@
 use std::fmt;
 
 use num_dual::Dual64;
+use pc_verify::{Unable, VerifyError};
 
 use super::execution::{Execution, Happening, Motion, Refusal};
 use super::expression::Expression;
@@ -48,6 +49,7 @@ fn finding(kind: &'static str, detail: String) -> Finding {
 pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<Finding> {
     let mut findings = Vec::new();
     let motion = &execution.motion;
+    findings.extend(second(execution));
     let forms = [
         ("canonical form differs", &execution.canonical),
         ("projected motion differs", &execution.projected),
@@ -79,6 +81,19 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
         }
     }
     findings
+}
+
+/// What a second derivation does not agree with.
+pub fn second(execution: &Execution) -> Option<Finding> {
+    match &execution.second {
+        Err(VerifyError::Disagreement(disagreement)) => {
+            Some(finding("second derivation disagrees", disagreement.to_string()))
+        }
+        Err(VerifyError::Unable(Unable::NoBrackets)) => {
+            Some(finding("second derivation has no brackets", "the first takes some".to_owned()))
+        }
+        Ok(_) | Err(_) => None,
+    }
 }
 
 /// What does not agree between a model and its twin in ordinary velocities.
@@ -277,6 +292,9 @@ pub fn refusals(execution: &Execution) -> Vec<Refusal> {
     refusals.extend(execution.conserved.as_ref().err().cloned());
     if let Some(Err(refusal)) = &execution.emitted {
         refusals.push(refusal.clone());
+    }
+    if let (Err(error), None) = (&execution.second, second(execution)) {
+        refusals.push(Refusal { stage: "second derivation", message: error.to_string() });
     }
     refusals
 }

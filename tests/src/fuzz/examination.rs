@@ -17,6 +17,9 @@ use super::text;
 /// How far from zero a coordinate is that has not passed it between two rows.
 const MARGIN: f64 = 0.05;
 
+/// A finding in the motion that a model is compared with.
+const TWIN_DISAGREES: &str = "second derivation disagrees in ordinary velocities";
+
 /// The main thread of the program has as much.
 const STACK: usize = 8 << 20;
 
@@ -127,7 +130,11 @@ fn examine_texts(
     }
     let Some(twin) = twin else { return examined };
     match execute("twin.toml", twin, Forms { all: false, emitted: false }) {
-        Ok(twin) => examined.findings.extend(comparison::between(specimen, start, &execution, &twin)),
+        Ok(twin) => {
+            let second = comparison::second(&twin).map(|finding| Finding { kind: TWIN_DISAGREES, ..finding });
+            examined.findings.extend(second);
+            examined.findings.extend(comparison::between(specimen, start, &execution, &twin));
+        }
         Err(refusal) => {
             let message = refusal.message;
             examined.refusals.push(Refusal { stage: "ordinary velocities", message });
@@ -158,4 +165,71 @@ pub fn note_panics() {
 
 fn last_panic() -> String {
     LAST_PANIC.with_borrow(Clone::clone)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::campaign::Campaign;
+    use crate::fuzz::expression::Expression;
+    use crate::fuzz::report::Report;
+    use crate::fuzz::specimen::{Coordinate, Frame};
+
+    const SHORT: Thoroughness = Thoroughness { emitted: false, limit: Duration::from_secs(60) };
+
+    /// Two masses on a line in quasi-velocities, one of which is said to be another than it is.
+    fn with_definition(first: &str) -> Specimen {
+        let mut specimen = generator::empty();
+        let coordinate = |name: &str| Coordinate { name: name.to_owned(), start: 0.5, shown: true };
+        specimen.chart = vec![coordinate("x"), coordinate("y")];
+        specimen.velocities = vec![0.3, -0.2];
+        let parsed = |text: &str| Expression::parse(text).expect("an expression");
+        specimen.kinetic = vec![parsed("w1^2"), parsed("w2^2")];
+        specimen.frame = Frame::Group {
+            eta: vec!["w1".to_owned(), "w2".to_owned()],
+            velocities: vec![parsed("w1"), parsed("w2 + x*w1")],
+            inverse: vec![parsed(first), parsed("y' - x*x'")],
+        };
+        specimen
+    }
+
+    #[test]
+    fn a_model_and_its_twin_move_alike() {
+        let examined = examine_specimen(&with_definition("x'"), SHORT);
+        assert!(examined.ran && examined.findings.is_empty(), "{:?}", examined.findings);
+    }
+
+    #[test]
+    fn a_quasi_velocity_that_is_another_one_is_found() {
+        let examined = examine_specimen(&with_definition("1.5*x'"), SHORT);
+        assert!(examined.has("motion in ordinary velocities differs"), "{:?}", examined.findings);
+    }
+
+    #[test]
+    fn brackets_that_nothing_determines_must_be_refused() {
+        let mut specimen = with_definition("x'");
+        specimen.chart[1].shown = false;
+        assert!(comparison::is_undetermined(&specimen));
+        specimen.algebra = Some("brackets = { \"w1,w2\" = \"0\" }".to_owned());
+        assert!(!comparison::is_undetermined(&specimen));
+    }
+
+    #[test]
+    fn a_campaign_is_the_same_with_any_number_of_threads() {
+        let campaign = Campaign {
+            seed: 3,
+            first: 10,
+            count: 8,
+            threads: 1,
+            emitted_every: 0,
+            limit: Duration::from_secs(60),
+        };
+        let one = campaign.run(|_| ());
+        let several = Campaign { threads: 3, ..campaign }.run(|_| ());
+        let texts = |results: &[(u64, Examined)]| -> Vec<String> {
+            results.iter().map(|(index, examined)| format!("{index} {}", examined.text)).collect()
+        };
+        assert_eq!(texts(&one), texts(&several));
+        assert_eq!(Report::of(&one).text(), Report::of(&several).text());
+    }
 }

@@ -5,6 +5,8 @@ use pc_mech::{EmitOptions, Equations, Graph, Language};
 use pc_model::{Assembly, Document, Flow, Model, ModelError, Source, Variables};
 use pc_solve::{Occurrence, Options, Trajectory, solve_with_events};
 
+use pc_verify::{Agreement, VerifyError, verify};
+
 use crate::emitted::{Emitted, Routine};
 
 /// Relative tolerance of the motions that are compared.
@@ -13,6 +15,9 @@ pub const RTOL: f64 = 1e-11;
 pub const ATOL: f64 = 1e-13;
 /// Rows of a motion.
 pub const SAMPLES: usize = 5;
+
+/// States at which a model is compared with its second derivation: an error is seen at almost all.
+const STATES: usize = 6;
 
 /// The tolerances of the same motion once more, to see what errors of integration grow to.
 const LOOSE: f64 = 1e2;
@@ -134,6 +139,8 @@ pub struct Execution {
     pub conserved: Result<Vec<String>, Refusal>,
     /// Its emitted source, with states and what the interpreter makes of them.
     pub emitted: Option<Result<Emission, Refusal>>,
+    /// What a second derivation says.
+    pub second: Result<Agreement, VerifyError>,
 }
 
 /// What emitted source has to compute.
@@ -185,7 +192,9 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
         (_, false) => Ok(Vec::new()),
     };
     let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
-    Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted })
+    model.observe_reactions(false);
+    let second = verify(&model, &pc_verify::Options { states: STATES, seed: 0 });
+    Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted, second })
 }
 
 fn projected(mut model: Model) -> Result<Motion, Refusal> {

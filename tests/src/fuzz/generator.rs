@@ -22,7 +22,8 @@ pub fn specimen(seed: u64, index: u64) -> Specimen {
     Builder { random: Random::new(seed, index), specimen: empty() }.build()
 }
 
-fn empty() -> Specimen {
+/// A model without anything.
+pub(super) fn empty() -> Specimen {
     Specimen {
         parameters: Vec::new(),
         chart: Vec::new(),

@@ -54,6 +54,11 @@ impl Report {
         self.findings.is_empty()
     }
 
+    /// The number of models that were run.
+    pub fn ran(&self) -> usize {
+        self.ran
+    }
+
     /// The kinds of findings, each with the first model that has it.
     pub fn kinds(&self) -> impl Iterator<Item = (&str, u64)> {
         self.findings.iter().map(|(kind, cause)| (kind.as_str(), cause.models[0]))
@@ -90,4 +95,42 @@ impl Report {
 fn note(causes: &mut BTreeMap<String, Cause>, cause: String, index: u64, example: &str) {
     let new = || Cause { models: Vec::new(), example: example.to_owned() };
     causes.entry(cause).or_insert_with(new).models.push(index);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::comparison::Finding;
+    use crate::fuzz::execution::Refusal;
+
+    #[test]
+    fn causes_are_counted_without_places_names_and_numbers() {
+        let refused = |message: &str| Examined {
+            text: "x".to_owned(),
+            refusals: vec![Refusal { stage: "model", message: message.to_owned() }],
+            ..Examined::default()
+        };
+        let kind = "motion differs";
+        let found = Examined {
+            text: "x".to_owned(),
+            ran: true,
+            findings: vec![Finding { kind, detail: "x is 1, not 2".to_owned() }],
+            ..Examined::default()
+        };
+        let results = [
+            (0, refused("m.toml:3:1: [lagrangian] kinetic: `x^2.5` is NaN at the start (x = -1e-3)\n  text")),
+            (1, found),
+            (2, refused("m.toml:8:9: [constraints] k: `y` is NaN at the start (x = 4, y = 0.5)")),
+        ];
+        let report = Report::of(&results);
+        let text = report.text();
+        assert!(
+            text.starts_with(
+                "3 models: 1 run, 1 with findings; 0 refused as they must be, 0 without a start"
+            )
+        );
+        assert!(text.contains("2  model: `…` is NaN at the start\n        models 0, 2\n"), "{text}");
+        assert_eq!(report.kinds().collect::<Vec<_>>(), [(kind, 1)]);
+        assert!(!report.is_clean());
+    }
 }

@@ -229,3 +229,79 @@ fn brackets(group: &Group, eta: &[String], change: &[Vec<f64>], shift: f64) -> S
         .collect();
     format!("brackets = {{ {} }}", entries.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use num_dual::Dual64;
+
+    use super::*;
+    use crate::fuzz::expression::Values;
+
+    /// Values of the coordinates of a table, with rates.
+    fn place(rates: &[f64]) -> Values {
+        let coordinates = ["a", "b", "c"].into_iter().zip([0.7, 0.4, 1.1]).zip(rates);
+        coordinates.map(|((name, value), &rate)| (name.to_owned(), Dual64::new(value, rate))).collect()
+    }
+
+    fn field(group: &Group, s: usize, along: &[f64]) -> Vec<Dual64> {
+        let mut values = place(along);
+        for (r, name) in ["u1", "u2", "u3"].into_iter().enumerate() {
+            values.insert(name.to_owned(), Dual64::from(f64::from(u8::from(r == s))));
+        }
+        group.velocities.iter().map(|text| with(text, &[]).value(&values)).collect()
+    }
+
+    fn components(field: &[Dual64]) -> Vec<f64> {
+        field.iter().map(|component| component.re).collect()
+    }
+
+    #[test]
+    fn fields_have_the_brackets_of_the_table() {
+        for group in GROUPS {
+            let k = group.velocities.len();
+            let fields: Vec<Vec<f64>> = (0..k).map(|s| components(&field(group, s, &[0.0; 3]))).collect();
+            for (r, s) in (0..k).flat_map(|r| (r + 1..k).map(move |s| (r, s))) {
+                let (along_r, along_s) = (field(group, s, &fields[r]), field(group, r, &fields[s]));
+                for i in 0..k {
+                    let given = group.brackets.iter().filter(|b| (b.0, b.1) == (r, s));
+                    let given: f64 = given.map(|b| b.3 * fields[b.2][i]).sum();
+                    let bracket = along_r[i].eps - along_s[i].eps;
+                    assert!((bracket - given).abs() < 1e-14, "{}: [{r}, {s}]", group.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn velocities_and_their_inverse_are_that() {
+        for group in GROUPS {
+            for s in 0..group.velocities.len() {
+                let mut values = place(&[0.0; 3]);
+                for (name, rate) in ["A", "B", "C"].into_iter().zip(components(&field(group, s, &[0.0; 3]))) {
+                    values.insert(name.to_owned(), Dual64::from(rate));
+                }
+                for (r, text) in group.inverse.iter().enumerate() {
+                    let u = with(text, &[]).value(&values).re;
+                    assert!((u - f64::from(u8::from(r == s))).abs() < 1e-14, "{}: u{r}", group.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_vertical_turns_against_the_body() {
+        let rates = components(&field(&ROTATIONS, 1, &[0.0; 3]));
+        let mut values = place(&rates);
+        let vertical: Vec<Dual64> =
+            VERTICAL.iter().map(|(_, value, _)| with(value, &[]).value(&values)).collect();
+        for ((name, ..), value) in VERTICAL.iter().zip(&vertical) {
+            values.insert((*name).to_owned(), *value);
+        }
+        for (name, rate) in [("u1", 0.0), ("u2", 1.0), ("u3", 0.0)] {
+            values.insert(name.to_owned(), Dual64::from(rate));
+        }
+        for ((name, _, velocity), value) in VERTICAL.iter().zip(&vertical) {
+            assert!((with(velocity, &[]).value(&values).re - value.eps).abs() < 1e-15, "{name}");
+        }
+    }
+}
