@@ -41,6 +41,11 @@ impl fmt::Display for Finding {
     }
 }
 
+/// Whether a difference is larger than it may be, or no number.
+pub(super) fn exceeds(difference: f64, allowed: f64) -> bool {
+    difference.is_nan() || difference.abs() > allowed
+}
+
 fn finding(kind: &'static str, detail: String) -> Finding {
     Finding { kind, detail }
 }
@@ -70,7 +75,7 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
         findings.extend(drift("energy must be kept, but changes", "energy", motion));
     }
     if let Some((name, residual)) = &motion.residual
-        && !(*residual <= TOLERANCE)
+        && exceeds(*residual, TOLERANCE)
     {
         findings.push(finding("constraint violated", format!("{name} by {residual:e}")));
     }
@@ -148,7 +153,7 @@ fn is_noise(motion: &Motion, column: usize, other: &Motion, other_column: usize)
         motion.moved.as_ref()?.rows.last().map(|row| row[column] / size(motion, column))
     };
     let (here, there) = (last(motion, column)?, last(other, other_column)?);
-    (!(here <= NOISE) && there <= TOLERANCE).then_some(here)
+    (exceeds(here, NOISE) && there <= TOLERANCE).then_some(here)
 }
 
 fn compare(
@@ -168,7 +173,7 @@ fn compare(
     for (i, (a, b)) in motion.happenings.iter().zip(&other.happenings).enumerate() {
         let moved = moved.happenings[i] + moved_other.happenings[i];
         let allowed = SAME_TIME * a.time.abs().max(1.0) + GROWTH * moved;
-        if !((a.time - b.time).abs() <= allowed) {
+        if exceeds(a.time - b.time, allowed) {
             return Some(finding(kind, format!("{} occurs at {}, not at {}", a.event, b.time, a.time)));
         }
     }
@@ -188,7 +193,7 @@ fn compare(
             let (a, b) = (row[j], other_row[k]);
             let (Some(here), Some(there)) = (allowance(motion, i, j), allowance(other, i, k)) else { break };
             let allowed = here + there;
-            if !((a - b).abs() <= allowed) && !(a.is_nan() && b.is_nan()) {
+            if exceeds(a - b, allowed) && !(a.is_nan() && b.is_nan()) {
                 let t = t - motion.times[0];
                 return Some(finding(
                     kind,
@@ -204,7 +209,7 @@ fn drift(kind: &'static str, name: &str, motion: &Motion) -> Option<Finding> {
     let column = motion.columns.iter().position(|column| column == name)?;
     let allowed = allowance(motion, motion.rows.len().checked_sub(1)?, column)?;
     let first = motion.rows.first()?[column];
-    let last = motion.rows.iter().map(|row| row[column]).find(|value| !((value - first).abs() <= allowed))?;
+    let last = motion.rows.iter().map(|row| row[column]).find(|value| exceeds(value - first, allowed))?;
     Some(finding(kind, format!("{name} from {first:?} to {last:?}; {allowed:.0e} allowed")))
 }
 
@@ -273,7 +278,7 @@ fn is_reset(specimen: &Specimen, start: &Start, motion: &Motion, happening: &Hap
         let expected = formula.value(&values).re;
         let column = motion.columns.iter().position(|column| column == name)?;
         let found = happening.after[column];
-        if !((found - expected).abs() <= 1e-12 * expected.abs().max(1.0)) && expected.is_finite() {
+        if exceeds(found - expected, 1e-12 * expected.abs().max(1.0)) && expected.is_finite() {
             let t = happening.time;
             return Some(finding(
                 "reset by another formula",

@@ -1,6 +1,6 @@
 //! Emitted source, compiled, against the interpreter.
 
-use super::comparison::Finding;
+use super::comparison::{Finding, exceeds};
 use super::execution::Emission;
 use crate::emitted::{compile_c, run};
 
@@ -22,7 +22,7 @@ pub(super) fn compare(emission: &Emission) -> Option<Finding> {
     for ((inputs, found), expected) in emission.inputs.iter().zip(found).zip(&emission.rates) {
         let size = expected.iter().fold(1.0, |size, rate| f64::max(size, rate.abs()));
         for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
-            if !((found - expected).abs() <= TOLERANCE * size) {
+            if exceeds(found - expected, TOLERANCE * size) {
                 let detail = format!("rate {i} is {found:?}, not {expected:?}, at {inputs:?}");
                 return Some(Finding { kind: "emitted source differs", detail });
             }

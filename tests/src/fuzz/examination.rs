@@ -111,7 +111,7 @@ fn examine_texts(
                     examined.findings.push(Finding {
                         kind: "given up, though not in ordinary velocities",
                         detail: refusal.message,
-                    })
+                    });
                 }
                 _ => examined.refusals.push(refusal),
             }

@@ -7,6 +7,7 @@ use pc_solve::{Occurrence, Options, Trajectory, solve_with_events};
 
 use pc_verify::{Agreement, VerifyError, verify};
 
+use super::comparison::exceeds;
 use crate::emitted::{Emitted, Routine};
 
 /// Relative tolerance of the motions that are compared.
@@ -41,7 +42,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    fn new(stage: &'static str, message: impl ToString) -> Refusal {
+    fn new(stage: &'static str, message: &impl ToString) -> Refusal {
         Refusal { stage, message: message.to_string() }
     }
 
@@ -168,23 +169,23 @@ pub struct Forms {
 /// # Errors
 /// [`Refusal`] if there is no motion in quasi-velocities.
 pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusal> {
-    let document = Document::parse(Source::new(name, text)).map_err(|e| Refusal::new("text", e))?;
+    let document = Document::parse(Source::new(name, text)).map_err(|e| Refusal::new("text", &e))?;
     let mut model = Model::new(document);
     model.observe_reactions(true);
     let graph = Graph::new();
-    let assembly = model.assemble(&graph).map_err(|e| Refusal::new("model", e))?;
+    let assembly = model.assemble(&graph).map_err(|e| Refusal::new("model", &e))?;
     let mut flow =
-        Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(|e| Refusal::new("model", e))?;
+        Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(|e| Refusal::new("model", &e))?;
     let motion = follow(&mut flow, &model, &assembly)?;
     let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
     let keeps_energy = assembly.keeps_energy() && !resets;
     let canonical = forms.all.then(|| {
         let flow = Flow::new(&model, &assembly, Variables::Momenta);
-        let mut flow = flow.map_err(|error| Refusal::new("canonical form", error))?;
+        let mut flow = flow.map_err(|error| Refusal::new("canonical form", &error))?;
         follow(&mut flow, &model, &assembly)
     });
     let projected = (forms.all && keeps_energy).then(|| projected(model.clone()));
-    let refused = |error| Refusal::new("independent velocities", model.constraint_error(error));
+    let refused = |error| Refusal::new("independent velocities", &model.constraint_error(error));
     let equations = assembly.equations().map_err(refused);
     let conserved = match (&equations, forms.all) {
         (Ok(equations), true) => Ok(conserved(equations)),
@@ -198,8 +199,8 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
 }
 
 fn projected(mut model: Model) -> Result<Motion, Refusal> {
-    let refused = |error: ModelError| Refusal::new("projection", error);
-    model.keep("energy").map_err(|error| Refusal::new("projection", error))?;
+    let refused = |error: ModelError| Refusal::new("projection", &error);
+    model.keep("energy").map_err(|error| Refusal::new("projection", &error))?;
     let graph = Graph::new();
     let assembly = model.assemble(&graph).map_err(refused)?;
     let mut flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(refused)?;
@@ -214,7 +215,7 @@ fn conserved(equations: &Equations<'_>) -> Vec<String> {
 }
 
 fn emission(name: &str, assembly: &Assembly<'_>, equations: &Equations<'_>) -> Result<Emission, Refusal> {
-    let refused = |error: pc_mech::MechError| Refusal::new("emission", error);
+    let refused = |error: pc_mech::MechError| Refusal::new("emission", &error);
     let system = equations.system();
     let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
     let start = assembly.start_of(&state);
@@ -270,7 +271,7 @@ fn integrate(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64
     let options = options.max_steps(MOST_STEPS);
     let start = flow.start.clone();
     let solved = solve_with_events(&mut flow.motion, t_start, &start, &times, &options, &mut flow.events);
-    let solved = solved.map_err(|failure| Refusal::new(GIVEN_UP, failure.error))?;
+    let solved = solved.map_err(|failure| Refusal::new(GIVEN_UP, &failure.error))?;
     let residual = residual(flow, &solved.trajectory);
     let names: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let aside = ASIDE * (t_end - t_start);
@@ -295,7 +296,7 @@ fn residual(flow: &mut Flow, trajectory: &Trajectory) -> Option<(String, f64)> {
     let mut worst: Option<(String, f64)> = None;
     for (t, y) in trajectory.iter() {
         for (name, residual) in names.iter().zip(flow.constraint_residuals(t, y)) {
-            if worst.as_ref().is_none_or(|(_, worst)| !(residual.abs() <= *worst)) {
+            if worst.as_ref().is_none_or(|(_, worst)| exceeds(residual, *worst)) {
                 worst = Some((name.clone(), residual.abs()));
             }
         }

@@ -330,6 +330,6 @@ mod tests {
     fn texts_keep_the_order_of_operations() {
         let sum = Expression::sum(vec![x(), Expression::Number(-0.5)]);
         let text = Expression::product(vec![sum.clone(), sum.clone().power(2.0)]).over(sum).to_string();
-        assert_eq!(text, "((x + (-0.5))*(x + (-0.5))^2)/(x + (-0.5))");
+        assert_eq!(text, "(x + (-0.5))*(x + (-0.5))^2/(x + (-0.5))");
     }
 }

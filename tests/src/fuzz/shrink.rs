@@ -10,9 +10,9 @@ use super::specimen::{Frame, Specimen};
 const LIMIT: Duration = Duration::from_secs(40);
 
 /// The shortest specimen that was found to have a finding of this kind, with what came of it.
-pub fn shrink(specimen: Specimen, kind: &str, thoroughness: Thoroughness) -> (Specimen, Examined) {
+pub fn shrink(specimen: &Specimen, kind: &str, thoroughness: Thoroughness) -> (Specimen, Examined) {
     let end = Instant::now() + LIMIT;
-    let mut best = (specimen.clone(), examine_specimen(&specimen, thoroughness));
+    let mut best = (specimen.clone(), examine_specimen(specimen, thoroughness));
     let mut place = 0;
     while Instant::now() < end {
         // On from where the last one was found: what was tried before it is not worth while once more at once.

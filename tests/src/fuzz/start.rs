@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
 
+use super::comparison::exceeds;
 use super::expression::{Expression, Values};
 use super::specimen::{Restricts, Specimen};
 
@@ -77,7 +78,7 @@ impl Start {
                     .zip(&correction)
                     .for_each(|(velocity, correction)| *velocity -= correction);
             }
-            if residuals(&velocities).iter().any(|residual| !(residual.abs() <= RESIDUAL)) {
+            if residuals(&velocities).iter().any(|&residual| exceeds(residual, RESIDUAL)) {
                 return None;
             }
         }

@@ -79,7 +79,7 @@ fn save(directory: &Path, seed: u64, results: &[(u64, Examined)]) -> std::io::Re
 
 fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
     let specimen = generator::specimen(campaign.seed, index);
-    let (_, examined) = shrink(specimen, kind, campaign.thoroughness(index));
+    let (_, examined) = shrink(&specimen, kind, campaign.thoroughness(index));
     println!("\n# model {index} of seed {}, shrunk: {kind}", campaign.seed);
     show(&examined);
 }

@@ -146,7 +146,7 @@ impl Builder {
         let (shown, rates) = (self.shown(), self.rates());
         let value = match self.specimen.constraints.first() {
             Some(constraint) if self.random.chance(50) => {
-                Expression::symbol(&format!("λ_{}", constraint.name)).power(2.0)
+                Expression::symbol(format!("λ_{}", constraint.name)).power(2.0)
             }
             _ => {
                 let rate = Expression::symbol(self.random.pick(&rates));

@@ -55,10 +55,10 @@ impl Builder {
     /// Affine in quasi-velocities and velocities.
     fn pfaffian(&mut self, shown: &[String], moving: &[String]) -> Expression {
         let eta = self.specimen.quasi_velocities();
-        let mut rates: Vec<Expression> = eta.iter().map(|eta| Expression::symbol(eta)).collect();
+        let mut rates: Vec<Expression> = eta.iter().map(Expression::symbol).collect();
         // One that follows from others says that they vanish, not that it does: few of those.
         if eta.is_empty() || self.random.chance(40) {
-            rates.extend(moving.iter().map(|name| Expression::velocity(name)));
+            rates.extend(moving.iter().map(Expression::velocity));
         }
         let last = rates.remove(self.random.below(rates.len()));
         match self.random.below(100) {
