@@ -66,6 +66,7 @@ struct Report<'g> {
     constraints: Vec<(String, String)>,
     verdicts: Vec<Verdict>,
     redundant: Vec<Redundant>,
+    integrable_combinations: usize,
     start_residual: f64,
     integrals: Vec<Integral<'g>>,
     steady: Search,
@@ -127,6 +128,7 @@ impl<'g> Report<'g> {
             constraints: constraints(assembly),
             verdicts: assembly.bound.verdicts().to_vec(),
             redundant: assembly.bound.redundant().to_vec(),
+            integrable_combinations: assembly.bound.integrable_combinations(),
             start_residual: start_residual(assembly, &near),
             steady: steady_motion(assembly, equations, motion, &integrals),
             integrals,
@@ -210,7 +212,16 @@ impl<'g> Report<'g> {
     fn constraint_lines(&self) -> Vec<String> {
         match self.constraints.as_slice() {
             [] => vec!["none".to_owned()],
-            all => all.iter().map(|(name, what)| format!("{name}: {what}")).collect(),
+            all => {
+                let combinations = match self.integrable_combinations {
+                    0 => None,
+                    1 => Some("one combination of the nonholonomic ones is integrable".to_owned()),
+                    n => {
+                        Some(format!("{n} independent combinations of the nonholonomic ones are integrable"))
+                    }
+                };
+                all.iter().map(|(name, what)| format!("{name}: {what}")).chain(combinations).collect()
+            }
         }
     }
 
@@ -228,6 +239,7 @@ impl<'g> Report<'g> {
             "closure_residual": self.closure_residual,
             "constraints": self.verdicts.iter().map(constraint).collect::<Vec<_>>(),
             "dropped_constraints": self.redundant.iter().map(dropped_object).collect::<Vec<_>>(),
+            "integrable_combinations": self.integrable_combinations,
             "jacobi_residual": self.jacobi_residual,
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,

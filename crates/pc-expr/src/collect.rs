@@ -171,7 +171,8 @@ impl Graph {
             return outputs.to_vec();
         }
         let without = |e: Expr<'g>, z: Expr<'g>| {
-            let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+            let is_without =
+                |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
             let mut forms = self.forms_without(e, z, true).filter(is_without).peekable();
             let first = forms.peek().copied();
             forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)

@@ -104,8 +104,8 @@ fn two_particles_make_the_double_pendulum() {
         .particle(|_, _, _| Particle::new(m2, lower).force([0.into(), -m2 * g]))
         .build()
         .unwrap();
-    assert_eq!(weighed.lagrangian(), kinetic);
-    assert_eq!(weighed.forces(), [-(m1 + m2) * g * l1 * a.sin(), -m2 * g * l2 * b.sin()]);
+    assert_eq!(weighed.lagrangian(), by_hand);
+    assert_eq!(weighed.forces(), [Expr::ZERO; 2]);
     let (one, other) = (bodies.poincare().unwrap(), weighed.poincare().unwrap());
     assert_eq!(one.right_hand_side(), other.right_hand_side());
 }
@@ -373,8 +373,8 @@ fn a_bead_on_a_turning_wire() {
         .build()
         .unwrap();
     let t = graph.symbol("t");
-    assert_eq!(along.lagrangian(), (s_rate.square() + s.square()) / 2.0);
-    assert_eq!(along.forces(), [-g * t.sin()]);
+    assert_eq!(along.lagrangian(), (s_rate.square() + s.square()) / 2.0 - g * s * t.sin());
+    assert_eq!(along.forces(), [Expr::ZERO]);
 
     let redundant = System::builder(&graph)
         .particle(|_, _, _| {
@@ -512,4 +512,58 @@ fn a_matrix_that_is_no_rotation_is_refused() {
         ]),
         "the rotation of a body is a reflection: its determinant is -1"
     );
+}
+
+/// A particle of unit mass in space under a force.
+fn pushed<'g>(graph: &'g Graph, force: [Expr<'g>; 3]) -> System<'g> {
+    let place = graph.symbols(["x", "y", "z"]);
+    System::builder(graph)
+        .parameter(graph.symbol("k"), 2.0)
+        .coordinates(["x", "y", "z"])
+        .particle(|_, _, _| Particle::new(1.0, place).force(force))
+        .build()
+        .unwrap()
+}
+
+/// Its energy at rest.
+fn potential<'g>(system: &System<'g>) -> Expr<'g> {
+    let still: Vec<_> = system.quasi_velocities().iter().map(|&v| (v, Expr::ZERO)).collect();
+    system.graph().substitute(&[system.energy()], &still)[0]
+}
+
+/// Forces that depend on the place alone and are homogeneous in it have a force function if their work is exact; others are forces.
+#[test]
+fn forces_that_have_a_force_function_count_in_the_energy() {
+    let graph = Graph::new();
+    let [k, x, y, z] = graph.symbols(["k", "x", "y", "z"]);
+    let place = [x, y, z];
+    let system = |force| pushed(&graph, force);
+    let square = x.square() + y.square() + z.square();
+    let weight = system([Expr::ZERO, Expr::ZERO, -k]);
+    assert_eq!(potential(&weight), k * z);
+    let spring = system(place.map(|x| -k * x));
+    assert!((potential(&spring) - k * square / 2.0).is_zero());
+    let gravitation = system(place.map(|x| -k * x / square.pow(1.5)));
+    assert!((potential(&gravitation) + k / square.sqrt()).is_zero());
+    for conservative in [weight, spring, gravitation] {
+        assert!(conservative.forces().iter().all(|q| q.is_zero()));
+        assert!(conservative.energy_rate().is_zero());
+    }
+    let t = graph.symbol("t");
+    let vx = graph.symbol("x'");
+    // Around an axis, across a gradient, by time, by velocity.
+    for force in [
+        [-y, x, Expr::ZERO],
+        [k * y, Expr::ZERO, Expr::ZERO],
+        [t, Expr::ZERO, Expr::ZERO],
+        [-vx, x * vx, -z * t],
+    ] {
+        let driven = system(force);
+        assert_eq!(driven.forces(), force);
+        assert!(potential(&driven).is_zero());
+    }
+    // Weight beside a drag.
+    let dragged = system([-vx, Expr::ZERO, -k]);
+    assert_eq!(dragged.forces(), [-vx, Expr::ZERO, Expr::ZERO]);
+    assert_eq!(potential(&dragged), k * z);
 }

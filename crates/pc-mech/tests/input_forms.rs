@@ -104,8 +104,8 @@ fn parts_add_up() {
         .build()
         .unwrap();
     let t = graph.symbol("t");
-    assert_eq!(system.lagrangian(), 3.0 * v.square() - x.square() + t * v);
-    assert_eq!(system.forces(), [3.0 - x + t + x.square() - 4.0 * v.powi(3)]);
+    assert_eq!(system.lagrangian(), 3.0 * v.square() - x.square() + 3.0 * x + t * v);
+    assert_eq!(system.forces(), [-x + t + x.square() - 4.0 * v.powi(3)]);
 }
 
 /// dE/dt = −2R for R quadratic in η.

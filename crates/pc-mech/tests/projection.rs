@@ -35,7 +35,9 @@ fn a_state_on_its_constraints_but_for_rounding_stays_there() {
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(11);
     for radius in [1e-150, 3e-80, 1e-8, 1.0, 7e8, 1e80, 1e150] {
-        for mass in [1e-100, 1e-3, 1.0, 1e100] {
+        // Moments of inertia are numbers, too.
+        let masses = [1e-100, 1e-3, 1.0, 1e100].into_iter();
+        for mass in masses.filter(|mass| (mass * radius * radius / 9.0).is_normal()) {
             motion.parameters_mut().copy_from_slice(&[mass, radius]);
             for _ in 0..40 {
                 let (angle, rate) = (3.0 * next(), 10f64.powf(6.0 * next()));
@@ -50,13 +52,19 @@ fn a_state_on_its_constraints_but_for_rounding_stays_there() {
                 for i in 0..6 {
                     let moved = (state[i] - given[i]).abs();
                     // Moved by no more than it was off, some roundings of each component.
-                    assert!(moved <= 32.0 * f64::EPSILON * sizes[i], "{radius:e} {mass:e}: {given:?} {state:?}");
+                    assert!(
+                        moved <= 32.0 * f64::EPSILON * sizes[i],
+                        "{radius:e} {mass:e}: {given:?} {state:?}"
+                    );
                 }
                 let mut again = state;
                 motion.project(0.0, &mut again).unwrap();
                 for i in 0..6 {
                     let moved = (state[i] - again[i]).abs();
-                    assert!(moved <= 4.0 * f64::EPSILON * sizes[i], "{radius:e} {mass:e}: {state:?} {again:?}");
+                    assert!(
+                        moved <= 4.0 * f64::EPSILON * sizes[i],
+                        "{radius:e} {mass:e}: {state:?} {again:?}"
+                    );
                 }
             }
         }
@@ -77,7 +85,8 @@ fn a_state_near_its_constraints_comes_to_them() {
                 .map(|y| y * (1.0 + 0.3 * next()));
             motion.project(0.0, &mut state).unwrap();
             assert!((state[0].hypot(state[1]) / radius - 1.0).abs() < 1e-14, "{state:?}");
-            let radial = (state[0] / radius) * (state[3] / radius) + (state[1] / radius) * (state[4] / radius);
+            let radial =
+                (state[0] / radius) * (state[3] / radius) + (state[1] / radius) * (state[4] / radius);
             assert!(radial.abs() < 1e-14, "{state:?}");
         }
     }

@@ -18,6 +18,7 @@ pub struct Bound<'g> {
     form: Form<'g>,
     multipliers: Option<Multipliers<'g>>,
     verdicts: Vec<Verdict>,
+    combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
 }
@@ -49,8 +50,14 @@ impl<'g> Bound<'g> {
 
     /// Constraints that say nothing.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> Bound<'g> {
-        let verdicts = Vec::new();
-        Bound { form: Form::Free, multipliers: None, verdicts, redundant, undetermined: Vec::new() }
+        Bound {
+            form: Form::Free,
+            multipliers: None,
+            verdicts: Vec::new(),
+            combinations: 0,
+            redundant,
+            undetermined: Vec::new(),
+        }
     }
 
     /// Constraints that bind, kept in some form.
@@ -60,7 +67,12 @@ impl<'g> Bound<'g> {
         verdicts: Vec<Verdict>,
         redundant: Vec<Redundant>,
     ) -> Bound<'g> {
-        Bound { form, multipliers: Some(multipliers), verdicts, redundant, undetermined: Vec::new() }
+        let multipliers = Some(multipliers);
+        Bound { form, multipliers, verdicts, combinations: 0, redundant, undetermined: Vec::new() }
+    }
+
+    pub(crate) fn with_integrable_combinations(self, combinations: usize) -> Bound<'g> {
+        Bound { combinations, ..self }
     }
 
     pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> Bound<'g> {
@@ -80,6 +92,12 @@ impl<'g> Bound<'g> {
     /// What each constraint that binds does.
     pub fn verdicts(&self) -> &[Verdict] {
         &self.verdicts
+    }
+
+    /// How many combinations of the nonholonomic constraints are integrable though none of them is: see
+    /// [`Sorted::integrable_combinations`](pc_nonholo::Sorted::integrable_combinations).
+    pub fn integrable_combinations(&self) -> usize {
+        self.combinations
     }
 
     /// The constraints that follow from others and were dropped.

@@ -43,7 +43,7 @@ position = ["s + l*sin(φ)", 0, "-depth"]
 force = ["-k*s'", 0, "-m*g"]
 "#;
 
-/// No `[lagrangian]` is needed; the drag is −k ṡ along the first axis.
+/// No `[lagrangian]` is needed; the weight counts in the energy, and the drag −k ṡ along the first axis is a force.
 #[test]
 fn particles_give_the_energy_and_the_forces() {
     let graph = Graph::new();
@@ -52,10 +52,11 @@ fn particles_give_the_energy_and_the_forces() {
     let [phi, s_rate, phi_rate] = graph.symbols(["φ", "s'", "φ'"]);
     let expected = (m + cart) * s_rate.square() / 2.0
         + m * l * phi.cos() * s_rate * phi_rate
-        + m * l.square() * phi_rate.square() / 2.0;
+        + m * l.square() * phi_rate.square() / 2.0
+        + m * g * l * phi.cos();
     assert_eq!(pendulum.lagrangian(), expected);
-    let weight = -m * g * l * phi.sin() - k * s_rate * l * phi.cos();
-    assert_eq!(pendulum.forces(), [-k * s_rate, weight]);
+    let drag = -k * s_rate * l * phi.cos();
+    assert_eq!(pendulum.forces(), [-k * s_rate, drag]);
 
     // With a Lagrangian beside them, and the dissipation function of another drag.
     let text = format!(
@@ -64,7 +65,7 @@ fn particles_give_the_energy_and_the_forces() {
     let more = system(&graph, &text);
     let s = graph.symbol("s");
     assert_eq!(more.lagrangian(), expected + s_rate.square() - k * s.square());
-    assert_eq!(more.forces(), [3.0 - k * s_rate, weight - k * phi_rate]);
+    assert_eq!(more.forces(), [3.0 - k * s_rate, drag - k * phi_rate]);
 }
 
 const ON_A_TURNTABLE: &str = r#"

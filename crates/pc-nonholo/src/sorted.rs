@@ -28,6 +28,7 @@ pub enum Kind {
 pub struct Sorted<'g> {
     multipliers: Option<Multipliers<'g>>,
     kinds: Vec<Kind>,
+    combinations: usize,
     redundant: Vec<Redundant>,
 }
 
@@ -58,11 +59,11 @@ impl<'g> Sorted<'g> {
         let redundant = found.redundant().to_vec();
         let binding: Vec<Constraint<'g>> = found.binding().iter().map(|&a| constraints[a].clone()).collect();
         if binding.is_empty() {
-            return Ok(Sorted { multipliers: None, kinds: Vec::new(), redundant });
+            return Ok(Sorted { multipliers: None, kinds: Vec::new(), combinations: 0, redundant });
         }
         let multipliers = system.with_multipliers(&binding)?;
-        let kinds = kinds(&multipliers, at)?;
-        Ok(Sorted { multipliers: Some(multipliers), kinds, redundant })
+        let (kinds, combinations) = kinds(&multipliers, at)?;
+        Ok(Sorted { multipliers: Some(multipliers), kinds, combinations, redundant })
     }
 
     /// The equations of motion with multipliers, unless nothing binds.
@@ -73,6 +74,13 @@ impl<'g> Sorted<'g> {
     /// The kind of each constraint that binds, in the order of [`Multipliers::constraints`].
     pub fn kinds(&self) -> &[Kind] {
         &self.kinds
+    }
+
+    /// How many combinations of the nonholonomic constraints, with coefficients that are functions of time and place, are integrable though
+    /// none of them is: the l + m dimensions of all velocities, l of them allowed, less those of the least involutive family of
+    /// fields that contains the allowed ones, less the integrable constraints.
+    pub fn integrable_combinations(&self) -> usize {
+        self.combinations
     }
 
     /// The constraints that follow from others.
@@ -86,29 +94,33 @@ impl<'g> Sorted<'g> {
     }
 }
 
-/// The kind of each constraint, of the affine ones as if there were no others.
-fn kinds<'g>(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Vec<Kind>, NonholoError> {
+/// The kind of each constraint, of the affine ones as if there were no others, and the number of integrable combinations.
+fn kinds<'g>(
+    multipliers: &Multipliers<'g>,
+    at: &[(Expr<'g>, f64)],
+) -> Result<(Vec<Kind>, usize), NonholoError> {
     let all = multipliers.constraints();
     let affine: Vec<usize> = (0..all.len()).filter(|&a| !all[a].is_nonlinear()).collect();
     let mut kinds = vec![Kind::Nonlinear; all.len()];
     if affine.is_empty() {
-        return Ok(kinds);
+        return Ok((kinds, 0));
     }
     let without: Vec<Constraint<'g>> = affine.iter().map(|&a| all[a].clone()).collect();
     let without = multipliers.equations().system().with_multipliers(&without)?;
-    for (a, kind) in affine.into_iter().zip(kinds_of_affine(&without, at)?) {
+    let (of_affine, combinations) = kinds_of_affine(&without, at)?;
+    for (a, kind) in affine.into_iter().zip(of_affine) {
         kinds[a] = kind;
     }
-    Ok(kinds)
+    Ok((kinds, combinations))
 }
 
 fn kinds_of_affine<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],
-) -> Result<Vec<Kind>, NonholoError> {
+) -> Result<(Vec<Kind>, usize), NonholoError> {
     let m = multipliers.constraints().len();
     if (0..m).all(|a| multipliers.is_holonomic(a)) {
-        return Ok(vec![Kind::Position; m]);
+        return Ok((vec![Kind::Position; m], 0));
     }
     let system = multipliers.equations().system();
     let rows = multipliers.constraints().iter().map(|constraint| constraint.coefficients(system));
@@ -119,7 +131,7 @@ fn kinds_of_affine<'g>(
     near.centre.extend(system.parameters().iter().copied());
     let reached = involutive_closure(system, &allowed, &rows, &near);
     let graph = system.graph();
-    Ok((0..m)
+    let kinds: Vec<Kind> = (0..m)
         .map(|a| {
             if multipliers.is_holonomic(a) {
                 return Kind::Position;
@@ -131,7 +143,9 @@ fn kinds_of_affine<'g>(
             let sums: Vec<Expr<'g>> = components.into_iter().map(|terms| graph.sum(terms)).collect();
             Kind::Nonholonomic { residual: near.largest(graph, &graph.shorten(&sums, &[])) }
         })
-        .collect())
+        .collect();
+    let nonholonomic = kinds.iter().filter(|kind| matches!(kind, Kind::Nonholonomic { .. })).count();
+    Ok((kinds, nonholonomic.saturating_sub(reached.len())))
 }
 
 /// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k: the l quasi-velocities

@@ -133,7 +133,10 @@ fn neutral_directions(
     let at: Vec<(Expr<'_>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
     // One of a cyclic coordinate is none of the other components alone.
     let of_kept = |f: &Expr<'_>| {
-        graph.symbols_of(&[*f]).iter().all(|symbol| kept.contains(symbol) || !at.iter().any(|(y, _)| y == symbol))
+        graph
+            .symbols_of(&[*f])
+            .iter()
+            .all(|symbol| kept.contains(symbol) || !at.iter().any(|(y, _)| y == symbol))
     };
     let functions: Vec<Expr<'_>> = integrals.iter().map(|&(_, f)| f).filter(of_kept).collect();
     let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -303,7 +306,7 @@ impl Steady {
                     Some(1) => "one neutral direction".to_owned(),
                     count => format!("{} neutral directions", count.unwrap_or_default()),
                 };
-                format!("asymptotically stable but for {directions}, by the first approximation and integrals")
+                format!("asymptotically stable but for {directions}, by the first approximation")
             }
             (Verdict::Undecided, None) if self.second_variation.is_some() => {
                 "undecided by the first approximation and by the second variation of the energy".to_owned()

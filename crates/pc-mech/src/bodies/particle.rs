@@ -9,7 +9,8 @@ use crate::error::{MechError, shape};
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along the
 /// same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One that depends on the place
-/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: L has U, and Q_s nothing.
+/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: L has U, and Q_s nothing. So
+/// does a component of another that is such a force.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -73,18 +74,28 @@ impl<'g> Particle<'g> {
         let displacements = moving.operators("the position", &self.position)?;
         let velocity = moving.combine(&displacements);
         let kinetic = self.mass * graph.dot(velocity.iter().copied(), velocity.iter().copied()) / 2.0;
-        let none = vec![Expr::ZERO; moving.eta.len()];
-        let (forces, force_function) = match &self.force {
-            None => (none, Expr::ZERO),
-            Some(force) => {
-                shape("the force on a body", force.len(), self.position.len())?;
-                let force = moving.in_quasi_velocities(force);
-                match self.force_function(&force, moving, &displacements) {
-                    Some(function) => (none, function),
-                    None => (moving.work(&force, &displacements), Expr::ZERO),
+        let (mut forces, mut force_function) = (vec![Expr::ZERO; moving.eta.len()], Expr::ZERO);
+        if let Some(force) = &self.force {
+            shape("the force on a body", force.len(), self.position.len())?;
+            let force = moving.in_quasi_velocities(force);
+            // The whole, or those of its components that have a force function.
+            let parts = match self.force_function(&force, moving, &displacements) {
+                Some(function) => {
+                    force_function = function;
+                    Vec::new()
+                }
+                None => (0..force.len()).map(|i| component(&force, i)).collect(),
+            };
+            for part in parts {
+                match self.force_function(&part, moving, &displacements) {
+                    Some(function) => force_function += function,
+                    None => {
+                        let work = moving.work(&part, &displacements);
+                        forces.iter_mut().zip(work).for_each(|(q, work)| *q += work);
+                    }
                 }
             }
-        };
+        }
         Ok(Share { kinetic, forces, force_function, velocity, angular_velocity: None })
     }
 
@@ -116,4 +127,11 @@ impl<'g> Particle<'g> {
         let is_exact = work.iter().zip(&slopes).all(|(&work, &slope)| (work - factor * slope).is_zero());
         is_exact.then(|| factor * product)
     }
+}
+
+/// The vector whose only component is the i-th of another.
+fn component<'g>(vector: &[Expr<'g>], i: usize) -> Vec<Expr<'g>> {
+    let mut part = vec![Expr::ZERO; vector.len()];
+    part[i] = vector[i];
+    part
 }

@@ -340,9 +340,7 @@ impl Motion {
         let state: Vec<f64> = y.iter().map(|y| y * factor()).collect();
         let mut rates = vec![0.0; y.len()];
         let outcome = match &mut self.form {
-            Form::Staged(staged) => {
-                staged.perturbed_rhs((t, &state, &self.parameters), &mut rates, factor)
-            }
+            Form::Staged(staged) => staged.perturbed_rhs((t, &state, &self.parameters), &mut rates, factor),
             Form::Unrolled(_) | Form::InMomenta(_) => {
                 self.rhs(t, &state, &mut rates)?;
                 Ok(())

@@ -45,7 +45,8 @@ impl Measured {
         let symbols: Vec<Expr<'g>> =
             inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
         let functions = &graph.written_in(functions, &symbols);
-        let symbols: Vec<_> = symbols.iter().map(|symbol| (*symbol, WithError::symbol(named(symbol)))).collect();
+        let symbols: Vec<_> =
+            symbols.iter().map(|symbol| (*symbol, WithError::symbol(named(symbol)))).collect();
         let measured = graph.evaluate(functions, &symbols)?;
         let (values, errors): (Vec<_>, Vec<_>) = measured.iter().map(|f| (f.value, f.error)).unzip();
         let program = Program::new(&measuring, &inputs_here, &[values, errors].concat())?;

@@ -105,7 +105,7 @@ impl<'g> Assembler<'g, '_> {
             let bare = |c: &Constraint<'g>| eta.iter().copied().find(|&eta| eta == c.expression());
             multipliers.constraints().iter().map(bare).collect()
         });
-        let redundant = sorted.redundant().to_vec();
+        let (redundant, combinations) = (sorted.redundant().to_vec(), sorted.integrable_combinations());
         let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
         // What is dropped has no reaction.
         let none =
@@ -120,12 +120,12 @@ impl<'g> Assembler<'g, '_> {
         let Some(vanishing) = vanishing else {
             let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
             let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);
-            return Ok(bound.with_undetermined(undetermined));
+            return Ok(bound.with_undetermined(undetermined).with_integrable_combinations(combinations));
         };
         let constrained = |system: &System<'g>| Constrained::new(system, &vanishing).map_err(refused);
         let form = Form::Vanishing(Box::new(constrained(&system)?));
         let bound = Bound::new(form, multipliers.clone(), verdicts.clone(), redundant.clone());
-        let bound = bound.with_undetermined(undetermined.clone());
+        let bound = bound.with_undetermined(undetermined.clone()).with_integrable_combinations(combinations);
         let observed = system.integrals().iter().chain(system.outputs());
         let reactions = multipliers.reactions();
         if !observed.into_iter().any(|(_, f)| reactions.iter().any(|&reaction| f.depends_on(reaction))) {
@@ -133,7 +133,8 @@ impl<'g> Assembler<'g, '_> {
         }
         let known = bound.reactions(at).map_err(refused)?;
         let form = Form::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
-        Ok(Bound::new(form, multipliers, verdicts, redundant).with_undetermined(undetermined))
+        let bound = Bound::new(form, multipliers, verdicts, redundant).with_undetermined(undetermined);
+        Ok(bound.with_integrable_combinations(combinations))
     }
 
     /// The constraint, in quasi-velocities.
