@@ -4,11 +4,11 @@ use std::ffi::c_char;
 
 use pc_mech::Graph;
 
-use crate::draft::{Draft, Section, number, quoted};
+use crate::draft::{Draft, Section, list, number, numbers as list_of, quoted};
 use crate::entry::entry;
 use crate::error::{Fault, pc_error};
 use crate::model::{Contents, Origin, boxed, change, pc_model};
-use crate::pointer::{clear, finite, text, write};
+use crate::pointer::{clear, finite, numbers, text, write};
 use crate::status::pc_status;
 
 /// A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
@@ -79,6 +79,166 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
+}
+
+/// Adds a parameter that is an expression in those before it, which it follows until it is set itself.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_parameter_expression(
+    model: *mut pc_model,
+    name: *const c_char,
+    expression: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, expression) = unsafe { (text(name, "name")?, text(expression, "expression")?) };
+        draft.add(Section::Parameters, &[name], quoted(expression));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_parameter_expression", write) }
+}
+
+/// Adds an input: a value that is constant until it is set, as parameters are, after all of which it comes. Forces, rates of
+/// states, events and what is watched may contain it, but nothing that velocities or momenta depend on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_input(
+    model: *mut pc_model,
+    name: *const c_char,
+    value: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        draft.add(Section::Inputs, &[name], number(finite(value, "value")?));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_input", write) }
+}
+
+/// Adds an input that is a function of time: `length` values at rising times, between them "linear", "cubic" or "hold"; NULL
+/// for "linear". No step of a solver crosses one of the times. Its values are not set otherwise.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_input_table(
+    model: *mut pc_model,
+    name: *const c_char,
+    times: *const f64,
+    values: *const f64,
+    length: usize,
+    interpolation: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, null or `length` numbers, as the preamble demands.
+        let (name, times, values) = unsafe {
+            (
+                text(name, "name")?,
+                numbers(times, length, length, "times")?,
+                numbers(values, length, length, "values")?,
+            )
+        };
+        for &number in times.iter().chain(values) {
+            finite(number, "an entry of the table")?;
+        }
+        // SAFETY: null or text, as the preamble demands.
+        let interpolation = unsafe { choice(interpolation, "interpolation") }?;
+        draft.add(Section::Inputs, &[name, "times"], list_of(times));
+        draft.add(Section::Inputs, &[name, "values"], list_of(values));
+        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_input_table", write) }
+}
+
+/// Adds an input whose table is a column of a file of numbers with commas between them, below a line of names; otherwise as
+/// pc_model_add_input_table. `time` is the name of the column of times, NULL for "t" or else the first. The path is taken from
+/// the working directory as it is now.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_input_file(
+    model: *mut pc_model,
+    name: *const c_char,
+    path: *const c_char,
+    column: *const c_char,
+    time: *const c_char,
+    interpolation: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, path, column, interpolation) = unsafe {
+            (
+                text(name, "name")?,
+                text(path, "path")?,
+                text(column, "column")?,
+                choice(interpolation, "interpolation")?,
+            )
+        };
+        let absolute =
+            std::path::absolute(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+        draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
+        draft.add(Section::Inputs, &[name, "column"], quoted(column));
+        if !time.is_null() {
+            // SAFETY: text, as above.
+            draft.add(Section::Inputs, &[name, "time"], quoted(unsafe { text(time, "time") }?));
+        }
+        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_input_file", write) }
+}
+
+/// The word for how a table is read; "linear" where it is NULL.
+///
+/// # Safety
+/// `word` is null or text.
+unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, Fault> {
+    // SAFETY: as promised.
+    if word.is_null() { Ok("linear") } else { unsafe { text(word, what) } }
+}
+
+/// Adds a first-order state with its value at the start and its rate: an expression of time, coordinates, velocities and
+/// states. It is integrated with the motion and comes after the velocities in the state; no frame knows it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_state(
+    model: *mut pc_model,
+    name: *const c_char,
+    rate: *const c_char,
+    start: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, rate) = unsafe { (text(name, "name")?, text(rate, "rate")?) };
+        draft.add(Section::States, &[name, "rate"], quoted(rate));
+        draft.add(Section::States, &[name, "start"], number(finite(start, "start")?));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_state", write) }
+}
+
+/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of parameters and t: it acts on
+/// the mass centres of all bodies and counts in the energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_gravity(
+    model: *mut pc_model,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let acceleration = unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] };
+        draft.put(Section::Gravity, &["acceleration"], list(&acceleration));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_gravity", write) }
 }
 
 /// Adds a name for an expression.

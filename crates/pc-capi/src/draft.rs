@@ -27,15 +27,18 @@ struct Entry {
 pub(crate) enum Section {
     Heading,
     Parameters,
+    Inputs,
     Definitions,
     Coordinates,
     QuasiVelocities,
+    States,
     Kinematics,
     Algebra,
     Brackets,
     Constraints,
     Lagrangian,
     Bodies,
+    Gravity,
     Forces,
     Integrals,
     Outputs,
@@ -43,18 +46,21 @@ pub(crate) enum Section {
     Simulation,
 }
 
-const SECTIONS: [(Section, &str); 16] = [
+const SECTIONS: [(Section, &str); 19] = [
     (Section::Heading, "model"),
     (Section::Parameters, "parameters"),
+    (Section::Inputs, "inputs"),
     (Section::Definitions, "definitions"),
     (Section::Coordinates, "coordinates"),
     (Section::QuasiVelocities, "quasi_velocities"),
+    (Section::States, "states"),
     (Section::Kinematics, "kinematics"),
     (Section::Algebra, "algebra"),
     (Section::Brackets, "algebra.brackets"),
     (Section::Constraints, "constraints"),
     (Section::Lagrangian, "lagrangian"),
     (Section::Bodies, "bodies"),
+    (Section::Gravity, "gravity"),
     (Section::Forces, "forces"),
     (Section::Integrals, "integrals"),
     (Section::Outputs, "outputs"),
@@ -83,19 +89,22 @@ impl Draft {
         }
     }
 
-    /// Gives a parameter that has been added a new value.
+    /// Gives a parameter, or an input without a table, that has been added a new value.
     pub(crate) fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
-        if let Some(entry) = self.find(Section::Parameters, &[name]) {
-            entry.value = number(value);
-            return Ok(());
+        for section in [Section::Parameters, Section::Inputs] {
+            if let Some(entry) = self.find(section, &[name]) {
+                entry.value = number(value);
+                return Ok(());
+            }
         }
         let known = self.names(Section::Parameters);
         Err(UnknownParameter { name: name.to_owned(), known })
     }
 
-    /// Gives a coordinate or quasi-velocity that has been added another start value; velocities `x'` are added.
+    /// Gives a coordinate, quasi-velocity or first-order state that has been added another start value; velocities `x'` are added.
     pub(crate) fn set_start(&mut self, name: &str, value: String) -> Result<(), UnknownStart> {
-        let places: [(Section, &[&str]); 3] = [
+        let places: [(Section, &[&str]); 4] = [
+            (Section::States, &[name, "start"]),
             (Section::Coordinates, &[name]),
             (Section::QuasiVelocities, &[name, "start"]),
             (Section::QuasiVelocities, &[name]),
@@ -116,6 +125,7 @@ impl Draft {
             return Ok(());
         }
         known.extend(self.names(Section::QuasiVelocities));
+        known.extend(self.names(Section::States));
         Err(UnknownStart { name: name.to_owned(), known })
     }
 
@@ -186,6 +196,12 @@ pub(crate) fn quoted(text: &str) -> String {
 pub(crate) fn list(texts: &[&str]) -> String {
     let texts: Vec<String> = texts.iter().map(|text| quoted(text)).collect();
     format!("[{}]", texts.join(", "))
+}
+
+/// A list of finite numbers of TOML.
+pub(crate) fn numbers(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
+    format!("[{}]", values.join(", "))
 }
 
 /// A finite number of TOML that reads back as the same.

@@ -160,16 +160,35 @@ impl Integration {
 
     /// What the motion can be taken up from. It begins anew there itself.
     pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, Fault> {
-        if self.events.has_own() {
-            let why = "there are events of the program's own";
-            return Err(Fault::Unsupported { what: "a checkpoint", why });
-        }
-        let checkpoint = match &self.engine {
-            Engine::Smooth(cvode) => cvode.checkpoint(),
-            Engine::Hybrid(hybrid) => hybrid.checkpoint(),
-        };
+        let checkpoint = self.stand("a checkpoint")?;
         self.begin(&checkpoint, self.events.clone())?;
         Ok(checkpoint)
+    }
+
+    /// Begins anew where it stands with these values of the parameters.
+    pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), Fault> {
+        let stand = self.stand("a change of parameters")?;
+        let (mut field, mut events) = (self.engine.field().clone(), self.events.clone());
+        let (found, expected) = (values.len(), field.parameters().len());
+        if found != expected {
+            return Err(Fault::Length { what: "the parameters", found, expected });
+        }
+        field.parameters_mut().copy_from_slice(values);
+        events.set_parameters(values);
+        let engine = Engine::new(field, &stand, &self.options, events.clone())?;
+        self.earlier = self.statistics();
+        (self.engine, self.events) = (engine, events);
+        Ok(())
+    }
+
+    fn stand(&self, what: &'static str) -> Result<Checkpoint, Fault> {
+        if self.events.has_own() {
+            return Err(Fault::Unsupported { what, why: "there are events of the program's own" });
+        }
+        Ok(match &self.engine {
+            Engine::Smooth(cvode) => cvode.checkpoint(),
+            Engine::Hybrid(hybrid) => hybrid.checkpoint(),
+        })
     }
 
     pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {

@@ -191,6 +191,14 @@ impl VectorField for Field {
         delegate!(self, field => field.restart(t, y));
     }
 
+    fn breaks(&self) -> &[f64] {
+        delegate!(self, field => field.breaks())
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        delegate!(self, field => field.enter(t, end))
+    }
+
     fn component_name(&self, i: usize) -> String {
         delegate!(self, field => field.component_name(i))
     }

@@ -64,6 +64,11 @@ impl Followed {
         self.list.is_empty()
     }
 
+    /// Gives the events of the model other values of the parameters.
+    pub(crate) fn set_parameters(&mut self, values: &[f64]) {
+        self.model.set_parameters(values);
+    }
+
     /// Whether some are the program's.
     pub(crate) fn has_own(&self) -> bool {
         !self.own.is_empty()

@@ -111,6 +111,30 @@ pub(crate) unsafe fn integrate(
     unsafe { entry(error, body) }
 }
 
+/// Has a solver go on with the parameters and inputs of the system as they are now, from where it stands: it begins anew there,
+/// at order 1. So inputs are changed between two calls of pc_solver_advance. The system is that of the solver, or one of the
+/// same model. PC_UNSUPPORTED with events of pc_solver_add_event.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_take_parameters(
+    solver: *mut pc_solver,
+    system: *const pc_system,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let mut values = Vec::new();
+    let read = |_: &Inventory, inner: &mut Inner| {
+        values.extend_from_slice(inner.field.parameters());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    match unsafe { inside(system, error, read) } {
+        pc_status::PC_OK => {}
+        refused => return refused,
+    }
+    let set = |integration: &mut Integration, _: usize| integration.set_parameters(&values);
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, set) }
+}
+
 /// Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
 /// PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
 /// After a failure pc_solver_time and pc_solver_state tell what was reached.

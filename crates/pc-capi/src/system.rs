@@ -3,7 +3,7 @@
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
 
-use ::pc_model::{Flow, FlowEvents, Model, Variables};
+use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
 use pc_expr::{Event, Events, Pattern};
 use pc_mech::{Graph, LegendreTransform, VectorField};
 
@@ -65,6 +65,8 @@ impl Inventory {
 #[derive(Clone)]
 pub(crate) struct Inner {
     pub(crate) field: Field,
+    /// The values of the parameters, of which some follow others.
+    values: Parameters,
     /// The time and state with the values of the integrals that are kept by projection.
     kept_at: (f64, Vec<f64>),
     /// What happens where; none in most models.
@@ -114,7 +116,8 @@ impl pc_system {
         };
         let field = Field::new(flow.motion, forces)?;
         let kept_at = (assembly.t_start, flow.start);
-        let inner = Inner { field, kept_at, events: flow.events, mechanics: None, legendre: None };
+        let values = inventory.model.parameter_values().clone();
+        let inner = Inner { field, values, kept_at, events: flow.events, mechanics: None, legendre: None };
         Ok(pc_system { inventory: Arc::new(inventory), direct: OnceLock::new(), inner: Held::new(inner) })
     }
 
@@ -342,7 +345,7 @@ pub unsafe extern "C" fn pc_system_parameters(
 }
 
 /// Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
-/// keep their values.
+/// keep their values. Inputs come after the parameters; those with a table are read from it whatever they are set to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameters(
     system: *mut pc_system,
@@ -356,6 +359,7 @@ pub unsafe extern "C" fn pc_system_set_parameters(
         for &value in values {
             finite(value, "a parameter")?;
         }
+        inner.values.set_all(values);
         system.set_parameters(inner, |parameters| parameters.copy_from_slice(values));
         Ok(())
     };
@@ -363,7 +367,8 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     unsafe { holding(system, error, set) }
 }
 
-/// Sets one parameter, by its place; otherwise as pc_system_set_parameters.
+/// Sets one parameter, by its place; those that are expressions in it follow, unless they have been set themselves. Otherwise
+/// as pc_system_set_parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameter(
     system: *mut pc_system,
@@ -377,7 +382,12 @@ pub unsafe extern "C" fn pc_system_set_parameter(
             return Err(Fault::Index { what: "the parameters", index, count });
         }
         let value = finite(value, "value")?;
-        system.set_parameters(inner, |parameters| parameters[index] = value);
+        if inner.values.is_table(index) {
+            return Err(Fault::Unsupported { what: "setting this input", why: "it is read from a table" });
+        }
+        inner.values.set(index, value);
+        let values = inner.values.values().to_vec();
+        system.set_parameters(inner, |parameters| parameters.copy_from_slice(&values));
         Ok(())
     };
     // SAFETY: as the preamble demands.

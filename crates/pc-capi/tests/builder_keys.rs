@@ -68,6 +68,25 @@ fn everything() -> Model {
     say!(model, pc_model_set_description, "what").unwrap();
     say!(model, pc_model_set_reference, "whence").unwrap();
     say!(model, pc_model_add_parameter, "m"; 1.0).unwrap();
+    say!(model, pc_model_add_parameter_expression, "m2", "m^2").unwrap();
+    say!(model, pc_model_add_input, "u"; 0.5).unwrap();
+    let (name, times, values) = (c("pull"), [0.0, 1.0], [2.0, 3.0]);
+    // SAFETY: a live model, a text and two lists of two numbers.
+    let add = |error| unsafe {
+        pc_model_add_input_table(
+            model.0,
+            name.as_ptr(),
+            times.as_ptr(),
+            values.as_ptr(),
+            2,
+            ptr::null(),
+            error,
+        )
+    };
+    call(add).unwrap();
+    say!(model, pc_model_add_input_file, "push", "/x.csv", "u", "s", "hold").unwrap();
+    say!(model, pc_model_add_state, "z", "-z"; 0.25).unwrap();
+    say!(model, pc_model_set_gravity, "0", "0", "-9.81").unwrap();
     say!(model, pc_model_add_definition, "twice", "2*m").unwrap();
     say!(model, pc_model_add_coordinate, "x"; 0.0).unwrap();
     say!(model, pc_model_add_quasi_velocity, "v", "x'"; 0.5).unwrap();

@@ -16,6 +16,9 @@ use crate::text::say;
 const NO_EVENTS: &str =
     "The events of the model are not part of this source: it has the equations between them.";
 
+const NO_TABLES: &str = "The tables of inputs are not part of this source: their values at each time are arguments of its \
+                         functions, like parameters.";
+
 /// Writes the source of a model into a directory, one file after the other, each whole.
 ///
 /// # Errors
@@ -42,10 +45,16 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
         say(format_args!("note: {NO_EVENTS}\n"));
         remarks.push(NO_EVENTS.to_owned());
     }
+    let has_tables = !equations.system().signals().is_empty();
+    if has_tables {
+        say(format_args!("note: {NO_TABLES}\n"));
+        remarks.push(NO_TABLES.to_owned());
+    }
     if !remarks.is_empty() {
         options = options.remark(remarks.join("\n"));
     }
-    if let Some(t_end) = &model.document().simulation.t_end {
+    // A motion with the inputs of the start would be another.
+    if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
         let system = equations.system();
         options = options.start(assembly.t_start, &assembly.start_of(&system.state()), t_end.value);
     }

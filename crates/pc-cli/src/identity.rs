@@ -16,6 +16,12 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     identity.extend(
         model.parameters().map(|(name, value)| entry(&format!("the parameter {name} ="), value.to_string())),
     );
+    let tables = model.parameter_values().tables().into_iter();
+    identity.extend(tables.map(|(place, table)| {
+        let numbers = table.times().iter().chain(table.values()).flat_map(|number| number.to_le_bytes());
+        let sum = crc32fast::hash(&numbers.collect::<Vec<u8>>());
+        entry(&format!("the table of input {}:", place + 1), format!("{:08x}", sum))
+    }));
     identity.extend([
         entry("--project-start", model.projects_start().to_string()),
         entry("--keep", model.held_start_names().join(",")),

@@ -113,6 +113,17 @@ pub trait VectorField {
     /// an impact: what was to be kept before may have another value.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
+    /// The times, rising, at which f is not smooth in t, such as those of a table that it reads: no step crosses one.
+    fn breaks(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Says that the evaluations that follow are on that side of t, a start or a [break](VectorField::breaks), that is towards
+    /// `end`. Whether f jumped there, so that a method that remembers earlier steps has to begin anew.
+    fn enter(&mut self, _t: f64, _end: f64) -> bool {
+        false
+    }
+
     /// Name of component `i` of y, for messages.
     fn component_name(&self, i: usize) -> String {
         format!("y[{i}]")
@@ -164,6 +175,12 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn restart(&mut self, t: f64, y: &[f64]) {
         (**self).restart(t, y);
+    }
+    fn breaks(&self) -> &[f64] {
+        (**self).breaks()
+    }
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        (**self).enter(t, end)
     }
     fn component_name(&self, i: usize) -> String {
         (**self).component_name(i)

@@ -28,6 +28,7 @@ pub struct SystemBuilder<'g> {
     structure: Option<StructureCoefficients<'g>>,
     near: Neighbourhood<'g>,
     parameters: Vec<(Expr<'g>, f64)>,
+    signals: Vec<Expr<'g>>,
     /// Each z with ż.
     states: Vec<(Expr<'g>, Expr<'g>)>,
     /// Terms of L(t, x, η).
@@ -65,6 +66,7 @@ impl<'g> SystemBuilder<'g> {
             structure: None,
             near: Neighbourhood::default(),
             parameters: Vec::new(),
+            signals: Vec::new(),
             states: Vec::new(),
             lagrangian: Vec::new(),
             in_velocities: Vec::new(),
@@ -82,6 +84,14 @@ impl<'g> SystemBuilder<'g> {
     pub fn parameter(mut self, symbol: Expr<'g>, value: f64) -> Self {
         self.parameters.push((symbol, value));
         self
+    }
+
+    /// Declares a symbol to be a parameter whose value is a function of time, with its value at the start. What depends on it
+    /// is not taken for an integral. A [`Motion`](crate::Motion::driven_by) is given its [tables](crate::Signals).
+    #[must_use]
+    pub fn signal(mut self, symbol: Expr<'g>, value: f64) -> Self {
+        self.signals.push(symbol);
+        self.parameter(symbol, value)
     }
 
     /// Names the coordinates x_1..x_n; none for equations on an algebra alone.
@@ -354,7 +364,7 @@ impl<'g> SystemBuilder<'g> {
     /// # Errors
     /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
     /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed or contradict it;
-    /// [`MechError::FrameOfVelocities`] for a frame that contains velocities;
+    /// [`MechError::FrameOfVelocities`] for a frame that contains velocities; [`MechError::SignalInMomentum`];
     /// [`MechError::OfState`] for a frame or a body placed by first-order states;
     /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
     /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
@@ -418,6 +428,13 @@ impl<'g> SystemBuilder<'g> {
         let lagrangian = self.graph.sum(terms);
         let forces: Vec<Expr<'g>> = (0..k).map(|s| self.graph.sum(parts.iter().map(|q| q[s]))).collect();
         self.graph.check(&[lagrangian])?;
+        let momenta = self.graph.gradient(lagrangian, &eta);
+        let moving = |u: &&Expr<'g>| {
+            momenta.iter().chain(frame.b().entries()).chain(frame.b0()).any(|part| part.depends_on(**u))
+        };
+        if let Some(u) = self.signals.iter().find(moving) {
+            return Err(MechError::SignalInMomentum { input: u.to_string() });
+        }
         self.graph.check(&forces)?;
         let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
         self.graph.check(&rates)?;
@@ -429,6 +446,7 @@ impl<'g> SystemBuilder<'g> {
             quasi_velocities: eta,
             states: self.states,
             parameters: self.parameters,
+            signals: self.signals,
             lagrangian,
             forces,
             external,

@@ -98,6 +98,7 @@ impl<'g> System<'g> {
             states: self.states_in(put),
             bodies: self.bodies.map(put),
             parameters: self.parameters.clone(),
+            signals: self.signals.clone(),
             external: self.external.clone(),
             quasi_velocities: symbols,
             structure,

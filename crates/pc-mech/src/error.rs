@@ -22,6 +22,12 @@ pub enum MechError {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
+    /// A frame or a kinetic energy that contains an input whose rate is not known.
+    #[error("velocities or momenta depend on the input `{input}`, whose rate is not known")]
+    SignalInMomentum {
+        /// The input.
+        input: String,
+    },
     /// A part of the frame that depends on a first-order state.
     #[error("{what} depends on the first-order state `{state}`, which is no part of the frame")]
     OfState {

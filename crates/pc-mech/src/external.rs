@@ -398,6 +398,14 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.restart(t, y);
     }
 
+    fn breaks(&self) -> &[f64] {
+        self.motion.breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        self.motion.enter(t, end)
+    }
+
     fn component_name(&self, i: usize) -> String {
         self.motion.component_name(i)
     }

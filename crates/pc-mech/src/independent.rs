@@ -130,6 +130,7 @@ impl<'g> Multipliers<'g> {
         Ok(System {
             forces: free.iter().enumerate().map(|(s, eta)| force(eta) + push(s)).collect(),
             parameters: system.parameters().to_vec(),
+            signals: system.signals().to_vec(),
             external: system.external_forces().to_vec(),
             lagrangian: put(&[system.lagrangian()])[0],
             integrals: named(system.integrals()),

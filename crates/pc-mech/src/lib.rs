@@ -335,6 +335,7 @@ mod poincare;
 mod reduction;
 mod restriction;
 mod resultants;
+mod signals;
 mod stability;
 mod system;
 mod velocities;
@@ -369,6 +370,7 @@ pub use pc_expr::{
 };
 pub use poincare::Equations;
 pub use resultants::BodyReaction;
+pub use signals::{Interpolation, OutsideTable, Signals, Table, TableError};
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady::{SteadyMotion, SteadyOptions};

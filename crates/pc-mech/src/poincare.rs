@@ -158,8 +158,7 @@ impl<'g> Equations<'g> {
     pub fn with_parameters_bound(&self) -> Equations<'g> {
         let system = self.system.with_parameters_bound();
         let graph = system.graph();
-        let numbers: Vec<(Expr<'g>, Expr<'g>)> =
-            self.system.parameters.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let numbers = self.system.numbers();
         let order = system.collecting_order();
         let bind = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &numbers), &order);
         let (k, mass) = (self.mass.rows(), bind(self.mass.entries()));

@@ -73,6 +73,7 @@ impl<'g> System<'g> {
             quasi_velocities: self.quasi_velocities.clone(),
             states,
             parameters: self.parameters.clone(),
+            signals: self.signals.clone(),
             external: self.external.clone(),
             lagrangian,
             forces,

@@ -61,6 +61,7 @@ impl<'g> System<'g> {
             structure: self.structure.clone(),
             quasi_velocities: self.quasi_velocities[..free].to_vec(),
             parameters: self.parameters.clone(),
+            signals: self.signals.clone(),
             external: self.external.clone(),
             lagrangian: put(self.lagrangian),
             forces: self.forces[..free].iter().map(|&q| put(q)).collect(),

@@ -18,6 +18,8 @@ pub struct System<'g> {
     /// Each z with ż.
     pub(crate) states: Vec<(Expr<'g>, Expr<'g>)>,
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
+    /// Those of the parameters that are functions of time.
+    pub(crate) signals: Vec<Expr<'g>>,
     pub(crate) lagrangian: Expr<'g>,
     pub(crate) forces: Vec<Expr<'g>>,
     pub(crate) external: Vec<(String, Expr<'g>)>,
@@ -79,6 +81,22 @@ impl<'g> System<'g> {
     /// The parameters with their values, in the order of declaration.
     pub fn parameters(&self) -> &[(Expr<'g>, f64)] {
         &self.parameters
+    }
+
+    /// The parameters that are [functions of time](SystemBuilder::signal).
+    pub fn signals(&self) -> &[Expr<'g>] {
+        &self.signals
+    }
+
+    /// The signals u with symbols for u̇, of which nothing is known.
+    pub(crate) fn signal_rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.signals.iter().map(|&u| (u, self.unused(format!("{u}'"), "_"))).collect()
+    }
+
+    /// The parameters that are numbers, with these.
+    pub(crate) fn numbers(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let numbers = self.parameters.iter().filter(|(symbol, _)| !self.signals.contains(symbol));
+        numbers.map(|&(symbol, value)| (symbol, value.into())).collect()
     }
 
     /// L(t, x, η) = T + U.
@@ -152,12 +170,11 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with the parameters replaced by their numbers: none is left to be changed at run time.
+    /// The same system with the parameters replaced by their numbers: none is left to be changed at run time but signals.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();
-        let numbers: Vec<(Expr<'g>, Expr<'g>)> =
-            self.parameters.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let numbers = self.numbers();
         let bind = |x: Expr<'g>| graph.substitute(&[x], &numbers)[0];
         let named =
             |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), bind(*x))).collect();
@@ -166,7 +183,8 @@ impl<'g> System<'g> {
             structure: self.structure.map(bind),
             quasi_velocities: self.quasi_velocities.clone(),
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
-            parameters: Vec::new(),
+            parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
+            signals: self.signals.clone(),
             lagrangian: bind(self.lagrangian),
             forces: self.forces.iter().map(|&x| bind(x)).collect(),
             external: self.external.clone(),

@@ -10,7 +10,7 @@ mod resultants;
 mod start;
 mod trial;
 
-use pc_mech::{Expr, Graph, System};
+use pc_mech::{Expr, Graph, MechError, System};
 
 use self::bodies::Body;
 use self::trial::StartHeld;
@@ -116,8 +116,12 @@ impl<'g> Assembler<'g, '_> {
         if let Some(acceleration) = gravity {
             builder = builder.gravity(|_| acceleration);
         }
-        for (symbol, value) in parameters {
-            builder = builder.parameter(symbol, value);
+        let given = self.model.parameter_values();
+        for (place, (symbol, value)) in parameters.into_iter().enumerate() {
+            builder = match given.is_table(place) {
+                true => builder.signal(symbol, value),
+                false => builder.parameter(symbol, value),
+            };
         }
         for (name, value) in integrals {
             builder = builder.integral(name, |_, _, _| value);
@@ -130,6 +134,7 @@ impl<'g> Assembler<'g, '_> {
         }
         builder = builder.external_force(self.model.external_forces());
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
+        self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let held = StartHeld::new(self.model, if completing.is_empty() { 0 } else { declared });
         let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), &held)?;
@@ -137,6 +142,20 @@ impl<'g> Assembler<'g, '_> {
             self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;
         Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
+    }
+
+    /// That no momentum depends on an input: it would change with it, at a rate that is not known.
+    fn check_inputs(&self, system: &System<'g>) -> Result<(), ModelError> {
+        let momenta = system.momenta();
+        let inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
+        let moves = |input: &&String| momenta.iter().any(|p| p.depends_on(self.graph.symbol(input)));
+        match { inputs }.find(moves) {
+            Some(input) => {
+                let error = MechError::SignalInMomentum { input: input.clone() };
+                Err(self.model.derivation_error(error))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.

@@ -12,12 +12,14 @@ use std::ops::Range;
 
 use pc_expr::Direction;
 use pc_expr::parse::{Ast, Span, nearest, parse};
+use pc_mech::Interpolation;
 
 use crate::error::{ErrorKind, ModelError, SECTIONS};
 use crate::source::{Place, Source};
 
 mod bodies;
 mod checks;
+mod inputs;
 mod reader;
 mod sections;
 mod simulation;
@@ -104,6 +106,8 @@ pub struct Document {
     pub model: Heading,
     /// `[parameters]`: what stays adjustable, each with its number, or an expression in those before it.
     pub parameters: Vec<NamedExpression>,
+    /// `[inputs]`
+    pub inputs: Vec<Input>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
     /// `[coordinates]`, each with its start value.
@@ -147,6 +151,48 @@ pub struct Heading {
     pub description: Option<Located<String>>,
     /// Where it comes from.
     pub reference: Option<Located<String>>,
+}
+
+/// What a program, or a table, gives the system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: InputValue,
+}
+
+/// The value of an input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InputValue {
+    /// A number, or an expression in parameters: constant until it is set.
+    Constant(Expression),
+    /// Values at times.
+    Lists {
+        /// Where they stand.
+        place: Place,
+        /// The times.
+        times: Vec<f64>,
+        /// The values.
+        values: Vec<f64>,
+        /// How they are read between the times.
+        interpolation: Interpolation,
+    },
+    /// A column of a file.
+    File(TableFile),
+}
+
+/// A column of a file of numbers with commas between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableFile {
+    /// Its path, from where the model's file is.
+    pub file: Located<String>,
+    /// The column of the values.
+    pub column: Located<String>,
+    /// That of the times; `t`, else the first one, where it is left out.
+    pub time: Option<Located<String>>,
+    /// How they are read between the times.
+    pub interpolation: Interpolation,
 }
 
 /// η_s: at least one of `is` and `start` is given.
@@ -374,6 +420,7 @@ impl Document {
         match key {
             "model" => self.model = sections::heading(&table)?,
             "parameters" => self.parameters = table.declarations()?,
+            "inputs" => self.inputs = inputs::inputs(&table)?,
             "definitions" => self.definitions = table.declarations()?,
             "coordinates" => self.coordinates = table.declarations()?,
             "quasi_velocities" => sections::quasi_velocities(&table, self)?,

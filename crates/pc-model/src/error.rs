@@ -308,6 +308,8 @@ pub enum ErrorKind {
 pub enum Role {
     /// An entry of `[parameters]`.
     Parameter,
+    /// An entry of `[inputs]`.
+    Input,
     /// An entry of `[definitions]`.
     Definition,
     /// An entry of `[coordinates]`.
@@ -326,6 +328,7 @@ impl fmt::Display for Role {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Parameter => "a parameter",
+            Self::Input => "an input",
             Self::Definition => "a definition",
             Self::Coordinate => "a coordinate",
             Self::QuasiVelocity => "a quasi-velocity",
@@ -340,6 +343,7 @@ impl fmt::Display for Role {
 pub(crate) const SECTIONS: &[&str] = &[
     "model",
     "parameters",
+    "inputs",
     "definitions",
     "coordinates",
     "quasi_velocities",
@@ -394,7 +398,7 @@ impl ErrorKind {
             }
             Self::Reserved { name } => reserved(name),
             Self::NameTaken { name, .. } => format!(
-                "parameters, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
+                "parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
                  namespace; choose another name, such as `{name}_1`"
             ),
             Self::NotAPair { .. } => {

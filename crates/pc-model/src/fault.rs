@@ -319,6 +319,20 @@ pub enum Fault {
         /// NaN or an infinity.
         value: f64,
     },
+    /// The table of an input that is none.
+    #[error("{what}")]
+    BadTable {
+        /// What is wrong.
+        what: String,
+        /// What would be right.
+        help: &'static str,
+    },
+    /// d() of an input.
+    #[error("the rate of the input `{name}` is not known")]
+    RateOfInput {
+        /// The input.
+        name: String,
+    },
     /// A value that is not a number at the start.
     #[error("`{text}` is {value} at the start{}", at(state))]
     NotFinite {
@@ -467,6 +481,8 @@ impl Fault {
             }
             Fault::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             Fault::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            Fault::BadTable { help, .. } => (*help).into(),
+            Fault::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
             Fault::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
             Fault::NotFinite { .. } | Fault::SingularStart { .. } => {
                 "start where the coordinates and functions are regular".into()

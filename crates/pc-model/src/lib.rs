@@ -40,6 +40,7 @@ mod resultant;
 mod scope;
 pub mod source;
 mod start;
+mod tables;
 mod variables;
 
 pub use bound::{Bound, Form, Held, Verdict};

@@ -1,9 +1,11 @@
 //! A document as a mechanical system.
 
+use std::sync::Arc;
+
 use pc_expr::Graph;
 use pc_mech::{
     AlgebraError, Canonical, CompileOptions, Equations, Expr, KeptIntegrals, MechError, Motion, Multipliers,
-    System, VectorField,
+    Signals, System, VectorField,
 };
 use pc_nonholo::NonholoError;
 
@@ -163,25 +165,27 @@ impl Model {
         name.map_or_else(|| self.document.source.name(), |name| name.value.as_str())
     }
 
-    /// Sets a parameter to another value than that of the file. Parameters that are expressions in it follow; one that is an
-    /// expression itself is no longer.
+    /// Sets a parameter, or an input that has no table, to another value than that of the file. Parameters that are expressions
+    /// in it follow; one that is an expression itself is no longer.
     ///
     /// # Errors
     /// [`UnknownParameter`] with the parameters there are.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
-        let parameters = &self.document.parameters;
-        let Some(index) = parameters.iter().position(|p| p.name.text == name) else {
-            let known = parameters.iter().map(|p| p.name.text.clone()).collect();
+        let is_set = |&place: &usize| !self.parameters.is_table(place);
+        let names: Vec<String> = self.parameters().map(|(name, _)| name.to_owned()).collect();
+        let Some(index) = names.iter().position(|known| known == name).filter(is_set) else {
+            let known = (0..names.len()).filter(is_set).map(|place| names[place].clone()).collect();
             return Err(UnknownParameter { name: name.to_owned(), known });
         };
         self.parameters.set(index, value);
         Ok(())
     }
 
-    /// The names and values of the parameters.
+    /// The names and values of the parameters, then of the inputs: of those with a table that at the start.
     pub fn parameters(&self) -> impl Iterator<Item = (&str, f64)> {
-        let names = self.document.parameters.iter().map(|p| p.name.text.as_str());
-        names.zip(self.parameters.values().iter().copied())
+        let parameters = self.document.parameters.iter().map(|p| &p.name);
+        let names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
+        names.map(|name| name.text.as_str()).zip(self.parameters.values().iter().copied())
     }
 
     /// The values of the parameters, to be changed by themselves.
@@ -267,12 +271,17 @@ impl Model {
         start: Vec<f64>,
     ) -> Result<(Motion, Vec<f64>), ModelError> {
         let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
-        let mut motion = compiled.map_err(|error| refuse(error.to_string()))?;
+        let mut motion = compiled.map_err(|error| refuse(error.to_string()))?.driven_by(self.signals());
         let mut rate = vec![0.0; start.len()];
         motion.rhs(t_start, &start, &mut rate).map_err(|failure| match MechError::from(failure) {
             error @ MechError::SingularConstraint { .. } => self.constraint_error(error.into()),
             error => refuse(error.to_string()),
         })?;
+        if let Some(name) = self.kept.first().filter(|_| !self.parameters.tables().is_empty()) {
+            let message = format!("`{name}` cannot be kept where inputs change with time");
+            let help = "leave it out of `project`, or give the inputs constant values";
+            return Err(self.error(&self.kept_place(name), Fault::NoForm { message, help }));
+        }
         if !self.kept.is_empty() {
             let kept = kept().map_err(|error| self.derivation_error(error))?;
             let forces = motion.parameters().len() - self.external.len()..;
@@ -283,6 +292,13 @@ impl Model {
             motion.parameters_mut()[forces].fill(0.0);
         }
         Ok((motion, start))
+    }
+
+    /// The inputs that have tables.
+    pub(crate) fn signals(&self) -> Signals {
+        let names: Vec<&str> = self.parameters().map(|(name, _)| name).collect();
+        let tables = self.parameters.tables().into_iter();
+        Signals::new(tables.map(|(place, table)| (names[place], place, Arc::clone(table))))
     }
 
     /// The names of the integrals that the motion is projected to.

@@ -1,17 +1,19 @@
-//! The values of parameters: numbers, and expressions in those before them.
+//! The values of parameters and inputs: numbers, expressions in those before them, and tables.
 
 use std::sync::Arc;
 
 use pc_expr::parse::AstKind;
 use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
+use pc_mech::Table;
 
-use crate::document::{Document, Expression};
+use crate::document::{Document, Expression, InputValue, Name};
 use crate::error::{ErrorKind, ModelError};
 use crate::fault::Fault;
 use crate::scope::Scope;
+use crate::tables;
 
-/// The values of the parameters of a model, in the order of declaration. One that is an expression in those before it
-/// follows these, until it is set itself.
+/// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression in
+/// those before it follows these, until it is set itself.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,
@@ -25,8 +27,20 @@ enum Formula {
     Number,
     /// An expression in all parameters, of which it contains none but those before it.
     Of(Arc<Program>),
-    /// An expression that means nothing.
+    /// A function of time, of which this is the value at the start.
+    Table(Arc<Table>),
+    /// An expression that means nothing, or a table that is none.
     Wrong(ModelError),
+}
+
+/// The names of parameters and inputs, each with its expression, in their order; an input with a table has none.
+fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expression>)> {
+    let parameters =
+        document.parameters.iter().map(|parameter| (&parameter.name, Some(&parameter.expression)));
+    parameters.chain(document.inputs.iter().map(|input| match &input.value {
+        InputValue::Constant(expression) => (&input.name, Some(expression)),
+        InputValue::Lists { .. } | InputValue::File(_) => (&input.name, None),
+    }))
 }
 
 impl Parameters {
@@ -37,17 +51,27 @@ impl Parameters {
         let inputs = Inputs {
             time: None,
             state: Vec::new(),
-            parameters: document.parameters.iter().map(|p| graph.symbol(&p.name.text)).collect(),
+            parameters: written(document).map(|(name, _)| graph.symbol(&name.text)).collect(),
         };
+        let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let mut tables = document.inputs.iter().filter_map(|input| tables::of(document, input).transpose());
         let (mut values, mut formulas) = (Vec::new(), Vec::new());
-        for (place, parameter) in document.parameters.iter().enumerate() {
-            let expression = &parameter.expression;
-            let (value, formula) = match expression.ast.kind {
-                AstKind::Number(value) => (value, Formula::Number),
-                _ => match scope.parameter(place).map(|value| Program::new(&graph, &inputs, &[value])) {
-                    Ok(Ok(program)) => (f64::NAN, Formula::Of(Arc::new(program))),
-                    Ok(Err(_)) => (f64::NAN, Formula::Wrong(not_finite(document, expression, f64::NAN))),
+        for (place, (_, expression)) in written(document).enumerate() {
+            let (value, formula) = match expression.map(|expression| (expression, &expression.ast.kind)) {
+                Some((_, &AstKind::Number(value))) => (value, Formula::Number),
+                Some((expression, _)) => match scope.parameter(place, expression) {
+                    Ok(value) => match Program::new(&graph, &inputs, &[value]) {
+                        Ok(program) => (f64::NAN, Formula::Of(Arc::new(program))),
+                        Err(_) => (f64::NAN, Formula::Wrong(not_finite(document, expression, f64::NAN))),
+                    },
                     Err(error) => (f64::NAN, Formula::Wrong(error)),
+                },
+                None => match tables.next() {
+                    Some(Ok(table)) => {
+                        (table.at(t_start).unwrap_or(f64::NAN), Formula::Table(Arc::new(table)))
+                    }
+                    Some(Err(error)) => (f64::NAN, Formula::Wrong(error)),
+                    None => (f64::NAN, Formula::Number), // each input is a constant or has a table
                 },
             };
             values.push(value);
@@ -63,6 +87,15 @@ impl Parameters {
         &self.values
     }
 
+    /// The tables of inputs, with their places.
+    pub fn tables(&self) -> Vec<(usize, &Arc<Table>)> {
+        let table = |(place, formula)| match formula {
+            &Formula::Table(ref table) => Some((place, table)),
+            Formula::Number | Formula::Of(_) | Formula::Wrong(_) => None,
+        };
+        self.formulas.iter().enumerate().filter_map(table).collect()
+    }
+
     /// Gives number `place` a value, which then stands for its expression. Those that are expressions in it follow.
     ///
     /// # Panics
@@ -73,17 +106,39 @@ impl Parameters {
         self.follow();
     }
 
+    /// Gives all of them values, which then stand for their expressions. Tables are still read.
+    ///
+    /// # Panics
+    /// Unless there are as many.
+    pub fn set_all(&mut self, values: &[f64]) {
+        self.values.copy_from_slice(values);
+        for formula in &mut self.formulas {
+            if !matches!(formula, Formula::Table(_)) {
+                *formula = Formula::Number;
+            }
+        }
+    }
+
+    /// Whether number `place` is an input with a table.
+    pub fn is_table(&self, place: usize) -> bool {
+        matches!(self.formulas.get(place), Some(Formula::Table(_)))
+    }
+
     /// # Errors
-    /// [`ModelError`] at the first expression of the document, whose values these are, that has no finite value.
+    /// [`ModelError`] at the first entry of the document, whose values these are, that has no finite value.
     pub(crate) fn check(&self, document: &Document) -> Result<(), ModelError> {
-        for ((formula, value), parameter) in self.formulas.iter().zip(&self.values).zip(&document.parameters)
+        for ((formula, value), (name, expression)) in
+            self.formulas.iter().zip(&self.values).zip(written(document))
         {
-            match formula {
-                Formula::Wrong(error) => return Err(error.clone()),
-                Formula::Of(_) if !value.is_finite() => {
-                    return Err(not_finite(document, &parameter.expression, *value));
+            match (formula, expression) {
+                (Formula::Wrong(error), _) => return Err(error.clone()),
+                (Formula::Of(_), Some(expression)) if !value.is_finite() => {
+                    return Err(not_finite(document, expression, *value));
                 }
-                Formula::Of(_) | Formula::Number => {}
+                (Formula::Table(table), _) if !value.is_finite() => {
+                    return Err(tables::not_at_start(document, name, table));
+                }
+                _ => {}
             }
         }
         Ok(())

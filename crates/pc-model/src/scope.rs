@@ -70,7 +70,7 @@ impl Stage {
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position | Stage::Inertia => "parameters, coordinates and t",
-            Stage::Gravity => "numbers, parameters and t",
+            Stage::Gravity => "numbers, parameters, inputs and t",
             Stage::Constraint => "parameters, coordinates, velocities and t",
             Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
                 "declared names"
@@ -136,7 +136,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
         let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
         let states = document.states.iter().map(|state| &state.name.text);
-        for name in names.chain(coordinates).chain(quasi_velocities).chain(states) {
+        let inputs = document.inputs.iter().map(|input| &input.name.text);
+        for name in names.chain(inputs).chain(coordinates).chain(quasi_velocities).chain(states) {
             graph.symbol(name);
         }
         let time = graph.symbol("t");
@@ -180,10 +181,14 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.document.quasi_velocities.iter().map(|q| self.graph.symbol(&q.name.text)).collect()
     }
 
-    /// The expression that gives parameter number `place` its value.
-    pub(crate) fn parameter(&mut self, place: usize) -> Result<Expr<'g>, ModelError> {
+    /// The expression that gives parameter number `place`, or an input after all parameters, its value.
+    pub(crate) fn parameter(
+        &mut self,
+        place: usize,
+        expression: &Expression,
+    ) -> Result<Expr<'g>, ModelError> {
         self.context.definition = Some((Stage::Parameter, place));
-        let value = self.resolve(&self.document.parameters[place].expression, Stage::Parameter);
+        let value = self.resolve(expression, Stage::Parameter);
         self.context = Context::default();
         value
     }
@@ -339,7 +344,23 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_coordinate = document.coordinates.iter().any(|c| c.name.text == name);
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
         let is_state = document.states.iter().any(|state| state.name.text == name);
+        let is_input = document.inputs.iter().any(|input| input.name.text == name);
         match stage {
+            _ if is_input => match stage {
+                Stage::Parameter
+                | Stage::Start
+                | Stage::Definition
+                | Stage::Kinematics
+                | Stage::Position
+                | Stage::Inertia
+                | Stage::Constraint => refuse(self),
+                Stage::Rate
+                | Stage::Gravity
+                | Stage::Dynamics
+                | Stage::Event
+                | Stage::Function
+                | Stage::Observation => Ok(self.graph.symbol(name)),
+            },
             Stage::Parameter if self.places.contains_key(name) => refuse(self),
             Stage::Parameter | Stage::Start
                 if name == "t" || is_coordinate || is_quasi_velocity || is_state =>
@@ -390,7 +411,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
         let states = document.states.iter().map(|state| &state.name.text);
         let moving = coordinates.chain(quasi_velocities).chain(states);
-        parameters.chain(definitions).chain(moving).cloned().collect()
+        let inputs = document.inputs.iter().map(|input| &input.name.text);
+        parameters.chain(inputs).chain(definitions).chain(moving).cloned().collect()
     }
 
     fn velocity_of(
@@ -451,6 +473,11 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
+        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
+        if let Some(input) = self.document.inputs.iter().find(input) {
+            let name = input.name.text.clone();
+            return Err(self.error(expression, span, |_| Fault::RateOfInput { name }));
+        }
         let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
         let moves = |z: &Expr<'g>| value.depends_on(*z);
         if stage != Stage::Observation && velocities.iter().chain(&eta).any(moves) {

@@ -261,6 +261,6 @@ fn gravity_depends_on_parameters_and_time_only() {
         let error = refused(&with(entry)).to_string();
         let message = format!("`{name}` cannot be used in the acceleration of gravity\n");
         assert!(error.contains(&message), "{error}");
-        assert!(error.ends_with("help: use numbers, parameters and t only"), "{error}");
+        assert!(error.ends_with("help: use numbers, parameters, inputs and t only"), "{error}");
     }
 }

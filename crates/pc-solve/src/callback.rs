@@ -125,12 +125,18 @@ impl<F> UserData<F> {
         F: VectorField,
     {
         // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.field.restart(t, y);
+        self.begin_anew();
+    }
+
+    /// Says that CVODES has been started anew where it was.
+    pub(crate) fn begin_anew(&mut self) {
+        // SAFETY: owned and live, borrowed exclusively.
         let callbacks = unsafe { self.0.as_mut() };
         callbacks.linear.forget_counts();
         if let Some(offset) = &mut callbacks.offset {
             offset.clear();
         }
-        callbacks.field.restart(t, y);
     }
 
     pub(crate) fn into_field(self) -> F {

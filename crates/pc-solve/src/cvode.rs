@@ -1,5 +1,6 @@
 //! The integrator.
 
+mod breaks;
 mod checkpoint;
 mod dense;
 mod hybrid;
@@ -346,7 +347,7 @@ impl<F: VectorField> Cvode<F> {
             self.memory.set(&mut self.context, "CVodeSetInitStep", sys::CVodeSetInitStep, length)?;
         }
         // CVODES minds its stop time only if the target is not nearer.
-        let target = self.stop_time.unwrap_or(towards);
+        let target = self.stop_before_break(towards)?.or(self.stop_time).unwrap_or(towards);
         let mut t = self.step_time;
         self.restarted = false;
         // SAFETY: all is live and of one context; callbacks use only the user data, which nobody holds meanwhile.

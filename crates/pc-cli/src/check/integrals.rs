@@ -309,7 +309,12 @@ impl<'a, 'g> Search<'a, 'g> {
 
 /// The function with the parameters of a system replaced by their numbers.
 pub(super) fn bind<'g>(system: &System<'g>, function: Expr<'g>) -> Expr<'g> {
-    let numbers: Vec<_> = system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+    let numbers: Vec<_> = system
+        .parameters()
+        .iter()
+        .filter(|(symbol, _)| !system.signals().contains(symbol))
+        .map(|&(symbol, value)| (symbol, value.into()))
+        .collect();
     system.graph().substitute(&[function], &numbers)[0]
 }
 

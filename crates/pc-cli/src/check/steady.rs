@@ -69,7 +69,8 @@ pub(super) fn steady_motion<'g>(
         .chain(equations.mass_matrix().entries())
         .chain(equations.right_hand_side())
         .chain(system.states().iter().map(|(_, rate)| rate));
-    if all.any(|&x| bind(system, x).depends_on(time)) {
+    let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
+    if all.any(|&x| moves(bind(system, x))) {
         return Search::NotAutonomous;
     }
     let Ok(slopes) = motion.linearised(t_start, start) else { return Search::None };

@@ -118,7 +118,9 @@ impl Design {
 }
 
 fn target(model: &Model, name: &str) -> Result<Target, SweepError> {
-    let parameters: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    let values = model.parameter_values();
+    let parameters = model.parameters().enumerate().filter(|&(place, _)| !values.is_table(place));
+    let parameters: Vec<String> = parameters.map(|(_, (name, _))| name.to_owned()).collect();
     let starts = model.start_names();
     if parameters.iter().any(|known| known == name) {
         Ok(Target::Parameter(name.to_owned()))

@@ -16,6 +16,7 @@ use crate::compiled::surface::holding::Held;
 use crate::compiled::unrolled::Unrolled;
 use crate::error::MechError;
 use crate::poincare::Equations;
+use crate::signals::Signals;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
 /// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
@@ -39,6 +40,7 @@ pub struct Motion {
     constraints: Vec<String>,
     surface: Option<Box<Surface>>,
     kept: Option<Box<KeptIntegrals>>,
+    signals: Signals,
 }
 
 /// How f is computed.
@@ -131,6 +133,7 @@ impl FirstOrder<'_> {
             constraints: Vec::new(),
             surface: None,
             kept: None,
+            signals: Signals::default(),
         })
     }
 }
@@ -177,6 +180,62 @@ impl Motion {
         }
     }
 
+    /// The same motion with the values of some of its parameters read from tables at each evaluation. No step of an integrator
+    /// crosses their times.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use pc_mech::{Graph, Interpolation, Signals, System, Table, VectorField};
+    ///
+    /// let graph = Graph::new();
+    /// let pull = graph.symbol("pull");
+    /// let point = System::builder(&graph)
+    ///     .signal(pull, 0.0)
+    ///     .coordinates(["x"])
+    ///     .kinetic(|_, _, v| v[0].square() / 2.0)
+    ///     .forces(|_, _, _| [pull])
+    ///     .build()?;
+    /// let table = Table::new(vec![0.0, 2.0], vec![0.0, 6.0], Interpolation::Linear)?;
+    /// let signals = Signals::new([("pull", 0, Arc::new(table))]);
+    /// let mut motion = point.poincare()?.compile()?.driven_by(signals);
+    /// let mut rates = [0.0; 2];
+    /// motion.rhs(0.5, &[0.0, 1.0], &mut rates)?;
+    /// assert_eq!(rates, [1.0, 1.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If one of their places is not that of a parameter.
+    #[must_use]
+    pub fn driven_by(mut self, signals: Signals) -> Motion {
+        assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
+        match &mut self.form {
+            Form::InMomenta(motion) => motion.inner_mut().signals = signals,
+            Form::Unrolled(_) | Form::Staged(_) => self.signals = signals,
+        }
+        self
+    }
+
+    /// The tables that it is driven by.
+    pub fn signals(&self) -> &Signals {
+        &self.in_quasi_velocities().signals
+    }
+
+    /// Reads the tables, if there are any.
+    #[inline]
+    fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
+        if self.signals.is_empty() {
+            return Ok(());
+        }
+        if self.signals.read(t, &mut self.parameters).map_err(Failure::fatal)?
+            && let Form::Unrolled(unrolled) = &mut self.form
+        {
+            unrolled.forget();
+        }
+        Ok(())
+    }
+
     /// Names of the observables: the integrals, `energy`, the outputs.
     pub fn observable_names(&self) -> &[String] {
         &self.observable_names
@@ -188,13 +247,17 @@ impl Motion {
         self.conserved
     }
 
-    /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names).
+    /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names); not finite where a table
+    /// that it is [driven by](Motion::driven_by) has no value.
     ///
     /// # Panics
     /// If `y` has not the length of the state.
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
-        let mut values = vec![0.0; self.observable_names.len()];
+        let mut values = vec![f64::NAN; self.observable_names.len()];
+        if self.signals.show(t, &mut self.parameters).is_err() {
+            return values;
+        }
         match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, &mut values),
             Form::Staged(staged) => staged.observe(t, y, &self.parameters, &mut values),
@@ -217,6 +280,7 @@ impl Motion {
             states: inner.states,
             quasi_velocities: inner.quasi_velocities.clone(),
             parameters: Vec::new(),
+            signals: Signals::default(),
             options: inner.options,
             observable_names: inner.observable_names.clone(),
             conserved: inner.conserved,
@@ -277,11 +341,11 @@ impl Motion {
         }
     }
 
-    /// The machine code of f; none where f is more than one program of (t, y, p), or is interpreted.
+    /// The machine code of f; none where f is more than one program of (t, y, p), reads tables, or is interpreted.
     pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.machine_code(self.names.len()),
-            Form::Staged(_) | Form::InMomenta(_) => None,
+            Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),
+            Form::Unrolled(_) | Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }
 
@@ -378,6 +442,7 @@ impl Motion {
         entries: &mut [f64],
         layout: Layout,
     ) -> Result<(), Failure> {
+        self.read_signals(t)?;
         let at = (t, y, &self.parameters[..]);
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, layout),
@@ -395,6 +460,7 @@ impl VectorField for Motion {
 
     #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
             Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
@@ -433,6 +499,7 @@ impl VectorField for Motion {
     }
 
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
         let at = (t, y, &self.parameters[..]);
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
@@ -451,6 +518,7 @@ impl VectorField for Motion {
     }
 
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
         let at = (t, y, &self.parameters[..]);
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
@@ -484,6 +552,17 @@ impl VectorField for Motion {
             state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
         }
         kept.set_levels((t, &state, &self.parameters));
+    }
+
+    fn breaks(&self) -> &[f64] {
+        self.signals().breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        match &mut self.form {
+            Form::InMomenta(motion) => motion.inner_mut().enter(t, end),
+            Form::Unrolled(_) | Form::Staged(_) => self.signals.enter(t, end),
+        }
     }
 
     fn component_name(&self, i: usize) -> String {

@@ -104,7 +104,7 @@ impl<'g> Equations<'g> {
         let accelerations = self.accelerations();
         let of_states = system.states().iter().map(|(_, rate)| rate);
         let rates = self.velocities().iter().chain(&accelerations).chain(of_states).copied();
-        let along: Vec<_> = symbols.iter().copied().zip(rates).collect();
+        let along: Vec<_> = symbols.iter().copied().zip(rates).chain(system.signal_rates()).collect();
         let energy = ("energy".to_owned(), self.energy());
         for (name, function) in [&energy].into_iter().chain(integrals) {
             let rate = graph.directional(&[*function], &along)[0];

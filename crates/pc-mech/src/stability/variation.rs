@@ -53,6 +53,14 @@ impl<F: VectorField> VectorField for Variation<F> {
         Ok(())
     }
 
+    fn breaks(&self) -> &[f64] {
+        self.field.breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        self.field.enter(t, end)
+    }
+
     /// The names of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component `x`.
     fn component_name(&self, i: usize) -> String {
         let n = self.field.dim().max(1);

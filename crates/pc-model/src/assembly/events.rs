@@ -93,6 +93,7 @@ impl<'g> Assembler<'g, '_> {
         let what = match () {
             () if name == "t" => "time",
             () if document.parameters.iter().any(|parameter| parameter.name.text == name) => "a parameter",
+            () if document.inputs.iter().any(|input| input.name.text == name) => "an input",
             () if entry(&document.definitions, name).is_some() => "a definition",
             () if entry(&document.integrals, name).is_some() => "an integral",
             () if entry(&document.outputs, name).is_some() => "an output",

@@ -44,8 +44,9 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
 /// A name stands for one thing only.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
     let quasi = document.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
+    let inputs = document.inputs.iter().map(|input| (&input.name, Role::Input));
     let states = document.states.iter().map(|state| (&state.name, Role::State));
-    let mut names: Vec<(&Name, Role)> = quasi.chain(states).collect();
+    let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).collect();
     for (entries, role) in [
         (&document.parameters, Role::Parameter),
         (&document.definitions, Role::Definition),

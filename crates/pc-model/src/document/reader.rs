@@ -311,6 +311,20 @@ impl<'a> Item<'a> {
         }
     }
 
+    /// The value as a list of finite numbers of any length.
+    pub(super) fn numbers(
+        &self,
+        expected: &'static str,
+        example: &'static str,
+    ) -> Result<Vec<f64>, ModelError> {
+        match self.value {
+            DeValue::Array(array) => {
+                self.elements(array).map(|element| Ok(element.number()?.value)).collect()
+            }
+            _ => Err(self.wrong_type(expected, example.split_once(" = ").map_or(example, |(_, list)| list))),
+        }
+    }
+
     /// The value as a list of `N` expressions.
     pub(super) fn array<const N: usize>(
         &self,

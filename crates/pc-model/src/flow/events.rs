@@ -1,7 +1,7 @@
 //! The events of a model on the states that are integrated, whatever their form.
 
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
-use pc_mech::{MechError, Motion, VectorField};
+use pc_mech::{MechError, Motion, Signals, VectorField};
 
 use super::inputs;
 use super::reading::Reading;
@@ -18,6 +18,8 @@ const OFF: f64 = 1e-8;
 pub struct FlowEvents {
     events: Vec<Event>,
     reading: Reading,
+    /// Inputs with tables.
+    signals: Signals,
     functions: Evaluator,
     resets: Vec<Reset>,
     /// The motion under constraints, which knows where they are satisfied.
@@ -74,6 +76,7 @@ impl FlowEvents {
             determining: if completed { (0..assembly.declared).collect() } else { Vec::new() },
             events: declared.iter().map(event).collect(),
             reading: reading.clone(),
+            signals: model.signals(),
             functions: compiled(&functions)?,
             resets: resets.collect::<Result<_, ModelError>>()?,
             constraints: held.then(|| watch.clone().without_kept()),
@@ -109,6 +112,7 @@ impl Events for FlowEvents {
 
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         let all = self.reading.read(t, y).map_err(Failure::recoverable)?;
+        self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
         self.functions.eval(t, &all, self.reading.parameters(), values);
         Ok(())
     }
@@ -119,6 +123,7 @@ impl Events for FlowEvents {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
         let Reset { places, values } = &mut self.resets[event];
         let mut new = vec![0.0; places.len()];
+        self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
         values.eval(t, &all, self.reading.parameters(), &mut new);
         for (&place, value) in places.iter().zip(new) {
             all[place] = value;

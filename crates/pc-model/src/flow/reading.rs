@@ -67,6 +67,11 @@ impl Reading {
         }
     }
 
+    /// Values of the parameters, to be changed.
+    pub(super) fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.parameters
+    }
+
     /// Values of the parameters.
     pub(super) fn parameters(&self) -> &[f64] {
         &self.parameters

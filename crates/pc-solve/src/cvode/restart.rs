@@ -47,4 +47,15 @@ impl<F: VectorField> Cvode<F> {
         // CVODES forgets a stop time that it has reached.
         self.set_stop_time(self.stop_time)
     }
+
+    /// Changes the field where the integration stands, such as the value of an input, and [begins anew](Cvode::restart)
+    /// there: what was computed ahead of [`time`](Cvode::time) is forgotten.
+    ///
+    /// # Errors
+    /// As for [`restart`](Cvode::restart); the field is changed nevertheless.
+    pub fn change(&mut self, change: impl FnOnce(&mut F)) -> Result<(), SolveError> {
+        let (t, state) = (self.time, self.state().to_vec());
+        change(self.callbacks.field_mut());
+        self.restart(t, &state)
+    }
 }

@@ -1,0 +1,292 @@
+//! Inputs that are functions of time given by tables.
+
+use std::sync::Arc;
+
+/// How a table is read between its times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// By straight lines.
+    Linear,
+    /// By the cubic spline with continuous second derivative whose third derivative is continuous at the second time and at
+    /// the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV: not-a-knot).
+    Cubic,
+    /// By the last value before, which holds after the last time, too.
+    Hold,
+}
+
+/// A function of time by its values at rising times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// u̇ at the times, of a spline.
+    slopes: Vec<f64>,
+    interpolation: Interpolation,
+}
+
+/// What is wrong with a table.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TableError {
+    /// Numbers of times and values that are not the same.
+    #[error("{times} times and {values} values do not make a table")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// Less than it takes.
+    #[error("a table needs {least} times at least, not {times}")]
+    TooShort {
+        /// Number of times.
+        times: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// Times that do not rise.
+    #[error("the times of a table must rise: {time} follows {before}")]
+    NotRising {
+        /// The place of the later one, from 0.
+        place: usize,
+        /// The earlier one.
+        before: f64,
+        /// The later one.
+        time: f64,
+    },
+    /// A time or a value that is no finite number.
+    #[error("{value} at place {place} of a table is no finite number")]
+    NotFinite {
+        /// The place, from 0.
+        place: usize,
+        /// The number.
+        value: f64,
+    },
+}
+
+/// A time at which an input has no value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the input `{input}` has no value at t = {t}: its table goes from {from} to {to}")]
+pub struct OutsideTable {
+    /// The input.
+    pub input: String,
+    /// The time.
+    pub t: f64,
+    /// The first time of the table.
+    pub from: f64,
+    /// The last one.
+    pub to: f64,
+}
+
+impl Table {
+    /// The function with these values at these times.
+    ///
+    /// ```
+    /// use pc_mech::{Interpolation, Table};
+    ///
+    /// let table = Table::new(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, 0.0], Interpolation::Linear)?;
+    /// assert_eq!([table.at(0.5), table.at(2.0), table.at(4.0)], [Some(1.0), Some(1.0), None]);
+    /// # Ok::<(), pc_mech::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and the times rise.
+    pub fn new(times: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Table, TableError> {
+        if times.len() != values.len() {
+            return Err(TableError::Lengths { times: times.len(), values: values.len() });
+        }
+        let least = if interpolation == Interpolation::Hold { 1 } else { 2 };
+        if times.len() < least {
+            return Err(TableError::TooShort { times: times.len(), least });
+        }
+        let mut pairs = times.iter().zip(&values).enumerate();
+        if let Some((place, (t, u))) = pairs.find(|(_, (t, u))| !(t.is_finite() && u.is_finite())) {
+            return Err(TableError::NotFinite { place, value: if t.is_finite() { *u } else { *t } });
+        }
+        if let Some(place) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
+            return Err(TableError::NotRising { place, before: times[place - 1], time: times[place] });
+        }
+        let slopes = match interpolation {
+            Interpolation::Cubic => spline(&times, &values),
+            Interpolation::Linear | Interpolation::Hold => Vec::new(),
+        };
+        Ok(Table { times, values, slopes, interpolation })
+    }
+
+    /// The times.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The values at the times.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// How it is read between them.
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Its value at t, at a jump that after it; none outside the times.
+    pub fn at(&self, t: f64) -> Option<f64> {
+        let last = self.times.len() - 1;
+        let after = self.times.partition_point(|&time| time <= t);
+        let i = after.checked_sub(1)?;
+        if self.interpolation == Interpolation::Hold || t == self.times[i] {
+            return Some(self.values[i]);
+        }
+        if i == last || t.is_nan() {
+            return None;
+        }
+        let (h, x) = (self.times[i + 1] - self.times[i], t - self.times[i]);
+        let (u, rise) = (self.values[i], (self.values[i + 1] - self.values[i]) / h);
+        if self.interpolation == Interpolation::Linear {
+            return Some(u + rise * x);
+        }
+        // Hermite's cubic of the values and slopes at both ends
+        let (start, end) = (self.slopes[i], self.slopes[i + 1]);
+        let curve = (start + end - 2.0 * rise) / h;
+        Some(u + x * (start + x * ((rise - start) / h - curve + x * curve / h)))
+    }
+}
+
+/// The slopes of the spline (not-a-knot): of a parabola through three points, of a line through two.
+fn spline(x: &[f64], u: &[f64]) -> Vec<f64> {
+    let n = x.len();
+    let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let rise: Vec<f64> = u.windows(2).zip(&h).map(|(pair, h)| (pair[1] - pair[0]) / h).collect();
+    match n {
+        2 => return vec![rise[0]; 2],
+        3 => {
+            let curve = (rise[1] - rise[0]) / (h[0] + h[1]);
+            return vec![rise[0] - h[0] * curve, rise[0] + h[0] * curve, rise[1] + h[1] * curve];
+        }
+        _ => {}
+    }
+    // Rows (below, diagonal, above | right); the pivots of the elimination are positive.
+    let (first, last) = (x[2] - x[0], x[n - 1] - x[n - 3]);
+    let start = ((h[0] + 2.0 * first) * h[1] * rise[0] + h[0] * h[0] * rise[1]) / first;
+    let mut rows = vec![(0.0, h[1], first, start)];
+    for i in 1..n - 1 {
+        let right = 3.0 * (h[i] * rise[i - 1] + h[i - 1] * rise[i]);
+        rows.push((h[i], 2.0 * (h[i - 1] + h[i]), h[i - 1], right));
+    }
+    let end = h[n - 2] * h[n - 2] * rise[n - 3] + (2.0 * last + h[n - 2]) * h[n - 3] * rise[n - 2];
+    rows.push((last, h[n - 3], 0.0, end / last));
+    for i in 1..n {
+        let (_, pivot, above, right) = rows[i - 1];
+        let row = &mut rows[i];
+        let share = row.0 / pivot;
+        row.1 -= share * above;
+        row.3 -= share * right;
+    }
+    let mut slopes = vec![0.0; n];
+    for i in (0..n).rev() {
+        let (_, pivot, above, right) = rows[i];
+        let next = if i + 1 < n { slopes[i + 1] } else { 0.0 };
+        slopes[i] = (right - above * next) / pivot;
+    }
+    slopes
+}
+
+/// Inputs with their tables, for a [`Motion`](crate::Motion) that they [drive](crate::Motion::driven_by).
+#[derive(Clone, Debug, Default)]
+pub struct Signals {
+    list: Vec<Signal>,
+    /// The times of all tables, rising.
+    breaks: Arc<[f64]>,
+    /// Between which of them the evaluations are; none until an integrator says it.
+    between: Option<(f64, f64)>,
+}
+
+#[derive(Clone, Debug)]
+struct Signal {
+    name: String,
+    /// Its place among the parameters.
+    place: usize,
+    table: Arc<Table>,
+}
+
+impl Signals {
+    /// The inputs of these names and places among the parameters.
+    pub fn new<S: Into<String>>(inputs: impl IntoIterator<Item = (S, usize, Arc<Table>)>) -> Signals {
+        let signal = |(name, place, table): (S, usize, _)| Signal { name: name.into(), place, table };
+        let list: Vec<Signal> = inputs.into_iter().map(signal).collect();
+        let mut breaks: Vec<f64> =
+            list.iter().flat_map(|signal| signal.table.times.iter().copied()).collect();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        Signals { list, breaks: breaks.into(), between: None }
+    }
+
+    /// Their places among the parameters.
+    pub fn places(&self) -> impl Iterator<Item = usize> {
+        self.list.iter().map(|signal| signal.place)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The times of all tables, rising.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// Says that what is [read](Signals::read) next are values between the break t, or the breaks around it, and the next one
+    /// towards `end`: at a jump those of this side. Whether an input has jumped since it was said last.
+    pub fn enter(&mut self, t: f64, end: f64) -> bool {
+        let next = match end >= t {
+            true => self.breaks.partition_point(|&time| time <= t),
+            false => self.breaks.partition_point(|&time| time < t),
+        };
+        let from = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.breaks[i]);
+        let between = (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY));
+        let before = self.between.replace(between);
+        let jumps = |(before, _): (f64, f64)| {
+            let steps = self.list.iter().filter(|signal| signal.table.interpolation == Interpolation::Hold);
+            steps.map(|signal| &signal.table).any(|table| table.at(before) != table.at(from))
+        };
+        before.is_some_and(jumps)
+    }
+
+    /// Writes the values at t to their places among the parameters; at a jump those of the side that was
+    /// [entered](Signals::enter), if t is at its end. Whether one is another than before.
+    ///
+    /// # Errors
+    /// [`OutsideTable`]
+    pub fn read(&self, t: f64, parameters: &mut [f64]) -> Result<bool, OutsideTable> {
+        let entered = self.between.filter(|&(from, to)| (from..=to).contains(&t));
+        self.write(parameters, |table| match (table.interpolation, entered) {
+            (Interpolation::Hold, Some((from, _))) => (from, table.at(from)),
+            _ => (t, table.at(t)),
+        })
+    }
+
+    /// As [`read`](Signals::read), but at a jump always the values after it.
+    ///
+    /// # Errors
+    /// [`OutsideTable`]
+    pub fn show(&self, t: f64, parameters: &mut [f64]) -> Result<bool, OutsideTable> {
+        self.write(parameters, |table| (t, table.at(t)))
+    }
+
+    fn write(
+        &self,
+        parameters: &mut [f64],
+        value: impl Fn(&Table) -> (f64, Option<f64>),
+    ) -> Result<bool, OutsideTable> {
+        let mut changed = false;
+        for Signal { name, place, table } in &self.list {
+            let (t, value) = value(table);
+            let Some(value) = value else {
+                let (from, to) = (table.times[0], table.times[table.times.len() - 1]);
+                return Err(OutsideTable { input: name.clone(), t, from, to });
+            };
+            changed |= parameters[*place] != value;
+            parameters[*place] = value;
+        }
+        Ok(changed)
+    }
+}

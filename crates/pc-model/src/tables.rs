@@ -1,0 +1,103 @@
+//! The tables of inputs: lists in the text of the model, or columns of a file beside it.
+
+use std::fs;
+use std::path::Path;
+
+use pc_mech::{Table, TableError};
+
+use crate::document::{Document, Input, InputValue, Name, TableFile};
+use crate::error::{ErrorKind, ModelError};
+use crate::fault::Fault;
+use crate::source::Place;
+
+const LISTS: &str = "give as many values as times, two at least, and let the times rise";
+const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
+                       column `t`, else in the first, or where `time = \"…\"` says";
+
+/// The table of an input; none of one that is constant.
+///
+/// # Errors
+/// [`ModelError`] at the entry that is wrong, or whose file is.
+pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, ModelError> {
+    match &input.value {
+        InputValue::Constant(_) => Ok(None),
+        InputValue::Lists { place, times, values, interpolation } => {
+            let table = Table::new(times.clone(), values.clone(), *interpolation);
+            table.map(Some).map_err(|error| fault(document, place, error.to_string(), LISTS))
+        }
+        InputValue::File(file) => from_file(document, file).map(Some),
+    }
+}
+
+/// That the motion starts outside a table.
+pub(crate) fn not_at_start(document: &Document, name: &Name, table: &Table) -> ModelError {
+    let (from, to) = (table.times().first(), table.times().last());
+    let [from, to] = [from, to].map(|t| t.copied().unwrap_or(f64::NAN));
+    let what =
+        format!("the table of `{}` goes from {from} to {to}, and the motion starts outside", name.text);
+    fault(
+        document,
+        &name.place,
+        what,
+        "let the table begin at `t_start` of [simulation], which is 0 unless given",
+    )
+}
+
+fn fault(document: &Document, place: &Place, what: String, help: &'static str) -> ModelError {
+    document.source.error(place, ErrorKind::Meaning(Fault::BadTable { what, help }))
+}
+
+fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError> {
+    let name = &file.file.value;
+    let wrong = |what: String| fault(document, &file.file.place, what, COLUMNS);
+    let beside = Path::new(document.source.name()).parent().unwrap_or(Path::new(""));
+    let text = fs::read_to_string(beside.join(name)).map_err(|error| {
+        let help = "paths are relative to the model's file";
+        fault(document, &file.file.place, format!("`{name}` cannot be read: {error}"), help)
+    })?;
+    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+    let mut rows = lines.by_ref().filter(|(_, line)| !(line.trim().is_empty() || line.starts_with('#')));
+    let (_, header) = rows.next().ok_or_else(|| wrong(format!("`{name}` is empty")))?;
+    let columns: Vec<&str> = cells(header).collect();
+    let find = |column: &str| columns.iter().position(|known| *known == column);
+    let missing = |column: &str, place: &Place| {
+        let what = format!("`{name}` has no column `{column}`; its columns are {}", columns.join(", "));
+        fault(document, place, what, COLUMNS)
+    };
+    let (asked, asked_place) = (&file.column.value, &file.column.place);
+    let value = find(asked).ok_or_else(|| missing(asked, asked_place))?;
+    let time = match &file.time {
+        Some(time) => find(&time.value).ok_or_else(|| missing(&time.value, &time.place))?,
+        None => find("t").unwrap_or(0),
+    };
+    let (mut times, mut values, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, line) in rows {
+        let row: Vec<&str> = cells(line).collect();
+        if row.len() != columns.len() {
+            let what =
+                format!("line {} of `{name}` has {} entries, not {}", number + 1, row.len(), columns.len());
+            return Err(wrong(what));
+        }
+        let parsed = |column: usize| match row[column].parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => {
+                Err(wrong(format!("line {} of `{name}`: `{}` is no finite number", number + 1, row[column])))
+            }
+        };
+        times.push(parsed(time)?);
+        values.push(parsed(value)?);
+        numbers.push(number + 1);
+    }
+    Table::new(times, values, file.interpolation).map_err(|error| match error {
+        TableError::NotRising { place, before, time } => wrong(format!(
+            "line {} of `{name}`: the times must rise, but {time} follows {before}",
+            numbers[place]
+        )),
+        other => wrong(format!("`{name}`: {other}")),
+    })
+}
+
+/// The entries of a line, without spaces and quotes around them.
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|cell| cell.trim().trim_matches('"'))
+}

@@ -1,0 +1,54 @@
+//! Steps that end where the field is not smooth.
+
+use pc_expr::VectorField;
+use sundials_sys as sys;
+
+use super::Cvode;
+use crate::error::SolveError;
+
+impl<F: VectorField> Cvode<F> {
+    /// The break of the field, or the stop time, at which the next step towards a time ends at the latest; none where the field
+    /// has no breaks. CVODES begins anew where the field has jumped.
+    pub(super) fn stop_before_break(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
+        if self.field().breaks().is_empty() {
+            return Ok(None);
+        }
+        let t = self.step_time;
+        let end = self.stop_time.unwrap_or(towards);
+        let jumped = self.callbacks.field_mut().enter(t, end);
+        // Sensitivities are no part of what could be begun anew: error control sees the jump.
+        if jumped && self.direction.is_some() && self.sensitivity.is_none() {
+            self.begin_anew()?;
+        }
+        let breaks = self.field().breaks();
+        let next = if end >= t {
+            breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
+        } else {
+            let before = breaks.partition_point(|&time| time < t).checked_sub(1);
+            before.map(|i| breaks[i]).filter(|&time| time > end)
+        };
+        // CVODES forgets a stop time that it has reached.
+        match next.or(self.stop_time) {
+            Some(stop) => {
+                self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, stop)?;
+                Ok(Some(stop))
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// Starts CVODES anew where it stands, of which the field is not told.
+    fn begin_anew(&mut self) -> Result<(), SolveError> {
+        let before = self.statistics();
+        self.work.as_mut_slice().copy_from_slice(self.step_state.as_slice());
+        // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
+        let code = unsafe { sys::CVodeReInit(self.memory.raw(), self.step_time, self.work.raw()) };
+        self.context.check("CVodeReInit", code)?;
+        self.callbacks.begin_anew();
+        self.earlier = before;
+        self.earlier.current_time = self.step_time;
+        self.idle_steps = 0;
+        self.idle_failure = None;
+        Ok(())
+    }
+}
