@@ -42,15 +42,13 @@ const BICYCLE: &str = include_str!("whipple-bicycle.toml");
 /// Five constraints whose residuals have rounding errors of very different size, at all speeds: none of them stalls.
 #[test]
 fn a_bicycle_rides_at_every_speed() {
-    let mut sweep = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args(["sweep", "-", "--vary", "v0=4:6:41", "-o", "-"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    sweep.stdin.take().expect("a pipe").write_all(BICYCLE.as_bytes()).expect("pc reads");
-    let text = String::from_utf8(sweep.wait_with_output().expect("pc ends").stdout).expect("UTF-8");
+    let directory = tempfile::tempdir().expect("a directory");
+    let [model, table] = ["bicycle.toml", "speeds.csv"].map(|name| directory.path().join(name));
+    std::fs::write(&model, BICYCLE).expect("written");
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_pc"));
+    sweep.arg("sweep").arg(&model).args(["--vary", "v0=4:6:41", "-o"]).arg(&table);
+    assert!(sweep.stderr(Stdio::null()).status().expect("pc starts").success());
+    let text = std::fs::read_to_string(&table).expect("a table");
     let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
     let [status, energy, drift] = ["status", "energy", "drift(energy)"]
         .map(|name| names.iter().position(|known| *known == name).expect("a column"));
@@ -137,7 +135,7 @@ const SPHERE: &str = "[parameters]\ng = 1.0\n[coordinates]\nx = 0.0\ny = 0.6\nz 
 /// momenta it is the same motion, by each method and with any of the integrals kept.
 #[test]
 fn momenta_cross_where_any_choice_of_velocities_fails() {
-    for arguments in [&["--rtol", "1e-10"][..], &["--rtol", "1e-10", "--set", "g=0"]] {
+    for arguments in [&["--rtol", "1e-12"][..], &["--rtol", "1e-12", "--set", "g=0"]] {
         let usual = table(SPHERE, arguments);
         for j in 1..=3 {
             let sides = |side: f64| usual.1.iter().any(|row| row[j] * side > 0.1);
@@ -146,7 +144,8 @@ fn momenta_cross_where_any_choice_of_velocities_fails() {
         for more in [&["--form", "canonical"][..], &["--form", "canonical", "--project", "energy"]] {
             let momenta = table(SPHERE, &[arguments, more].concat());
             assert_eq!(usual.0, momenta.0);
-            agree(&usual.1, &momenta.1, 1e-7); // a thousand times the tolerance of the integration, after several turns
+            // After several turns past the poles the errors of either are 1e4 times the tolerances, and fall with them.
+            agree(&usual.1, &momenta.1, 1e-7);
             for row in &momenta.1 {
                 let radius = row[1].hypot(row[2]).hypot(row[3]);
                 assert!((radius - 1.0).abs() < 1e-14, "projected to rounding: {row:?}");
