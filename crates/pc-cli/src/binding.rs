@@ -40,9 +40,14 @@ pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
     let others: Vec<String> = all.filter(|eta| !free.contains(eta)).map(Expr::to_string).collect();
     let free: Vec<String> = free.iter().map(Expr::to_string).collect();
     let follow = if others.len() == 1 { "follows" } else { "follow" };
+    let declared = &assembly.system.quasi_velocities()[..assembly.declared];
+    let choice = match declared.iter().all(|eta| free.contains(&eta.to_string())) {
+        true => "These are the quasi-velocities of the model.",
+        false => "This choice is the best at the start.",
+    };
     Some(format!(
         "The equations are in {}; {} {follow} from the constraints.\n\
-         This choice is the best at the start. Where it fails the equations are singular,\n\
+         {choice} Where it fails the equations are singular,\n\
          and nothing takes errors of the integration back to the constraints.",
         free.join(", "),
         others.join(", ")

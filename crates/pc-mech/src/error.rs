@@ -139,6 +139,19 @@ pub enum MechError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// A constraint that was left to follow from the others, which it does not everywhere.
+    #[error(
+        "the constraint `{constraint}`, which followed from the others, does not at t = {t}{}",
+        listed(state)
+    )]
+    Departed {
+        /// Its name.
+        constraint: String,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
     /// A state from which no way was found to where the constraints are satisfied.
     #[error(
         "no state that satisfies the constraints {} was found near t = {t}{}",

@@ -141,6 +141,8 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
+    /// Constraints that follow from these, looked at on the way.
+    followers: Vec<Constraint<'g>>,
     /// The indices of the quasi-velocities that are to depend on the others where they can.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
@@ -197,6 +199,7 @@ impl<'g> System<'g> {
             velocities: graph.shorten(&velocities, &order),
             right: graph.shorten(&right, &order),
             reactions: names.into_iter().map(|name| self.unused(name, "λ_")).collect(),
+            followers: Vec::new(),
             dependent: None,
             observed: false,
         };
@@ -257,6 +260,13 @@ impl<'g> Multipliers<'g> {
             ..constraint.clone()
         };
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
+    }
+
+    /// The same with constraints that follow from those held: a [projection](pc_expr::VectorField::project) of the compiled
+    /// motion to where one of them does not vanish is refused, as [`MechError::Departed`].
+    #[must_use]
+    pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
+        Multipliers { followers: followers.to_vec(), ..self }
     }
 
     /// The forces C_αs λ_α on the quasi-velocities, with the symbols λ, length k.
@@ -407,7 +417,14 @@ impl<'g> Multipliers<'g> {
         let b = system.frame.b();
         let displacements: Vec<Expr<'g>> =
             (0..b.rows()).map(|i| graph.dot(b.row(i).iter().copied(), eta.iter().copied())).collect();
+        let named = |follower: &Constraint<'g>| {
+            let position = follower.is_holonomic(system).then_some(follower.expression);
+            let both = position.into_iter().chain([follower.velocity(system)]);
+            both.map(|function| (follower.name.clone(), function)).collect::<Vec<_>>()
+        };
+        let followers: Vec<_> = self.followers.iter().flat_map(named).collect();
         let conditions = Conditions {
+            followers: &followers,
             positions: &positions,
             places,
             velocities: &self.velocities,

@@ -4,8 +4,8 @@
 
 use pc_algebra::{LieGroup, UnitQuaternions};
 use pc_mech::{
-    AlgebraError, CompileOptions, Constraint, Expr, Graph, MechError, Motion, Multipliers, System,
-    VectorField,
+    AlgebraError, CompileOptions, Constraint, Expr, Frame, Graph, Matrix, MechError, Motion, Multipliers,
+    System, VectorField,
 };
 
 /// A double pendulum in Cartesian coordinates, its point of support moved up and down; a force depends on velocities.
@@ -620,4 +620,67 @@ fn a_nonlinear_constraint_turns_the_velocity_only() {
     // step⁴ times (g/v)⁵ of a method of order 4
     assert!((tangent(&y) / expected - 1.0).abs() < 1e-11, "{} instead of {expected}", tangent(&y));
     assert!((y[3] * 0.8 - y[4] * 0.6).abs() < 1e-13, "the horizontal direction stays");
+}
+
+/// A velocity in b_0 would be taken for a constant.
+#[test]
+fn a_frame_contains_no_velocities() {
+    let graph = Graph::new();
+    let [t, x, w, vx] = graph.symbols(["t", "x", "w", "x'"]);
+    for (stray, name) in [(w, "w"), (vx, "x'")] {
+        let b = Matrix::from_fn(1, 1, |_, _| Expr::ONE);
+        let frame = Frame::new(&graph, t, vec![x], b, vec![0.3 * stray]).unwrap();
+        let built = System::builder(&graph).quasi_velocities(["w"]).coordinates(["x"]).frame(frame);
+        let error = built.lagrangian(|_, _, eta| eta[0].square() / 2.0).build().unwrap_err();
+        assert_eq!(error, MechError::FrameOfVelocities { velocity: name.to_owned() });
+    }
+}
+
+/// Two bobs on a rod of length one, the second four times as heavy.
+#[test]
+fn what_is_held_stays_and_the_rest_goes_the_shortest_way() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x1", "x2", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + 4.0 * v[1].square() + v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let [x1, x2] = graph.symbols(["x1", "x2"]);
+    let rod = Constraint::new("rod", x2 - x1 - 1.0);
+    let mut motion = system.with_multipliers(&[rod]).unwrap().compile().unwrap();
+    let off = [0.0, 1.5, 7.0, 1.0, 2.0, 3.0];
+    let mut moved = |coordinates: &[usize], velocities: &[usize]| {
+        let mut state = off;
+        motion.project_holding(0.0, &mut state, coordinates, velocities).map(|()| state)
+    };
+    // The displacements are as 1/m.
+    for (found, expected) in moved(&[], &[]).unwrap().iter().zip([0.4, 1.4, 7.0, 1.8, 1.8, 3.0]) {
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+    assert_eq!(moved(&[0], &[1]).unwrap(), [0.0, 1.0, 7.0, 2.0, 2.0, 3.0]);
+    let failure = MechError::from(moved(&[0, 1], &[]).unwrap_err());
+    assert!(matches!(failure, MechError::SingularConstraint { constraint, .. } if constraint == "rod"));
+}
+
+/// x = y holds where (x − y)(x + y) = 0 and x > 0; on the other branch it does not.
+#[test]
+fn what_no_longer_follows_is_an_error() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let lines = Constraint::new("lines", x.square() - y.square());
+    let diagonal = Constraint::new("diagonal", x - y);
+    let held = system.with_multipliers(&[lines]).unwrap().followed_by(&[diagonal]);
+    let mut motion = held.compile().unwrap();
+    motion.project(0.0, &mut [1.0, 1.0, 0.5, 0.5]).unwrap();
+    let failure = motion.project(0.0, &mut [1.0, -1.0, 0.5, -0.5]).unwrap_err();
+    let message = failure.to_string();
+    assert!(
+        message.starts_with("the constraint `diagonal`, which followed from the others, does not at t = 0"),
+        "{message}"
+    );
 }

@@ -13,7 +13,6 @@ mod trial;
 use pc_mech::{Expr, Graph, MechError, System};
 
 use self::bodies::Body;
-use self::trial::StartHeld;
 use crate::document::NamedExpression;
 use crate::error::ModelError;
 use crate::fault::Fault;
@@ -136,8 +135,8 @@ impl<'g> Assembler<'g, '_> {
         let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
-        let held = StartHeld::new(self.model, if completing.is_empty() { 0 } else { declared });
-        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), &held)?;
+        let prescribed = if completing.is_empty() { 0 } else { declared };
+        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
         let events =
             self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;

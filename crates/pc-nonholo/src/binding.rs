@@ -5,8 +5,12 @@ use pc_mech::{Constraint, Expr, Graph, System};
 use crate::error::NonholoError;
 use crate::positions::{Place, Positions, norm};
 
-/// What is left of a unit vector that depends on others, at a place where constraints hold to rounding: the root of it.
+/// What is left of a unit vector that is worth looking closer, whether it depends on others: the root of a rounding.
 const DEPENDENT: f64 = 1e-7;
+
+/// What is left of coefficients that depend on others where conditions on positions hold, against what is left of them
+/// around, a hundredth of the size of the system away: rounding against that.
+const VANISHES: f64 = 1e-8;
 
 /// What is left, in units of displacements, of a condition on positions that follows from others.
 const FOLLOWS: f64 = 1e-9;
@@ -173,22 +177,24 @@ impl<'g> Found<'_, 'g> {
             .copied()
             .filter(|&a| self.constraints[a].is_holonomic(self.system))
             .collect();
+        if holonomic.is_empty() {
+            return Ok(());
+        }
         let positions = self.positions(&holonomic);
         let on = |place: &Place| {
             if positions.off(place) <= FOLLOWS { Some(place.clone()) } else { positions.near(place) }
         };
         let Some(start) = on(&start) else { return Ok(()) };
         let Some(here) = self.at(&positions, std::slice::from_ref(&start)) else { return Ok(()) };
-        let mut span = Span::default();
-        if self.open.is_empty() && here[0].iter().all(|whole| span.add(&whole[..whole.len() - 1])) {
+        if self.open.is_empty() && are_independent(&here[0]) {
             return Ok(());
         }
-        let places: Vec<Place> =
-            (0..PLACES).filter_map(|index| positions.near(&start.varied(index))).collect();
-        let Some(values) = self.at(&positions, &places).filter(|values| values.len() > 1) else {
+        let around: Vec<Place> = (0..PLACES).map(|index| start.varied(index)).collect();
+        let places: Vec<Place> = around.iter().filter_map(|place| positions.near(place)).collect();
+        let (Some(on), Some(off)) = (self.at(&positions, &places), self.at(&positions, &around)) else {
             return Ok(());
         };
-        self.drop_dependent(&values, &start)
+        if on.len() > 1 { self.drop_dependent(&Looked { on, off }, &start) } else { Ok(()) }
     }
 
     /// Time and coordinates of `at`.
@@ -219,62 +225,49 @@ impl<'g> Found<'_, 'g> {
             .collect()
     }
 
-    /// Keeps those that are independent at some of the places, and those that do not vanish where the ones before them do.
-    fn drop_dependent(&mut self, values: &[Vec<Vec<f64>>], start: &Place) -> Result<(), NonholoError> {
+    /// Keeps those that are independent where all hold, and conditions on positions that do not vanish where those before
+    /// them do.
+    fn drop_dependent(&mut self, looked: &Looked, start: &Place) -> Result<(), NonholoError> {
         let rows = std::mem::take(&mut self.rows);
-        let (mut spans, mut kept) = (Spans::at(values.len()), Vec::new());
+        let first_open = rows.places.len();
+        let mut kept = Vec::new();
         let coefficients = rows.rows.into_iter().zip(rows.whole);
         for (index, (&a, (row, whole))) in rows.places.iter().zip(coefficients).enumerate() {
-            let of_index: Vec<&[f64]> = values.iter().map(|place| place[index].as_slice()).collect();
-            let holonomic = self.constraints[a].is_holonomic(self.system);
-            let is_new = spans.is_new(&of_index);
-            if is_new || (holonomic && !self.vanishes(a, start)) {
-                spans.add(&of_index);
+            let follows = looked.depends(&kept, index, Part::Velocities)
+                && (!self.constraints[a].is_holonomic(self.system) || self.vanishes(a, start));
+            if follows {
+                self.settle(a, looked, &kept, index)?;
+            } else {
                 kept.push(index);
                 self.rows.places.push(a);
                 self.rows.rows.push(row);
                 self.rows.whole.push(whole);
-                continue;
             }
-            self.settle(a, values, &kept, &of_index)?;
         }
-        let first = rows.places.len();
         for (offset, (a, others)) in std::mem::take(&mut self.open).into_iter().enumerate() {
-            let of_open: Vec<&[f64]> = values.iter().map(|place| place[first + offset].as_slice()).collect();
-            if spans.is_new(&of_open) {
-                self.open.push((a, others));
-            } else {
-                self.settle(a, values, &kept, &of_open)?;
+            match looked.depends(&kept, first_open + offset, Part::Whole) {
+                true => self.settle(a, looked, &kept, first_open + offset)?,
+                false => self.open.push((a, others)),
             }
         }
         Ok(())
     }
 
-    /// Drops a constraint whose coefficients depend on those `kept`, if its rest does.
+    /// Drops a constraint whose coefficients C depend on those `kept`, if c_0 does.
     fn settle(
         &mut self,
         a: usize,
-        values: &[Vec<Vec<f64>>],
+        looked: &Looked,
         kept: &[usize],
-        of_it: &[&[f64]],
+        index: usize,
     ) -> Result<(), NonholoError> {
-        let depends = |indices: &[usize], whole: bool| {
-            values.iter().zip(of_it).all(|(place, row)| {
-                let width = row.len() - usize::from(!whole);
-                let mut span = Span::default();
-                indices.iter().for_each(|&index| {
-                    span.add(&place[index][..width]);
-                });
-                !span.is_new(&row[..width])
-            })
-        };
-        let needed = kept.iter().enumerate().filter(|&(place, _)| {
-            let others: Vec<usize> = [&kept[..place], &kept[place + 1..]].concat();
-            !depends(&others, false)
+        let needed = (0..kept.len()).filter(|&place| {
+            let others = [&kept[..place], &kept[place + 1..]].concat();
+            !looked.depends(&others, index, Part::Whole)
         });
-        let needed: Vec<usize> = needed.map(|(place, _)| self.rows.places[place]).collect();
+        let needed: Vec<usize> = needed.map(|place| self.rows.places[place]).collect();
         let (constraint, others) = (self.constraints[a].name().to_owned(), self.named(needed));
-        if !depends(kept, true) {
+        if !looked.depends(kept, index, Part::Whole) {
             return Err(NonholoError::Contradictory { constraint, others });
         }
         self.redundant.push(Redundant { constraint, follows_from: others });
@@ -303,53 +296,80 @@ impl<'g> Rows<'g> {
     }
 }
 
+/// What of the coefficients of a constraint is looked at.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// C
+    Velocities,
+    /// C and c_0
+    Whole,
+}
+
+/// C and c_0 of constraints, one after the other, at places where all conditions on positions hold and at places around.
+struct Looked {
+    on: Vec<Vec<Vec<f64>>>,
+    off: Vec<Vec<Vec<f64>>>,
+}
+
+impl Looked {
+    /// Whether a constraint depends on others where conditions on positions hold: what is left of its coefficients then
+    /// vanishes against what is left of them around, whatever the units.
+    fn depends(&self, on: &[usize], index: usize, part: Part) -> bool {
+        let left = |places: &[Vec<Vec<f64>>]| {
+            let left = places.iter().map(|place| {
+                let width = place[index].len() - usize::from(part == Part::Velocities);
+                let mut span = Span::default();
+                on.iter().for_each(|&other| {
+                    span.add(&place[other][..width]);
+                });
+                span.left_of(&place[index][..width])
+            });
+            left.fold(0.0, f64::max)
+        };
+        left(&self.on) <= VANISHES * left(&self.off)
+    }
+}
+
+/// Whether C of constraints given by C and c_0 are independent, as far as the units let it be seen.
+fn are_independent(whole: &[Vec<f64>]) -> bool {
+    let mut span = Span::default();
+    whole.iter().all(|whole| span.add(&whole[..whole.len() - 1]) > DEPENDENT)
+}
+
 /// What vectors span, by an orthonormal basis.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct Span(Vec<Vec<f64>>);
 
 impl Span {
-    /// What of a vector, as of length one, is orthogonal to all; none if that is rounding.
-    fn rest(&self, vector: &[f64]) -> Option<Vec<f64>> {
-        let unit = |vector: &[f64]| {
-            let length = norm(vector);
-            (length > 0.0).then(|| vector.iter().map(|entry| entry / length).collect::<Vec<f64>>())
-        };
-        let mut rest = unit(vector)?;
+    /// What of a vector, as of length one, is orthogonal to all.
+    fn rest(&self, vector: &[f64]) -> Vec<f64> {
+        let mut rest = unit(vector);
         // Twice is enough [W. Kahan, B. N. Parlett].
         for known in self.0.iter().chain(&self.0) {
             let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
             rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
         }
-        if norm(&rest) > DEPENDENT { unit(&rest) } else { None }
+        rest
     }
 
-    fn is_new(&self, vector: &[f64]) -> bool {
-        self.rest(vector).is_some()
+    /// The length of it.
+    fn left_of(&self, vector: &[f64]) -> f64 {
+        norm(&self.rest(vector))
     }
 
-    fn add(&mut self, vector: &[f64]) -> bool {
+    /// Adds a vector, and answers that length.
+    fn add(&mut self, vector: &[f64]) -> f64 {
         let rest = self.rest(vector);
-        let is_new = rest.is_some();
-        self.0.extend(rest);
-        is_new
+        let left = norm(&rest);
+        if left > 0.0 {
+            self.0.push(unit(&rest));
+        }
+        left
     }
 }
 
-/// The spans of the coefficients C, without c_0, at several places.
-struct Spans(Vec<Span>);
-
-impl Spans {
-    fn at(places: usize) -> Spans {
-        Spans(vec![Span::default(); places])
-    }
-
-    fn is_new(&self, rows: &[&[f64]]) -> bool {
-        self.0.iter().zip(rows).any(|(span, row)| span.is_new(&row[..row.len() - 1]))
-    }
-
-    fn add(&mut self, rows: &[&[f64]]) {
-        for (span, row) in self.0.iter_mut().zip(rows) {
-            span.add(&row[..row.len() - 1]);
-        }
-    }
+/// The vector made as long as one; nothing where it vanishes.
+fn unit(vector: &[f64]) -> Vec<f64> {
+    let length = norm(vector);
+    vector.iter().map(|entry| if length > 0.0 { entry / length } else { 0.0 }).collect()
 }

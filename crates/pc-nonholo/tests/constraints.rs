@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_mech::{Constraint, Expr, Graph, System};
-use pc_nonholo::{Adapted, Kind, Redundant, Sorted};
+use pc_nonholo::{Adapted, Binding, Kind, Redundant, Sorted};
 
 /// Chaplygin's sleigh in the velocities of its coordinates.
 fn sleigh(graph: &Graph) -> System<'_> {
@@ -222,4 +222,77 @@ fn brackets_of_brackets_count() {
         "{:?}",
         sorted.kinds()
     );
+}
+
+/// A frame of three bars that are parallel, where two would do; where a bar has another length, it stands still.
+#[test]
+fn a_bar_too_many_is_found_where_the_others_hold() {
+    let frame = |third: f64| {
+        let graph = Graph::new();
+        let names = ["α", "β", "γ", "θ", "φ"];
+        let system = System::builder(&graph)
+            .coordinates(names)
+            .lagrangian(|_, _, v| v.iter().map(|v| v.square()).sum::<Expr<'_>>() / 2.0)
+            .build()
+            .unwrap();
+        let [a, b, c, top, end] = graph.symbols(names);
+        let [t] = graph.symbols(["t"]);
+        // Cranks of length one at 0, 2 and 3 on the ground; a platform at θ from the first to the second and at φ on to the third.
+        let loops = [
+            Constraint::new("x2", a.cos() + 2.0 * top.cos() - b.cos() - 2.0),
+            Constraint::new("y2", a.sin() + 2.0 * top.sin() - b.sin()),
+            Constraint::new("stiff", top - end),
+            Constraint::new("x3", b.cos() + end.cos() - third * c.cos() - 1.0),
+            Constraint::new("y3", b.sin() + end.sin() - third * c.sin()),
+        ];
+        let at = [(t, 0.0), (a, 1.0), (b, 1.0), (c, 1.0), (top, 0.0), (end, 0.0)];
+        let binding = Binding::new(&system, &loops, &at).unwrap();
+        (binding.binding().to_vec(), binding.redundant().to_vec())
+    };
+    let (binding, redundant) = frame(1.0);
+    assert_eq!(binding, [0, 1, 2, 3]);
+    assert_eq!(redundant[0].constraint, "y3");
+    assert_eq!(redundant.len(), 1);
+    assert_eq!(frame(1.01).0, [0, 1, 2, 3, 4]);
+}
+
+/// y = 0 and y = x² touch: their gradients are parallel where both hold, but neither follows from the other.
+#[test]
+fn conditions_that_touch_do_not_follow_from_each_other() {
+    let graph = Graph::new();
+    let [t, x, y, z] = graph.symbols(["t", "x", "y", "z"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y", "z"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let touching = [Constraint::new("line", y), Constraint::new("parabola", y - x.square())];
+    let binding = Binding::new(&system, &touching, &[(t, 0.0), (x, 0.0), (y, 0.0), (z, 0.5)]).unwrap();
+    assert_eq!(binding.binding(), [0, 1]);
+    assert!(binding.redundant().is_empty());
+}
+
+/// The velocity of a point on a circle that turns at the rate 1 follows from its position, with the rest c_0 only where that
+/// holds; at another rate it contradicts it.
+#[test]
+fn a_velocity_may_follow_only_where_positions_hold() {
+    let graph = Graph::new();
+    let [t, x, y, vx, vy] = graph.symbols(["t", "x", "y", "x'", "y'"]);
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
+        .build()
+        .unwrap();
+    let spoke = Constraint::new("spoke", x * t.sin() - y * t.cos());
+    let at = [(t, 0.0), (x, 0.7), (y, 0.0)];
+    // On the spoke x = r cos t and y = r sin t: x' sin t − y' cos t = −r.
+    let turning = |rate: f64| {
+        let radius = (x.square() + y.square()).sqrt();
+        let turns = Constraint::new("turns", vx * t.sin() - vy * t.cos() + rate * radius);
+        Binding::new(&system, &[spoke.clone(), turns], &at)
+    };
+    let follows = turning(1.0).unwrap();
+    assert_eq!(follows.binding(), [0]);
+    assert_eq!(follows.redundant()[0].follows_from, ["spoke"]);
+    assert_eq!(turning(1.1).unwrap_err().to_string(), "the constraint `turns` contradicts `spoke`");
 }

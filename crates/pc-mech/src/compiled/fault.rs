@@ -13,6 +13,8 @@ pub(crate) enum Fault {
     Constraint { index: usize },
     /// The state is not near those that satisfy the constraints, which follow so many unknowns.
     NoProjection { unknowns: usize },
+    /// A constraint that followed from the others does not vanish where they do.
+    Departed { constraint: String },
     /// Newton's method ended with |F| = `residual`.
     NotSolved { residual: f64, iterations: usize },
     /// The state is not near those with the values of the integrals.
@@ -46,6 +48,7 @@ impl Fault {
             Fault::NoProjection { unknowns: k } => {
                 MechError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
             }
+            Fault::Departed { constraint } => MechError::Departed { constraint, t, state: state() },
             Fault::NotSolved { residual, iterations } => {
                 MechError::LegendreNotSolved { residual, iterations, t, state: state() }
             }

@@ -1,5 +1,6 @@
 //! The surface of the states that satisfy constraints, in numbers.
 
+mod followers;
 pub(crate) mod holding;
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
@@ -7,6 +8,7 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 use crate::compiled::fault::{Fault, check_finite};
 use crate::compiled::rounding::Measured;
 use crate::compiled::solver::Solver;
+use crate::compiled::surface::followers::Followers;
 
 /// Steps from afar, where they are damped. Near the surface each is the square of the one before, and a handful is all
 /// there are.
@@ -38,6 +40,8 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) places: Vec<usize>,
     /// g(t, x, η), one a constraint; ḟ = g for those with a position.
     pub(crate) velocities: &'a [Expr<'g>],
+    /// What vanishes where these do, and of which constraints it is.
+    pub(crate) followers: &'a [(String, Expr<'g>)],
     /// b η
     pub(crate) displacements: &'a [Expr<'g>],
     /// The lower triangle of the mass matrix bordered by −C = −∂g/∂η, and its pattern.
@@ -58,6 +62,7 @@ pub(crate) struct Surface {
     positions: Measured,
     places: Vec<usize>,
     velocities: Measured,
+    followers: Followers,
     displacements: Evaluator,
     lower: Pattern,
     bordered: Evaluator,
@@ -103,6 +108,7 @@ impl Surface {
             k,
             positions: Measured::new(graph, inputs, conditions.positions, Backend::Interpreter)?,
             velocities: Measured::new(graph, inputs, conditions.velocities, Backend::Interpreter)?,
+            followers: Followers::new(graph, inputs, conditions.followers)?,
             displacements: compiled(conditions.displacements)?,
             bordered: compiled(conditions.bordered)?,
             entries: vec![0.0; conditions.lower.len()],
@@ -126,13 +132,15 @@ impl Surface {
     /// Moves `y` to the surface.
     ///
     /// # Errors
-    /// [`Fault::NoProjection`] if the way leads nowhere, [`Fault::Constraint`] where the surface has an edge.
+    /// [`Fault::NoProjection`] if the way leads nowhere, [`Fault::Constraint`] where the surface has an edge,
+    /// [`Fault::Departed`] where what followed from the constraints does not.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
             self.project_part(Part::Position, t, y, p)?;
         }
-        self.project_part(Part::Velocity, t, y, p)
+        self.project_part(Part::Velocity, t, y, p)?;
+        self.followers.check(t, y, p)
     }
 
     /// Moves the η of `y` to g = 0, and leaves x where it is.

@@ -68,7 +68,8 @@ impl<'g> Assembler<'g, '_> {
         name
     }
 
-    /// How the constraints bind the system, and the start on them; `at` are values of all symbols there.
+    /// How the constraints bind the system, and the start on them; `at` are values of all symbols there, and so many of the
+    /// quasi-velocities are `prescribed` for others to follow.
     pub(super) fn bound(
         &self,
         system: &System<'g>,
@@ -76,7 +77,7 @@ impl<'g> Assembler<'g, '_> {
         x_dot: &[(Expr<'g>, Expr<'g>)],
         at: &[(Expr<'g>, f64)],
         (t_start, start): (f64, &mut Vec<f64>),
-        held: &StartHeld,
+        prescribed: usize,
     ) -> Result<Bound<'g>, ModelError> {
         if written.is_empty() {
             return Ok(Bound::free());
@@ -90,7 +91,11 @@ impl<'g> Assembler<'g, '_> {
         let verdicts = self.verdicts(&sorted)?;
         let projects = self.model.projects_start();
         if projects || !sorted.redundant().is_empty() {
-            let nearest = trial.nearest(&sorted, start, held);
+            // Quasi-velocities that determine the others stay as they are prescribed.
+            let free =
+                system.quasi_velocities().len() - sorted.multipliers().map_or(0, |m| m.constraints().len());
+            let held = StartHeld::new(self.model, if free == prescribed { prescribed } else { 0 });
+            let nearest = trial.nearest(&sorted, start, &held);
             if let Ok(nearest) = &nearest {
                 trial.check_redundant(&sorted, nearest)?;
             }
@@ -115,8 +120,10 @@ impl<'g> Assembler<'g, '_> {
         let multipliers =
             system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
         // As many as are declared where these are completed, and independent then.
-        let multipliers =
-            multipliers.preferring(&system.quasi_velocities()[..self.scope.quasi_velocities().len()]);
+        let declared = &system.quasi_velocities()[..self.scope.quasi_velocities().len()];
+        let dropped = |c: &&Constraint<'g>| redundant.iter().any(|dropped| dropped.constraint == c.name());
+        let followers: Vec<Constraint<'g>> = constraints.iter().filter(dropped).cloned().collect();
+        let multipliers = multipliers.preferring(declared).followed_by(&followers);
         let Some(vanishing) = vanishing else {
             let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
             let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);

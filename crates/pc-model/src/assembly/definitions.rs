@@ -43,17 +43,19 @@ impl<'g> Assembler<'g, '_> {
         let rows = self.coefficients_of(&definitions)?;
         let (kinematic, binding) = self.completing(&definitions, constraints, at)?;
         let place = &self.model.document().quasi_velocities[0].name.place;
-        if definitions.len() + binding.len() != x.len() {
-            let (definitions, coordinates) = (definitions.len() + binding.len(), x.len());
-            return Err(self.model.error(place, Fault::DefinitionCount { definitions, coordinates }));
+        // Constraints on positions may restrict the velocities that are defined, like those that contain no x'.
+        let positions = binding.iter().filter(|(_, constraint)| constraint.is_holonomic(&kinematic)).count();
+        let (all, coordinates) = (definitions.len() + binding.len(), x.len());
+        if all < coordinates || all - positions > coordinates {
+            return Err(self.model.error(place, Fault::DefinitionCount { definitions: all, coordinates }));
         }
         if self.graph.generic_rank(&rows) < rows.len() {
             return Err(self.dependent(&rows, &Completion::default(), constraints));
         }
-        let on_positions = binding.iter().any(|(_, constraint)| constraint.is_holonomic(&kinematic));
+        let on_positions = positions > 0;
         let completion = match self.regular_completion(&rows, at).filter(|_| on_positions) {
             Some(velocities) => velocities,
-            None => self.completed_by(&kinematic, &binding, constraints),
+            None => self.completed_by(rows, &kinematic, &binding, constraints),
         };
         let all = [definitions.as_slice(), &completion.values].concat();
         let frame = Frame::from_definitions(self.graph, time, x, &velocities, &all);
@@ -165,15 +167,25 @@ impl<'g> Assembler<'g, '_> {
         Some(Completion { values: symbols.clone(), symbols, constraints: Vec::new() })
     }
 
-    /// The completion by the constraints themselves, which are told that they are quasi-velocities.
+    /// The completion by the constraints themselves, those on velocities first, which are told that they are quasi-velocities;
+    /// where they are more than are needed, by those that add to the `rows`.
     fn completed_by(
         &self,
+        mut rows: Vec<Vec<Expr<'g>>>,
         kinematic: &System<'g>,
         binding: &[(usize, Constraint<'g>)],
         constraints: &mut [Written<'g>],
     ) -> Completion<'g> {
-        let mut completion = Completion::default();
-        for (place, constraint) in binding {
+        let (velocities, mut completion) = (self.scope.velocities(), Completion::default());
+        let needed = velocities.len() - rows.len();
+        let (on_positions, on_velocities): (Vec<_>, Vec<_>) =
+            binding.iter().partition(|(_, constraint)| constraint.is_holonomic(kinematic));
+        for (place, constraint) in on_velocities.into_iter().chain(on_positions) {
+            rows.push(self.graph.gradient(constraint.velocity(kinematic), &velocities));
+            if binding.len() > needed && self.graph.generic_rank(&rows) < rows.len() {
+                rows.pop();
+                continue;
+            }
             let symbol = self.graph.symbol(&self.unused(constraint.name()));
             completion.symbols.push(symbol);
             completion.values.push(constraint.velocity(kinematic));

@@ -70,10 +70,11 @@ impl FlowEvents {
             Ok(Reset { places, values: compiled(&values)? })
         });
         let held = matches!(assembly.bound.form(), Form::Held(_)) && !declared.is_empty();
-        // Those declared, where others were needed to complete them to a frame.
-        let completed = assembly.declared < system.quasi_velocities().len();
+        // Those declared, where others complete them to a frame and follow from them.
+        let bound = assembly.bound.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
+        let follow = bound > 0 && assembly.declared + bound == system.quasi_velocities().len();
         Ok(FlowEvents {
-            determining: if completed { (0..assembly.declared).collect() } else { Vec::new() },
+            determining: if follow { (0..assembly.declared).collect() } else { Vec::new() },
             events: declared.iter().map(event).collect(),
             reading: reading.clone(),
             signals: model.signals(),

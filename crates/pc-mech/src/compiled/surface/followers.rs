@@ -1,0 +1,62 @@
+//! Conditions that follow from those that are held, looked at on the way.
+
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
+
+use crate::compiled::fault::Fault;
+
+/// What a condition that follows from others may be off, in displacements of a component of the state, absolute or relative
+/// whichever is larger: what is held is so to rounding, and this is a hundred times what a start may be off.
+const OFF: f64 = 1e-6;
+
+/// Functions of the state that vanish where others do, each of a constraint.
+#[derive(Clone, Debug)]
+pub(crate) struct Followers {
+    names: Vec<String>,
+    /// Each function, then its derivatives by the components of the state.
+    functions: Evaluator,
+    values: Vec<f64>,
+    state: usize,
+}
+
+impl Followers {
+    /// Those of constraints of these names.
+    ///
+    /// # Errors
+    /// As for [`Program::new`].
+    pub(crate) fn new<'g>(
+        graph: &'g Graph,
+        inputs: &Inputs<'g>,
+        named: &[(String, Expr<'g>)],
+    ) -> Result<Followers, ExprError> {
+        let with_slopes = |&(_, function): &(String, Expr<'g>)| {
+            std::iter::once(function).chain(graph.gradient(function, &inputs.state)).collect::<Vec<_>>()
+        };
+        let outputs: Vec<Expr<'g>> = named.iter().flat_map(with_slopes).collect();
+        Ok(Followers {
+            names: named.iter().map(|(name, _)| name.clone()).collect(),
+            functions: Evaluator::new(Program::new(graph, inputs, &outputs)?, Backend::Interpreter),
+            values: vec![0.0; outputs.len()],
+            state: inputs.state.len(),
+        })
+    }
+
+    /// That all vanish at a state.
+    ///
+    /// # Errors
+    /// [`Fault::Departed`] for the first that does not.
+    pub(crate) fn check(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
+        if self.names.is_empty() {
+            return Ok(());
+        }
+        self.functions.eval(t, y, p, &mut self.values);
+        for (name, values) in self.names.iter().zip(self.values.chunks_exact(self.state + 1)) {
+            let reach = values[1..].iter().zip(y).map(|(slope, y)| slope.abs() * y.abs().max(1.0));
+            let reach = reach.fold(0.0, f64::max);
+            let is_kept = values[0].abs() <= OFF * if reach > 0.0 { reach } else { 1.0 };
+            if !is_kept {
+                return Err(Fault::Departed { constraint: name.clone() });
+            }
+        }
+        Ok(())
+    }
+}
