@@ -256,6 +256,7 @@ impl<'g> Canonical<'g> {
             unknowns: eta.clone(),
             names: eta.iter().map(Expr::to_string).collect(),
             multipliers: 0,
+            rank: 0,
             mass: self.legendre.mass.clone(),
             implicit,
             right,

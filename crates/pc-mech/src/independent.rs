@@ -228,7 +228,7 @@ impl<'g> Multipliers<'g> {
         let (graph, k, m) = (system.graph(), system.quasi_velocities().len(), self.constraints().len());
         let (lower, entries) = self.first_order().lower_triangle();
         let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
-        let mut saddle = Saddle::new(k, m);
+        let mut saddle = Saddle::of_rank(k, m, m);
         saddle.eliminate(&lower, &values).map_err(|fault| {
             let place = match fault {
                 Fault::Constraint { index } => index - k,

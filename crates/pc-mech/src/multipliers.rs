@@ -143,6 +143,8 @@ pub struct Multipliers<'g> {
     pub(crate) reactions: Vec<Expr<'g>>,
     /// Constraints that follow from these, looked at on the way.
     followers: Vec<Constraint<'g>>,
+    /// How many of the constraints are independent, the first ones almost everywhere.
+    rank: usize,
     /// The indices of the quasi-velocities that are to depend on the others where they can.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
@@ -200,6 +202,7 @@ impl<'g> System<'g> {
             right: graph.shorten(&right, &order),
             reactions: names.into_iter().map(|name| self.unused(name, "λ_")).collect(),
             followers: Vec::new(),
+            rank: m,
             dependent: None,
             observed: false,
         };
@@ -262,7 +265,9 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The same with constraints that follow from those held: a [projection](pc_expr::VectorField::project) of the compiled
+    /// The same with constraints that follow from those held. Those that do so only where these hold are taken instead of them
+    /// where these are nearly dependent, as bars of a mechanism that has one too many take turns in holding it; what each
+    /// reaction is there is not determined, and not a number. A [projection](pc_expr::VectorField::project) of the compiled
     /// motion to where one of them does not vanish is refused, as [`MechError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
@@ -296,10 +301,38 @@ impl<'g> Multipliers<'g> {
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
     /// parameter.
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        let first_order = self.first_order();
+        let whole = self.with_spare();
+        let first_order = whole.first_order();
         let motion = first_order.compile(&options.into(), LONGEST_ELIMINATION)?;
-        let names = self.constraints.iter().map(|constraint| constraint.name.clone()).collect();
-        Ok(motion.on_surface(names, self.surface(&first_order)?))
+        let names = whole.constraints.iter().map(|constraint| constraint.name.clone()).collect();
+        Ok(motion.on_surface(names, whole.surface(&first_order)?))
+    }
+
+    /// The same with the constraints to spare after those held: the followers that are independent of these where they do not
+    /// hold.
+    fn with_spare(&self) -> Multipliers<'g> {
+        let (system, mut whole) = (&self.equations.system, self.clone());
+        let graph = system.graph();
+        let mut rows = self.coefficients.to_rows();
+        let along: Vec<_> = (system.frame.coordinates().iter().copied())
+            .zip(self.equations.velocities.iter().copied())
+            .chain([(system.frame.time(), Expr::ONE)])
+            .collect();
+        for follower in &self.followers {
+            let Ok((row, _)) = follower.coefficients(system) else { continue };
+            if graph.generic_rank(&[self.coefficients.to_rows(), vec![row.clone()]].concat()) <= self.rank {
+                continue;
+            }
+            let velocity = follower.velocity(system);
+            rows.push(row);
+            whole.constraints.push(follower.clone());
+            whole.velocities.push(velocity);
+            whole.right.push(-graph.directional(&[velocity], &along)[0]);
+            whole.reactions.push(system.unused(format!("λ_{}", follower.name), "λ_"));
+        }
+        let k = self.coefficients.columns();
+        whole.coefficients = Matrix::from_fn(rows.len(), k, |a, s| rows[a][s]);
+        whole
     }
 
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
@@ -432,6 +465,7 @@ impl<'g> Multipliers<'g> {
             lower,
             bordered: &entries,
             quasi_velocities: eta.len(),
+            rank: self.rank,
         };
         Ok(Surface::new(&first_order.inputs(&[]), conditions, graph)?)
     }
@@ -461,6 +495,7 @@ impl<'g> Multipliers<'g> {
         FirstOrder {
             graph,
             multipliers: self.reactions.len(),
+            rank: self.rank,
             implicit: None,
             unknowns: plain.unknowns.into_iter().chain(self.reactions.iter().copied()).collect(),
             names: plain

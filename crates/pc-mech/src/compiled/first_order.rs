@@ -30,6 +30,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) names: Vec<String>,
     /// How many of them, the last ones, are multipliers: their block of M is zero.
     pub(crate) multipliers: usize,
+    /// How many of these belong to independent constraints, the first ones wherever they are.
+    pub(crate) rank: usize,
     /// M, k × k.
     pub(crate) mass: Matrix<Expr<'g>>,
     /// p, where it is not M w.

@@ -88,6 +88,7 @@ impl<'g> Equations<'g> {
             parameters: system.run_time_inputs(),
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
+            rank: 0,
             mass: self.mass.clone(),
             implicit: None,
             right: self.right.clone(),

@@ -8,18 +8,23 @@ use crate::compiled::fault::Fault;
 /// A pivot of the constraints this small against their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;
 
+/// A row to spare is taken where it has a pivot larger by the inverse of this.
+const SPARE: f64 = 1e-2;
+
 /// The symmetric matrix
 ///
 ///   ⎡ M  Cᵀ ⎤
 ///   ⎣ C  0  ⎦
 ///
-/// with M of k rows and C of m. C is eliminated first, always by the largest coefficient left, so that m unknowns
-/// depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The choice of the independent
+/// with M of k rows and C of m, of which r are independent, as a rule all. C is eliminated first, always by the largest coefficient left, so that r unknowns
+/// depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The m − r rows that are left then are
+/// taken to agree with the others. The choice of the independent
 /// unknowns is made anew each time and does not show in the solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Saddle {
     k: usize,
     m: usize,
+    rank: usize,
     /// M, k × k, row after row.
     mass: Vec<f64>,
     /// C, m × k, then its factors: L below the diagonal of the pivots and U on it and to the right.
@@ -28,7 +33,7 @@ pub(crate) struct Saddle {
     rows: Vec<usize>,
     /// The unknown at each step, then the independent ones.
     columns: Vec<usize>,
-    /// G = −C_D⁻¹ C_I, m × (k − m), row after row; D and I in the order of `columns`.
+    /// G = −C_D⁻¹ C_I, r × (k − r), row after row; D and I in the order of `columns`.
     dependence: Vec<f64>,
     reduced: DenseLdl,
     full: Pattern,
@@ -38,19 +43,27 @@ pub(crate) struct Saddle {
 
 impl Saddle {
     /// That of k unknowns and m ≤ k multipliers.
+    #[cfg(test)]
     pub(crate) fn new(k: usize, m: usize) -> Saddle {
-        let free = k - m;
+        Saddle::of_rank(k, m, m)
+    }
+
+    /// That of k unknowns and m multipliers, `rank` ≤ k of whose rows are independent: those after the first of them as
+    /// many are to be taken instead of these only where these are nearly dependent.
+    pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
+        let free = k - rank;
         Saddle {
             k,
             m,
+            rank,
             mass: vec![0.0; k * k],
             constraints: vec![0.0; m * k],
             rows: (0..m).collect(),
             columns: (0..k).collect(),
-            dependence: vec![0.0; m * free],
+            dependence: vec![0.0; rank * free],
             reduced: DenseLdl::new(free),
             full: Pattern::from_columns(free, (0..free).map(|j| j..free)),
-            room: vec![0.0; k + m],
+            room: vec![0.0; k + rank],
         }
     }
 
@@ -64,9 +77,9 @@ impl Saddle {
         self.eliminate(lower, values)?;
         self.express_dependent();
         let reduced = self.reduced_mass();
-        let sizes: Vec<f64> = (0..self.k - self.m).map(|i| self.size_of_reduced(i)).collect();
+        let sizes: Vec<f64> = (0..self.k - self.rank).map(|i| self.size_of_reduced(i)).collect();
         let outcome = self.reduced.factorise_sum(&self.full, &reduced, sizes.into_iter());
-        outcome.map_err(|fault| fault.at_place(|index| self.columns[self.m + index]))
+        outcome.map_err(|fault| fault.at_place(|index| self.columns[self.rank + index]))
     }
 
     /// As [`factorise`](Saddle::factorise), but only so far that the dependent unknowns are known.
@@ -90,7 +103,12 @@ impl Saddle {
 
     /// The dependent unknowns.
     pub(crate) fn dependent(&self) -> &[usize] {
-        &self.columns[..self.m]
+        &self.columns[..self.rank]
+    }
+
+    /// Whether spare rows are among those taken for independent.
+    pub(crate) fn takes_spare(&self) -> bool {
+        self.rows[..self.rank].iter().any(|&row| row >= self.rank)
     }
 
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
@@ -110,10 +128,11 @@ impl Saddle {
             .collect();
         (0..m).for_each(|a| self.rows[a] = a);
         (0..k).for_each(|s| self.columns[s] = s);
-        for step in 0..m {
+        for step in 0..self.rank {
             let size = |row: usize, column: usize| {
                 let (a, s) = (self.rows[row], self.columns[column]);
-                (self.constraints[a * k + s] * weights[s] / sizes[a]).abs()
+                let size = (self.constraints[a * k + s] * weights[s] / sizes[a]).abs();
+                if a < self.rank { size } else { SPARE * size }
             };
             let places = (step..m).flat_map(|row| (step..k).map(move |column| (row, column)));
             let (row, column, largest) = places.fold((step, step, 0.0), |best, (row, column)| {
@@ -146,7 +165,7 @@ impl Saddle {
 
     /// G, from U_D G = −U_I.
     fn express_dependent(&mut self) {
-        let (m, free) = (self.m, self.k - self.m);
+        let (m, free) = (self.rank, self.k - self.rank);
         for column in 0..free {
             for row in (0..m).rev() {
                 let known: f64 = (row + 1..m)
@@ -164,7 +183,7 @@ impl Saddle {
 
     /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, its lower triangle column after column.
     fn reduced_mass(&self) -> Vec<f64> {
-        let (m, free) = (self.m, self.k - self.m);
+        let (m, free) = (self.rank, self.k - self.rank);
         let g = |row: usize, column: usize| self.dependence[row * free + column];
         // M_DD G + M_DI, and M_ID G + M_II
         let moved = |row: usize, column: usize| -> f64 {
@@ -182,7 +201,7 @@ impl Saddle {
 
     /// The sum of the absolute values of all that the entry i of the diagonal of the reduced mass is the sum of.
     fn size_of_reduced(&self, i: usize) -> f64 {
-        let (m, free) = (self.m, self.k - self.m);
+        let (m, free) = (self.rank, self.k - self.rank);
         let g = |row: usize| self.dependence[row * free + i].abs();
         let across = |row: usize| (0..m).map(|d| self.mass(row, d).abs() * g(d)).sum::<f64>();
         self.mass(m + i, m + i).abs() + 2.0 * across(m + i) + (0..m).map(|d| g(d) * across(d)).sum::<f64>()
@@ -201,7 +220,7 @@ impl Saddle {
     }
 
     fn solve_one(&mut self, column: &mut [f64]) {
-        let (k, m) = (self.k, self.m);
+        let (k, m) = (self.k, self.rank);
         let free = k - m;
         let mut room = std::mem::take(&mut self.room);
         let (w, mu) = room.split_at_mut(k);
@@ -238,7 +257,8 @@ impl Saddle {
         for (s, &place) in self.columns.iter().enumerate() {
             column[place] = w[s];
         }
-        for (a, &place) in self.rows.iter().enumerate() {
+        column[k..].fill(0.0);
+        for (a, &place) in self.rows[..m].iter().enumerate() {
             column[k + place] = mu[a];
         }
         self.room = room;
@@ -331,5 +351,27 @@ mod tests {
         let (pattern, values) = lower(&whole);
         let fault = Saddle::new(2, 2).factorise(&pattern, &values).unwrap_err();
         assert!(matches!(fault, Fault::Constraint { index: 2 | 3 }), "{fault:?}");
+    }
+
+    #[test]
+    fn a_row_to_spare_takes_over_where_the_first_ones_are_dependent() {
+        // w_1 = w_2 twice, and w_2 = w_3 to spare: M = 1, r = (3, 0, 0).
+        let whole = [
+            vec![1.0, 0.0, 0.0, 1.0, 1.0, 0.0],
+            vec![0.0, 1.0, 0.0, -1.0, -1.0, 1.0],
+            vec![0.0, 0.0, 1.0, 0.0, 0.0, -1.0],
+            vec![1.0, -1.0, 0.0, 0.0, 0.0, 0.0],
+            vec![1.0, -1.0, 0.0, 0.0, 0.0, 0.0],
+            vec![0.0, 1.0, -1.0, 0.0, 0.0, 0.0],
+        ];
+        let (pattern, values) = lower(&whole);
+        let mut saddle = Saddle::of_rank(3, 3, 2);
+        saddle.factorise(&pattern, &values).unwrap();
+        assert!(saddle.takes_spare());
+        let mut solution = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        saddle.solve(&mut solution);
+        // The reactions are 2 and 1, that of the row left over 0.
+        assert_eq!(solution[..3], [1.0; 3]);
+        assert_eq!((solution[3] + solution[4], solution[5]), (2.0, 1.0));
     }
 }

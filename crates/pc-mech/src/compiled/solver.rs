@@ -16,11 +16,16 @@ pub(crate) enum Solver {
 }
 
 impl Solver {
-    /// That of `size` unknowns, the last `multipliers` of which are multipliers.
+    /// That of `size` unknowns, the last `multipliers` of which are multipliers, of independent constraints.
     pub(crate) fn new(size: usize, multipliers: usize) -> Solver {
+        Solver::of_rank(size, multipliers, multipliers)
+    }
+
+    /// The same of constraints of which `rank` are independent.
+    pub(crate) fn of_rank(size: usize, multipliers: usize, rank: usize) -> Solver {
         match multipliers {
             0 => Solver::Ldl(DenseLdl::new(size)),
-            m => Solver::Saddle(Box::new(Saddle::new(size - m, m))),
+            m => Solver::Saddle(Box::new(Saddle::of_rank(size - m, m, rank))),
         }
     }
 
@@ -33,6 +38,14 @@ impl Solver {
         match self {
             Solver::Ldl(ldl) => ldl.factorise(lower, values),
             Solver::Saddle(saddle) => saddle.factorise(lower, values),
+        }
+    }
+
+    /// Whether multipliers of constraints to spare stand for others.
+    pub(crate) fn takes_spare(&self) -> bool {
+        match self {
+            Solver::Ldl(_) => false,
+            Solver::Saddle(saddle) => saddle.takes_spare(),
         }
     }
 

@@ -14,6 +14,8 @@ use crate::compiled::solver::Solver;
 #[derive(Clone, Debug)]
 pub(crate) struct Staged {
     dim: usize,
+    /// How many of the unknowns, the last ones, are multipliers.
+    multipliers: usize,
     unknowns: Unknowns,
     solver: Solver,
     /// y, then w.
@@ -65,8 +67,9 @@ impl Staged {
         };
         Ok(Staged {
             dim: system.state.len(),
+            multipliers: system.multipliers,
             unknowns,
-            solver: Solver::new(k, system.multipliers),
+            solver: Solver::of_rank(k, system.multipliers, system.rank),
             known: vec![0.0; known.state.len()],
             rates: compiled(&known, &system.rates, options.backend)?,
             cost: Program::new(graph, &known, &all)?.cost(),
@@ -134,6 +137,10 @@ impl Staged {
             let (state, unknowns) = self.known.split_at_mut(self.dim);
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);
+        } else if self.solver.takes_spare() {
+            // What constraints to spare take over is not told from what the others carry.
+            let multipliers = self.known.len() - self.multipliers;
+            self.known[multipliers..].fill(f64::NAN);
         }
         self.observables.eval(t, &self.known, p, values);
     }

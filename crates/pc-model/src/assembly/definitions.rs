@@ -43,10 +43,10 @@ impl<'g> Assembler<'g, '_> {
         let rows = self.coefficients_of(&definitions)?;
         let (kinematic, binding) = self.completing(&definitions, constraints, at)?;
         let place = &self.model.document().quasi_velocities[0].name.place;
-        // Constraints on positions may restrict the velocities that are defined, like those that contain no x'.
+        // Where definitions and constraints on velocities determine all velocities, those on positions restrict these.
         let positions = binding.iter().filter(|(_, constraint)| constraint.is_holonomic(&kinematic)).count();
         let (all, coordinates) = (definitions.len() + binding.len(), x.len());
-        if all < coordinates || all - positions > coordinates {
+        if all != coordinates && all - positions != coordinates {
             return Err(self.model.error(place, Fault::DefinitionCount { definitions: all, coordinates }));
         }
         if self.graph.generic_rank(&rows) < rows.len() {

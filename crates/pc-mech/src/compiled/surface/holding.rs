@@ -9,6 +9,9 @@ use crate::numeric::least_squares::LeastSquares;
 /// A combination of rows this small against them is rounding.
 const DEPENDENT: f64 = 1e-12;
 
+/// The same at places that are near those where constraints depend on others.
+const NEARLY_DEPENDENT: f64 = 1e-7;
+
 /// A step so short against the state is rounding.
 const SHORT: f64 = 1e-13;
 
@@ -135,7 +138,9 @@ impl Surface {
             Ok(LeastSquares::of(&first).map_err(failed)?.rank(DEPENDENT))
         };
         let of_held = rank(held)?;
-        if rank(rows.len())? < of_held + indices.len() {
+        // Where not all constraints are independent, nothing is found that what is held leaves nothing to.
+        let dependent = c.len() - self.rank;
+        if rank(rows.len())? + dependent < of_held + indices.len() {
             let mut before = of_held;
             for (place, &index) in indices.iter().enumerate() {
                 let now = rank(held + place + 1)?;
@@ -152,7 +157,9 @@ impl Surface {
             (false, false) => 0.0,
         });
         let right: Vec<f64> = std::iter::repeat_n(0.0, k).chain(right).collect();
-        let solved = LeastSquares::of(&bordered).map_err(failed)?.shortest(&right, DEPENDENT);
+        let solved = LeastSquares::of(&bordered)
+            .map_err(failed)?
+            .shortest(&right, if dependent > 0 { NEARLY_DEPENDENT } else { DEPENDENT });
         Ok(solved[..k].iter().zip(&units).map(|(step, unit)| step * unit).collect())
     }
 }
