@@ -80,6 +80,11 @@ impl Measured {
         UNIT * self.values[self.values.len() / 2 + place]
     }
 
+    /// The bounds of the rounding errors of all functions.
+    pub(crate) fn errors(&self) -> Vec<f64> {
+        (0..self.values().len()).map(|place| self.error(place)).collect()
+    }
+
     /// The largest of the values in units of the bound of its error: no more than 1 where only rounding is left of them.
     pub(crate) fn in_errors(&self) -> f64 {
         let ratio = |(place, value): (usize, &f64)| match self.error(place) {

@@ -187,6 +187,7 @@ impl Surface {
             if rest <= ONE_ROUNDING {
                 return Ok(());
             }
+            let errors = self.measured(part).errors();
             let length = self.step(part);
             let (start, change) = (y[range.clone()].to_vec(), self.moved(part, t, y, p));
             // Constraints that depend on those which are taken are satisfied to the roundings of these, not to their own.
@@ -206,7 +207,7 @@ impl Surface {
             };
             let whole = go(self, 1.0);
             let converges = whole.is_some_and(|(next, _)| next <= CONVERGING * length);
-            if !converges && (rest <= 1.0 || self.is_rounding(part, length, &change, &start)) {
+            if !converges && (rest <= 1.0 || self.is_rounding(part, &errors, length, &change, &start)) {
                 if whole.is_none_or(|(_, left)| left >= rest) {
                     y[range].copy_from_slice(&start);
                     self.measured(part).try_eval((t, y, p))?;
@@ -231,12 +232,17 @@ impl Surface {
             .find(|&fraction| go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length))
     }
 
-    /// Whether errors of f, where it was computed last, may call for a step of this length, with the matrix as it is
+    /// Whether errors of f no larger than these bounds may call for a step of this length, with the matrix as it is
     /// factorised.
-    fn is_rounding(&mut self, part: Part, length: f64, change: &[f64], state: &[f64]) -> bool {
+    fn is_rounding(
+        &mut self,
+        part: Part,
+        errors: &[f64],
+        length: f64,
+        change: &[f64],
+        state: &[f64],
+    ) -> bool {
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        let errors: Vec<f64> =
-            (0..self.measured(part).values().len()).map(|place| self.measured(part).error(place)).collect();
         if !errors.iter().all(|error| error.is_finite()) {
             return largest(change) <= SHORT * largest(state);
         }
