@@ -44,7 +44,9 @@ impl<'g> Frame<'g> {
             if commutator.iter().all(|x| x.is_zero()) {
                 return Ok(vec![Expr::ZERO; k]);
             }
-            let solve = left_inverse.get_or_insert_with(|| self.left_inverse());
+            let Some(solve) = left_inverse.get_or_insert_with(|| self.left_inverse()) else {
+                return Err(AlgebraError::RankDeficient { rank: rank - 1, operators: k, pair: (r, s) });
+            };
             let c: Vec<Expr<'g>> = (0..k)
                 .map(|m| self.graph().dot(solve.row(m).iter().copied(), commutator.iter().copied()))
                 .collect();
@@ -121,20 +123,19 @@ impl<'g> Frame<'g> {
         worst
     }
 
-    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square.
-    pub(crate) fn left_inverse(&self) -> Matrix<Expr<'g>> {
+    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
+    pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
-        let undefined = || Matrix::from_fn(k, k, |_, _| Expr::from(Number::UNDEFINED));
         if b.rows() == k {
-            return inverse(graph, b).unwrap_or_else(undefined); // rank k excludes this
+            return inverse(graph, b);
         }
         let weights = self.weights();
         let weighted = Matrix::from_fn(b.rows(), k, |i, s| weights[i] * b[(i, s)]);
         let gram = Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), weighted.column(j)));
-        let inverted = inverse(graph, &gram).unwrap_or_else(undefined); // rank k excludes this
-        Matrix::from_fn(k, b.rows(), |m, i| {
+        let inverted = inverse(graph, &gram)?;
+        Some(Matrix::from_fn(k, b.rows(), |m, i| {
             graph.dot(inverted.row(m).iter().copied(), weighted.row(i).iter().copied())
-        })
+        }))
     }
 
     /// 1, but powers of 2 for the coordinates in whose units velocities are small numbers: in bᵀb they would be lost beside

@@ -6,6 +6,7 @@ use crate::affine::affine;
 use crate::error::AlgebraError;
 use crate::inverse::inverse;
 use crate::matrix::Matrix;
+use crate::sample::Neighbourhood;
 
 /// A frame of k operators on a space of n coordinates and time.
 ///
@@ -149,7 +150,7 @@ impl<'g> Frame<'g> {
         if rank < operators {
             return Err(AlgebraError::DependentOperators { rank, operators });
         }
-        let a = self.left_inverse();
+        let a = self.left_inverse().ok_or(AlgebraError::DependentOperators { rank: rank - 1, operators })?;
         let drift = |s: usize| -self.graph.dot(a.row(s).iter().copied(), self.b0.iter().copied());
         let a0 = (0..operators).map(drift).collect();
         Ok((a, a0))
@@ -211,9 +212,12 @@ impl<'g> Frame<'g> {
         Frame { b: self.b.map(&mut f), b0: self.b0.iter().map(|&x| f(x)).collect(), ..self.clone() }
     }
 
-    /// Rank of b at almost all points.
+    /// Rank of b at almost all points, as the graph knows it; less where numbers show that its operators are dependent.
     pub fn rank(&self) -> usize {
-        self.graph.generic_rank(&self.b.to_rows())
+        let rows = self.b.to_rows();
+        let known = self.graph.generic_rank(&rows);
+        let seen = Neighbourhood::anywhere(self.graph, self.b.entries()).rank(self.graph, &rows);
+        seen.map_or(known, |seen| seen.min(known))
     }
 }
 

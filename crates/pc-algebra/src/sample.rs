@@ -1,6 +1,6 @@
 //! Numerical values of expressions at pseudo-random points, for tests that the graph cannot decide exactly.
 
-use pc_expr::{Expr, Graph, Scalar};
+use pc_expr::{Expr, Function, Graph, Scalar};
 
 use crate::closure::TRIALS;
 use crate::weighed::Weighed;
@@ -108,7 +108,21 @@ impl<'g> Neighbourhood<'g> {
             return expression.is_zero();
         }
         let samples = self.weighed(graph, &[expression], TRIALS);
-        !samples.is_empty() && samples.iter().flatten().all(|value| value.rest() <= HIDDEN)
+        // A piece of a function may be 0 here and something else elsewhere.
+        let is_zero = |value: &Weighed| value.value == 0.0 && in_pieces(graph, &[expression]);
+        let is_rounding = |value: &Weighed| value.rest() <= HIDDEN && !is_zero(value);
+        !samples.is_empty() && samples.iter().flatten().all(is_rounding)
+    }
+
+    /// The largest rank that a matrix, given by its rows, has in numbers at points near by; `None` where it has no numbers, and
+    /// where these are of one piece only.
+    pub(crate) fn rank(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Option<usize> {
+        let columns = rows.first().map_or(0, Vec::len);
+        if in_pieces(graph, &rows.concat()) {
+            return None;
+        }
+        let samples = self.weighed(graph, &rows.concat(), TRIALS);
+        samples.into_iter().map(|entries| rank(&entries, columns)).max()
     }
 
     /// Values at up to `count` points where all outputs are finite.
@@ -132,6 +146,38 @@ impl<'g> Neighbourhood<'g> {
         let points = 0..4 * count as u64;
         points.filter_map(|index| self.sample(graph, outputs, index)).filter(all_finite).take(count).collect()
     }
+}
+
+/// Whether expressions are functions of several pieces.
+fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
+    let symbols = graph.symbols_of(expressions);
+    let has_pieces = |f: Function| {
+        matches!(f, Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Step)
+    };
+    expressions.iter().any(|&expression| graph.applies(expression, &symbols, has_pieces))
+}
+
+/// The rank of a matrix of that many columns, by elimination with complete pivoting; what is no more than rounding is zero.
+fn rank(entries: &[Weighed], columns: usize) -> usize {
+    let mut rows: Vec<Vec<Weighed>> = entries.chunks(columns.max(1)).map(<[Weighed]>::to_vec).collect();
+    let mut open: Vec<usize> = (0..columns).collect();
+    let total = rows.len();
+    while !rows.is_empty() {
+        let largest = |row: &[Weighed]| open.iter().fold(0.0, |most, &j| f64::max(most, row[j].size()));
+        let places = rows.iter().enumerate().flat_map(|(i, row)| open.iter().map(move |&j| (i, j, row)));
+        let certain = places.filter(|(_, j, row)| row[*j].rest() > HIDDEN);
+        let share = |row: &[Weighed], j: usize| row[j].value.abs() / largest(row);
+        let best = certain.max_by(|(_, j, a), (_, l, b)| share(a, *j).total_cmp(&share(b, *l)));
+        let Some((i, j, _)) = best else { break };
+        let pivot = rows.swap_remove(i);
+        let reciprocal = Weighed::powi(pivot[j], -1);
+        for row in &mut rows {
+            let factor = -(row[j] * reciprocal);
+            open.iter().filter(|&&l| l != j).for_each(|&l| row[l] = row[l] + factor * pivot[l]);
+        }
+        open.retain(|&l| l != j);
+    }
+    total - rows.len()
 }
 
 /// splitmix64, uniform in (−1, 1).

@@ -180,3 +180,18 @@ fn frames_that_do_not_belong_together() {
     assert_eq!(twice.change_to(&both, &near()).unwrap_err(), dependent);
     assert_eq!(twice.definitions().unwrap_err(), dependent);
 }
+
+/// log(xy) − log x − log y is zero, though nothing that the graph knows: fields that differ by it are dependent.
+#[test]
+fn operators_that_are_dependent_in_numbers_are_dependent() {
+    let graph = Graph::new();
+    let [t, x, y, u, w] = graph.symbols(["t", "x", "y", "u", "w"]);
+    let zero = (x * y).log() - x.log() - y.log();
+    let with = |more: Expr<'_>| {
+        let velocities = [u * x + w * x.square(), u * y + w * (x * y + more)];
+        Frame::from_velocities(&graph, t, vec![x, y], &[u, w], &velocities).unwrap()
+    };
+    assert_eq!((with(zero * y).rank(), with(1e-6 * y).rank(), with(Expr::ZERO).rank()), (1, 2, 1));
+    let error = with(zero * y).definitions().unwrap_err();
+    assert!(matches!(error, AlgebraError::DependentOperators { rank: 1, operators: 2 }), "{error:?}");
+}

@@ -92,6 +92,32 @@ fn a_harmonic_oscillator() {
     }
 }
 
+/// The same as in textbooks, S = x r/2 + (E/ω) arcsin(ω x/√(2E)) − E t, its roots √(2E) √(1 − ω² x²/(2E)) = r being more than the
+/// graph knows; and what only looks like it.
+#[test]
+fn a_harmonic_oscillator_with_an_arc_sine() {
+    let graph = Graph::new();
+    let [omega, t, x, e] = graph.symbols(["ω", "t", "x", "E"]);
+    let oscillator = System::builder(&graph)
+        .parameter(omega, 1.5)
+        .coordinates(["x"])
+        .lagrangian(|_, x, v| (v[0].square() - (omega * x[0]).square()) / 2.0)
+        .build()
+        .unwrap();
+    let canonical = oscillator.canonical().unwrap();
+    let root = (2.0 * e - (omega * x).square()).sqrt();
+    let with =
+        |factor: f64| x * root / 2.0 + factor * e / omega * (omega * x / (2.0 * e).sqrt()).asin() - e * t;
+    let mut integral = canonical.complete_integral(with(1.0), &["E"]).unwrap();
+    let angle = 1.5 * (0.5 + 0.4);
+    close(
+        &integral.state(0.5, &[2.0], &[0.4], &[0.0]).unwrap(),
+        &[2.0 * f64::sin(angle) / 1.5, 2.0 * f64::cos(angle)],
+    );
+    let wrong = canonical.complete_integral(with(1.0 + 1e-9), &["E"]).unwrap_err();
+    assert!(matches!(wrong, MechError::NotAnAction { .. }), "{wrong}");
+}
+
 /// A free particle in the polar frame η = (ρ̇, ρφ̇), whose operators do not commute: S = r − a arctan(r/a) +
 /// a φ − E t, r² = 2E ρ² − a²; the motion is a straight line.
 #[test]

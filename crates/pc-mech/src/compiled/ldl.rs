@@ -7,12 +7,12 @@ use pc_expr::{Expr, Graph};
 pub(crate) enum Factors<'g> {
     /// L D Lᵀ in the order of elimination that fills in least.
     Ldl(Ldl<'g>),
-    /// The inverse itself, for a small matrix that has a zero on its diagonal, such as that of L = ẋẏ: it has both signs,
-    /// and a pivot may vanish where it is regular. And for any without a usable pivot on its diagonal.
+    /// The inverse itself, for a small matrix of both signs, such as that of L = ẋẏ: a pivot may vanish where it is regular.
+    /// And for any without a usable pivot on its diagonal.
     Inverse(Matrix<Expr<'g>>),
 }
 
-/// The rows up to which a matrix with a zero on its diagonal is inverted whole; the inverse of more is long.
+/// The rows up to which a matrix of both signs is inverted whole; the inverse of more is long.
 const MOST_INVERTED: usize = 3;
 
 /// What vanishes where M is singular, or where its factors have no numbers.
@@ -35,9 +35,9 @@ impl<'g> Factors<'g> {
     /// Factorises a matrix that is regular at almost all states.
     pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Factors<'g> {
         let undefined = || Matrix::from_fn(m.rows(), m.rows(), |_, _| Expr::ONE / Expr::ZERO);
-        let indefinite = (0..m.rows()).any(|s| m[(s, s)].is_zero());
-        let inverted = indefinite && m.rows() <= MOST_INVERTED;
-        match Ldl::of(graph, m).filter(|_| !inverted) {
+        let lacks = (0..m.rows()).any(|s| m[(s, s)].is_zero());
+        let inverted = |ldl: &Ldl<'g>| m.rows() <= MOST_INVERTED && (lacks || ldl.has_both_signs(graph));
+        match Ldl::of(graph, m).filter(|ldl| !inverted(ldl)) {
             Some(ldl) => Factors::Ldl(ldl),
             None => Factors::Inverse(inverse(graph, m).unwrap_or_else(undefined)), // a regular M has an inverse
         }
@@ -77,6 +77,17 @@ impl<'g> Ldl<'g> {
     /// √D_s L_is η_i
     pub(crate) fn orthonormal(&self, graph: &'g Graph, s: usize, eta: &[Expr<'g>]) -> Expr<'g> {
         self.diagonal[s].sqrt() * graph.dot(self.lower.column(s), eta.iter().copied())
+    }
+
+    /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
+    fn has_both_signs(&self, graph: &'g Graph) -> bool {
+        let symbols = graph.symbols_of(&self.diagonal);
+        [0.0, 0.2, 0.6, 1.7].into_iter().any(|spread| {
+            let place = |i: usize| (1.0 + spread * (1.0 + i as f64).sin()).abs();
+            let values: Vec<_> = symbols.iter().enumerate().map(|(i, &symbol)| (symbol, place(i))).collect();
+            let signs = graph.evaluate(&self.diagonal, &values).unwrap_or_default(); // every symbol has a value
+            signs.iter().any(|&d| d > 0.0) && signs.iter().any(|&d| d < 0.0)
+        })
     }
 
     /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has

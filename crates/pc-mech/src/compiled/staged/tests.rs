@@ -160,6 +160,23 @@ fn without_pivots_the_inverse_is_written_out() {
     assert_eq!(ydot, [2.0, 3.0, -0.5, -0.25]);
 }
 
+/// M = ((sin x, 1), (1, sin x)) of both signs is regular where its pivot sin x vanishes: there ẍ = −ẋẏ, ÿ = (ẏ² − ẋ²)/2.
+#[test]
+fn a_metric_of_both_signs_is_regular_where_a_pivot_vanishes() {
+    let graph = Graph::new();
+    let equations = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| x[0].sin() * (v[0].square() + v[1].square()) / 2.0 + v[0] * v[1])
+        .build()
+        .unwrap()
+        .poincare()
+        .unwrap();
+    let mut motion = equations.compile_for(all()).unwrap();
+    let mut ydot = [0.0; 4];
+    motion.rhs(0.0, &[0.0, 0.25, 2.0, 3.0], &mut ydot).unwrap();
+    assert_eq!(ydot, [2.0, 3.0, -6.0, 2.5]);
+}
+
 #[test]
 fn a_pivot_that_vanishes_names_quasi_velocity_and_state_in_both_forms() {
     let graph = Graph::new();
