@@ -11,7 +11,8 @@
  *     pc_system_free(top);
  *     pc_model_free(model);
  *
- * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
+ * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then first-order states;
+ * ydot is its rate.
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
  * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. PC_STOPPED
@@ -675,6 +676,68 @@ pc_status pc_model_check(const pc_model *model,
 pc_status pc_model_add_parameter(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
+ * Adds a parameter that is an expression in those before it, which it follows until it is set itself.
+ */
+pc_status pc_model_add_parameter_expression(pc_model *model,
+                                            const char *name,
+                                            const char *expression,
+                                            pc_error **error);
+
+/**
+ * Adds an input: a value that is constant until it is set, as parameters are, after all of which it comes. Forces, rates of
+ * states, events and what is watched may contain it, but nothing that velocities or momenta depend on.
+ */
+pc_status pc_model_add_input(pc_model *model,
+                             const char *name,
+                             double value,
+                             pc_error **error);
+
+/**
+ * Adds an input that is a function of time: `length` values at rising times, between them "linear", "cubic" or "hold"; NULL
+ * for "linear". No step of a solver crosses one of the times. Its values are not set otherwise.
+ */
+pc_status pc_model_add_input_table(pc_model *model,
+                                   const char *name,
+                                   const double *times,
+                                   const double *values,
+                                   size_t length,
+                                   const char *interpolation,
+                                   pc_error **error);
+
+/**
+ * Adds an input whose table is a column of a file of numbers with commas between them, below a line of names; otherwise as
+ * pc_model_add_input_table. `time` is the name of the column of times, NULL for "t" or else the first. The path is taken from
+ * the working directory as it is now.
+ */
+pc_status pc_model_add_input_file(pc_model *model,
+                                  const char *name,
+                                  const char *path,
+                                  const char *column,
+                                  const char *time,
+                                  const char *interpolation,
+                                  pc_error **error);
+
+/**
+ * Adds a first-order state with its value at the start and its rate: an expression of time, coordinates, velocities and
+ * states. It is integrated with the motion and comes after the velocities in the state; no frame knows it.
+ */
+pc_status pc_model_add_state(pc_model *model,
+                             const char *name,
+                             const char *rate,
+                             double start,
+                             pc_error **error);
+
+/**
+ * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of parameters and t: it acts on
+ * the mass centres of all bodies and counts in the energy.
+ */
+pc_status pc_model_set_gravity(pc_model *model,
+                               const char *x,
+                               const char *y,
+                               const char *z,
+                               pc_error **error);
+
+/**
  * Adds a name for an expression.
  */
 pc_status pc_model_add_definition(pc_model *model,
@@ -939,7 +1002,7 @@ pc_status pc_system_clone(const pc_system *system,
 void pc_system_free(pc_system *system);
 
 /**
- * The length of the state y: coordinates and quasi-velocities, or momenta. 0 of NULL.
+ * The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of NULL.
  */
 size_t pc_system_dim(const pc_system *system);
 
@@ -947,6 +1010,11 @@ size_t pc_system_dim(const pc_system *system);
  * The number of coordinates, which come first in the state. 0 of NULL.
  */
 size_t pc_system_coordinate_count(const pc_system *system);
+
+/**
+ * The number of first-order states, which come last in the state. 0 of NULL.
+ */
+size_t pc_system_state_count(const pc_system *system);
 
 /**
  * The number of parameters. 0 of NULL.
@@ -1010,14 +1078,21 @@ pc_status pc_system_parameters(const pc_system *system, double *values, size_t l
 
 /**
  * Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
- * keep their values.
+ * keep their values. Inputs come after the parameters; those with a table are read from it whatever they are set to.
  */
-pc_status pc_system_set_parameters(pc_system *system, const double *values, size_t length, pc_error **error);
+pc_status pc_system_set_parameters(pc_system *system,
+                                   const double *values,
+                                   size_t length,
+                                   pc_error **error);
 
 /**
- * Sets one parameter, by its place; otherwise as pc_system_set_parameters.
+ * Sets one parameter, by its place; those that are expressions in it follow, unless they have been set themselves. Otherwise
+ * as pc_system_set_parameters.
  */
-pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
+pc_status pc_system_set_parameter(pc_system *system,
+                                  size_t index,
+                                  double value,
+                                  pc_error **error);
 
 /**
  * Declares that a force which a function of yours computes acts on a quasi-velocity; on a coordinate if the
@@ -1273,7 +1348,8 @@ pc_status pc_system_event_reset(pc_system *system,
 
 /**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so `length` is
- * k*k; k is pc_system_dim less pc_system_coordinate_count. With multipliers their rows are not among it. The
+ * k*k; k is pc_system_dim less pc_system_coordinate_count and
+ * pc_system_state_count. With multipliers their rows are not among it. The
  * first call derives, as pc_system_new does.
  */
 pc_status pc_system_mass_matrix(pc_system *system,
@@ -1448,6 +1524,15 @@ pc_status pc_solver_new(const pc_system *system,
  * Frees a solver. Null is allowed. In its own observers and functions it does nothing.
  */
 void pc_solver_free(pc_solver *solver);
+
+/**
+ * Has a solver go on with the parameters and inputs of the system as they are now, from where it stands: it begins anew there,
+ * at order 1. So inputs are changed between two calls of pc_solver_advance. The system is that of the solver, or one of the
+ * same model. PC_UNSUPPORTED with events of pc_solver_add_event.
+ */
+pc_status pc_solver_take_parameters(pc_solver *solver,
+                                    const pc_system *system,
+                                    pc_error **error);
 
 /**
  * Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,6 +49,29 @@ public:
     {
         return say(pc_model_add_parameter, name.c_str(), value);
     }
+    /// An expression in the parameters before it.
+    model &parameter(const std::string &name, const std::string &expression)
+    {
+        return say(pc_model_add_parameter_expression, name.c_str(), expression.c_str());
+    }
+    model &input(const std::string &name, double value) { return say(pc_model_add_input, name.c_str(), value); }
+    /// By its values at times; `interpolation` is "linear", "cubic" or "hold".
+    model &input(const std::string &name, const std::vector<double> &times, const std::vector<double> &values,
+                 const std::string &interpolation = "linear")
+    {
+        if (times.size() != values.size()) {
+            throw std::invalid_argument("an input needs as many times as values");
+        }
+        return say(pc_model_add_input_table, name.c_str(), times.data(), values.data(), times.size(),
+                   interpolation.c_str());
+    }
+    /// By a column of a file.
+    model &input_file(const std::string &name, const std::string &path, const std::string &column,
+                      const std::string &interpolation = "linear")
+    {
+        return say(pc_model_add_input_file, name.c_str(), path.c_str(), column.c_str(), nullptr,
+                   interpolation.c_str());
+    }
     model &definition(const std::string &name, const std::string &expression)
     {
         return say(pc_model_add_definition, name.c_str(), expression.c_str());
@@ -56,6 +80,15 @@ public:
     model &coordinate(const std::string &name, double start)
     {
         return say(pc_model_add_coordinate, name.c_str(), start);
+    }
+    /// A first-order state.
+    model &state(const std::string &name, const std::string &rate, double start)
+    {
+        return say(pc_model_add_state, name.c_str(), rate.c_str(), start);
+    }
+    model &gravity(const components &acceleration)
+    {
+        return say(pc_model_set_gravity, acceleration[0].c_str(), acceleration[1].c_str(), acceleration[2].c_str());
     }
     model &quasi_velocity(const std::string &name, double start)
     {

@@ -69,6 +69,9 @@ public:
         event_observer_ = std::move(kept);
     }
 
+    /// Goes on with the parameters and inputs of the system as they are now.
+    void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
+
     /// The state at t, or where an event or its observer ended the call: ended_by() and time() tell.
     vector advance(double t)
     {

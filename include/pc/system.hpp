@@ -50,9 +50,11 @@ public:
         return system(detail::make<handle>(pc_system_clone, get()), forces_);
     }
 
-    /// The length of the state: coordinates, then quasi-velocities or momenta.
+    /// The length of the state: coordinates, quasi-velocities or momenta, first-order states.
     std::size_t dim() const noexcept { return pc_system_dim(get()); }
     std::size_t coordinate_count() const noexcept { return pc_system_coordinate_count(get()); }
+    /// First-order states, which come last.
+    std::size_t state_count() const noexcept { return pc_system_state_count(get()); }
     std::size_t parameter_count() const noexcept { return pc_system_parameter_count(get()); }
     std::size_t observable_count() const noexcept { return pc_system_observable_count(get()); }
     /// The number of observables, the first ones, that should stay constant.
@@ -211,7 +213,7 @@ public:
     }
     vector mass_matrix(double t, view<const double> y)
     {
-        const std::size_t k = dim() - coordinate_count();
+        const std::size_t k = dim() - coordinate_count() - state_count();
         return at(pc_system_mass_matrix, k * k, t, y);
     }
     /// The number K of operators X_1 … X_K.

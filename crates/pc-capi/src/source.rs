@@ -107,7 +107,14 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
     if let Some(title) = &model.document().model.name {
         options = options.title(title.value.clone());
     }
-    if t_end.is_finite() {
+    let has_tables = !equations.system().signals().is_empty();
+    if has_tables {
+        let remark = "The tables of inputs are not part of this source: their values at each time are arguments of its \
+                      functions, like parameters.";
+        options = options.remark(remark);
+    }
+    // A motion with the inputs of the start would be another.
+    if t_end.is_finite() && !has_tables {
         let state = equations.system().state();
         options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
     }

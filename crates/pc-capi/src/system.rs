@@ -224,7 +224,7 @@ pub(crate) fn name(
     unsafe { system.as_ref() }.map_or(std::ptr::null(), |system| nth(list(&system.inventory), index))
 }
 
-/// The length of the state y: coordinates and quasi-velocities, or momenta. 0 of NULL.
+/// The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
     count(system, Inventory::dim)

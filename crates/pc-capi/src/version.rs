@@ -34,7 +34,8 @@ pub const PREAMBLE: &str = "\
  *     pc_system_free(top);
  *     pc_model_free(model);
  *
- * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form); ydot is its rate.
+ * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then first-order states;
+ * ydot is its rate.
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
  * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. PC_STOPPED

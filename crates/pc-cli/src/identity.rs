@@ -20,7 +20,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     identity.extend(tables.map(|(place, table)| {
         let numbers = table.times().iter().chain(table.values()).flat_map(|number| number.to_le_bytes());
         let sum = crc32fast::hash(&numbers.collect::<Vec<u8>>());
-        entry(&format!("the table of input {}:", place + 1), format!("{:08x}", sum))
+        entry(&format!("the table of input {}:", place + 1), format!("{sum:08x}"))
     }));
     identity.extend([
         entry("--project-start", model.projects_start().to_string()),

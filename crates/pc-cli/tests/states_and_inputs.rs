@@ -211,7 +211,7 @@ fn source_has_states_and_takes_inputs_as_arguments() {
     let output = pc(&["emit", &model, "--lang", "c", "-o", &out]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let header = fs::read_to_string(Path::new(&out).join("model.h")).expect("a header");
-    assert!(header.contains("#define MODEL_STATES     2 /* first-order states */"), "{header}");
+    assert!(header.contains("#define MODEL_STATES     2  /* first-order states */"), "{header}");
     assert!(
         header.contains("State: one coordinate, then one quasi-velocity, then 2 first-order states."),
         "{header}"

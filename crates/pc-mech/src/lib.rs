@@ -282,6 +282,13 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
+//! # States and inputs
+//!
+//! What moves with a system and is no part of its frame, such as the current in a motor, is a first-order
+//! [state](SystemBuilder::state) z with ż = h(t, x, η, z). L and Q may depend on it; d/dt ∂L/∂η_s in (9) then has the term
+//! ż ∂²L/∂η_s∂z, and dH/dt the term −ż ∂L/∂z. Parameters that are functions of time are [signals](SystemBuilder::signal); a
+//! motion reads them from [tables](Motion::driven_by).
+//!
 //! # Numbers and source
 //!
 //! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a [`VectorField`]

@@ -146,9 +146,9 @@ impl<'g> Assembler<'g, '_> {
     /// That no momentum depends on an input: it would change with it, at a rate that is not known.
     fn check_inputs(&self, system: &System<'g>) -> Result<(), ModelError> {
         let momenta = system.momenta();
-        let inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
+        let mut inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
         let moves = |input: &&String| momenta.iter().any(|p| p.depends_on(self.graph.symbol(input)));
-        match { inputs }.find(moves) {
+        match inputs.find(moves) {
             Some(input) => {
                 let error = MechError::SignalInMomentum { input: input.clone() };
                 Err(self.model.derivation_error(error))

@@ -477,7 +477,9 @@ impl Fault {
                 "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`".into()
             }
             Fault::NotClosed { .. } => {
-                "the kinematics stand for constraints that are not integrable; give them in [constraints]".into()
+                "the kinematics stand for constraints that are not integrable; give them in [constraints], and what has a rate \
+                 but is no coordinate in [states]"
+                    .into()
             }
             Fault::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             Fault::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),

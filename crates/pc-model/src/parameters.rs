@@ -89,11 +89,12 @@ impl Parameters {
 
     /// The tables of inputs, with their places.
     pub fn tables(&self) -> Vec<(usize, &Arc<Table>)> {
-        let table = |(place, formula)| match formula {
-            &Formula::Table(ref table) => Some((place, table)),
+        let all = self.formulas.iter().enumerate();
+        all.filter_map(|(place, formula)| match formula {
+            Formula::Table(table) => Some((place, table)),
             Formula::Number | Formula::Of(_) | Formula::Wrong(_) => None,
-        };
-        self.formulas.iter().enumerate().filter_map(table).collect()
+        })
+        .collect()
     }
 
     /// Gives number `place` a value, which then stands for its expression. Those that are expressions in it follow.

@@ -127,6 +127,14 @@ impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
         Ok(())
     }
 
+    fn breaks(&self) -> &[f64] {
+        self.field.breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        self.field.enter(t, end)
+    }
+
     fn component_name(&self, i: usize) -> String {
         format!("the adjoint of {}", self.field.component_name(i))
     }

@@ -17,7 +17,7 @@ struct Legs {
 
 impl Legs {
     fn new() -> Legs {
-        Legs { breaks: vec![1.0, 1.25, 3.0], factors: vec![-1.0, 40.0, -40.0, 0.5], leg: 0 }
+        Legs { breaks: vec![1.0, 1.25, 3.0], factors: vec![-1.0, 4.0, -4.0, 0.5], leg: 0 }
     }
 
     /// y(t) of y(0) = 1.
@@ -55,13 +55,14 @@ impl VectorField for Legs {
     }
 }
 
+/// At, before and after breaks.
 const TIMES: [f64; 6] = [0.5, 1.0, 1.1, 2.0, 3.0, 4.0];
 
 /// The errors of some hundred steps of 1e-10 each, of one sign at worst.
 #[test]
 fn each_leg_is_integrated_by_itself() {
     for method in [Method::Bdf, Method::Adams] {
-        let options = Options::new(method).relative_tolerance(1e-10).absolute_tolerance(1e-30);
+        let options = Options::new(method).relative_tolerance(1e-10).absolute_tolerance(1e-14);
         let found = solve(Legs::new(), 0.0, &[1.0], &TIMES, &options).unwrap();
         for (t, y) in found.iter() {
             let exact = Legs::new().exact(t);
@@ -90,7 +91,7 @@ fn steps_end_at_breaks() {
 /// Back to where it began.
 #[test]
 fn backward_likewise() {
-    let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-30).stop_time(0.0);
+    let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-14).stop_time(0.0);
     let mut field = Legs::new();
     field.leg = 3;
     let start = field.exact(4.0);

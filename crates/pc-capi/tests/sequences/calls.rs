@@ -73,6 +73,7 @@ pub(crate) enum SystemCall {
 pub(crate) enum SolverCall {
     New { method: i8, t: f64, y: Vec<f64>, change: u8 },
     Advance(f64, u8),
+    TakeParameters,
     Run(Vec<f64>, bool),
     Step(f64, u8),
     AddEvent { direction: i8, function: u8, good: u8 },
@@ -159,6 +160,7 @@ fn of_solver() -> impl Strategy<Value = SolverCall> {
         2 => (-1i8..3, numbers(), state(), any::<u8>())
             .prop_map(|(method, t, y, change)| New { method, t, y, change }),
         3 => (numbers(), 0u8..8).prop_map(|(t, n)| Advance(t, n)),
+        1 => Just(TakeParameters),
         2 => (prop::collection::vec(numbers(), 0..4), any::<bool>()).prop_map(|(t, s)| Run(t, s)),
         2 => (numbers(), 0u8..8).prop_map(|(t, n)| Step(t, n)),
         3 => (-2i8..3, any::<u8>(), any::<u8>())

@@ -119,7 +119,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 49 {
+        match function % 56 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -159,6 +159,16 @@ unsafe fn say(
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),
             47 => pc_model_set_max_step(model, x, error),
+            48 | 49 => pc_model_add_state(model, a, b, x, error),
+            50 => pc_model_add_input(model, a, x, error),
+            51 => {
+                let (times, values) = ([0.0, 1.0, 2.0 + x], [x, -x, 0.5]);
+                let word = if yes == 1 { c"hold".as_ptr() } else { ptr::null() };
+                pc_model_add_input_table(model, a, times.as_ptr(), values.as_ptr(), count, word, error)
+            }
+            52 => pc_model_add_input_file(model, a, z, b, ptr::null(), a, error),
+            53 => pc_model_set_gravity(model, b, z, b, error),
+            54 => pc_model_add_parameter_expression(model, a, b, error),
             _ => pc_model_set(model, a, x, error),
         }
     }

@@ -43,6 +43,9 @@ impl Handles {
                     let (data, len) = (y.data(), y.len());
                     self.call(|error| pc_solver_advance(solver, *t, data, len, error))
                 }
+                SolverCall::TakeParameters => {
+                    self.call(|error| pc_solver_take_parameters(solver, system, error))
+                }
                 SolverCall::Run(times, stop) => {
                     let (data, len, mut watch) = (times.as_ptr(), times.len(), Watch { solver, stop: *stop });
                     let user = (&raw mut watch).cast();

@@ -97,7 +97,7 @@ impl Handles {
         // SAFETY: the handle is null or live, arrays are as long as said.
         unsafe {
             let dim = pc_system_dim(system);
-            let velocities = dim - pc_system_coordinate_count(system);
+            let velocities = dim - pc_system_coordinate_count(system) - pc_system_state_count(system);
             let (mut operators, mut entries) = (0, 0);
             let _ = self.call(|error| pc_system_operator_count(system, &raw mut operators, error));
             let _ = self.call(|error| {

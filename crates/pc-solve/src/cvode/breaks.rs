@@ -13,20 +13,19 @@ impl<F: VectorField> Cvode<F> {
         if self.field().breaks().is_empty() {
             return Ok(None);
         }
-        let t = self.step_time;
         let end = self.stop_time.unwrap_or(towards);
+        let mut t = self.step_time;
+        let mut next = following(self.field().breaks(), t, end);
+        // A break no farther than rounding, as after an event, is too close for a step of CVODES: it has been reached.
+        while let Some(time) = next.filter(|&time| are_close(time, t)) {
+            t = time;
+            next = following(self.field().breaks(), t, end);
+        }
         let jumped = self.callbacks.field_mut().enter(t, end);
         // Sensitivities are no part of what could be begun anew: error control sees the jump.
         if jumped && self.direction.is_some() && self.sensitivity.is_none() {
             self.begin_anew()?;
         }
-        let breaks = self.field().breaks();
-        let next = if end >= t {
-            breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
-        } else {
-            let before = breaks.partition_point(|&time| time < t).checked_sub(1);
-            before.map(|i| breaks[i]).filter(|&time| time > end)
-        };
         // CVODES forgets a stop time that it has reached.
         match next.or(self.stop_time) {
             Some(stop) => {
@@ -51,4 +50,22 @@ impl<F: VectorField> Cvode<F> {
         self.idle_failure = None;
         Ok(())
     }
+}
+
+/// What CVODES takes two times for the same by, and as much again.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
+fn are_close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
+}
+
+/// The first of the breaks, which rise, after t and before the end in its direction.
+fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
+    let next = if end >= t {
+        breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
+    } else {
+        let before = breaks.partition_point(|&time| time < t).checked_sub(1);
+        before.map(|i| breaks[i]).filter(|&time| time > end)
+    };
+    next.filter(|&time| !are_close(time, end))
 }
