@@ -1,11 +1,11 @@
 //! Finding and checking the structure coefficients of a frame (6), and its closure.
 
-use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Number};
 
 use crate::error::AlgebraError;
 use crate::frame::Frame;
 use crate::inverse::inverse;
+use crate::lie_algebra::check_jacobi;
 use crate::matrix::Matrix;
 use crate::sample::{HIDDEN, Neighbourhood};
 use crate::structure::StructureCoefficients;
@@ -17,21 +17,23 @@ impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
     /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
-    /// X_s]. Where rank b < k that would lose the part of c along ker b, so constant coefficients are looked
-    /// for that hold at many points at once. Either way the result must reproduce every commutator.
+    /// X_s]. Where rank b < k that would lose the part of c along ker b, so coefficients are looked for that
+    /// hold at all points, functions of parameters and time only; the frame determines them if no combination of
+    /// the operators with such coefficients vanishes. Either way the result must reproduce every commutator.
     ///
     /// `near` says where the expressions of the frame are regular.
     ///
     /// # Errors
     /// [`AlgebraError::NotClosed`] and [`AlgebraError::RankDeficient`], both naming the pair (r, s);
-    /// [`AlgebraError::AlgebraNeeded`] if there are operators but no coordinates.
+    /// [`AlgebraError::Undetermined`] naming the combination that vanishes; [`AlgebraError::AlgebraNeeded`] if
+    /// there are operators but no coordinates.
     pub fn structure_coefficients(
         &self,
         near: &Neighbourhood<'g>,
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
         let k = self.operators();
         let rank = self.rank();
-        if rank == 0 && k > 0 {
+        if self.coordinates().is_empty() && k > 0 {
             return Err(AlgebraError::AlgebraNeeded);
         }
         if rank < k {
@@ -68,10 +70,8 @@ impl<'g> Frame<'g> {
         structure: &StructureCoefficients<'g>,
         near: &Neighbourhood<'g>,
     ) -> Result<(), AlgebraError> {
+        self.check_dimension(structure)?;
         let k = self.operators();
-        if structure.operators() != k {
-            return Err(AlgebraError::Dimension { algebra: structure.operators(), operators: k });
-        }
         for (r, s) in pairs(k) {
             let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
             let residual = self.residual(&self.commutator_terms(r, s), &c, near);
@@ -97,30 +97,62 @@ impl<'g> Frame<'g> {
     /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators
     /// 0..k, relative to its terms, as [`Neighbourhood::residual`] measures it.
     pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
-        if structure.nonzero().next().is_none() {
-            return 0.0;
+        let defects = self.jacobi_defects(structure);
+        defects.map(|(_, defects)| near.residual(self.graph(), &defects)).fold(0.0, f64::max)
+    }
+
+    /// Checks the Jacobi identity of given structure coefficients, X_u c_rs^m included.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Jacobi`] naming the operators, 0 for time; [`AlgebraError::Dimension`].
+    pub fn check_jacobi(
+        &self,
+        structure: &StructureCoefficients<'g>,
+        near: &Neighbourhood<'g>,
+    ) -> Result<(), AlgebraError> {
+        self.check_dimension(structure)?;
+        let graph = self.graph();
+        if structure.are_constant() {
+            let number = |c: Expr<'g>| c.constant().unwrap_or(Number::UNDEFINED);
+            return check_jacobi(0..=self.operators(), |r, s, m| number(structure.get(r, s, m)));
         }
-        let k = self.operators();
-        let mut worst = 0.0f64;
-        for r in 0..=k {
-            for s in r + 1..=k {
-                for u in s + 1..=k {
-                    let cycles = [(r, s, u), (s, u, r), (u, r, s)];
-                    let defect = |m: usize| -> Vec<Expr<'g>> {
-                        let terms = cycles.iter().flat_map(|&(r, s, u)| {
-                            let transport = self.apply(u, &[structure.get(r, s, m)])[0];
-                            let nested =
-                                (1..=k).map(move |p| structure.get(r, s, p) * structure.get(p, u, m));
-                            nested.chain([-transport])
-                        });
-                        terms.filter(|term| !term.is_zero()).collect()
-                    };
-                    let defects: Vec<Vec<Expr<'g>>> = (1..=k).map(defect).collect();
-                    worst = worst.max(near.residual(self.graph(), &defects));
+        for (triple, defects) in self.jacobi_defects(structure) {
+            for (component, terms) in (1..).zip(defects) {
+                if near.residual(graph, std::slice::from_ref(&terms)) > Neighbourhood::ROUNDING {
+                    let defect = graph.shorten(&[graph.sum(terms)], &[])[0].to_string();
+                    return Err(AlgebraError::Jacobi { triple, component, defect });
                 }
             }
         }
-        worst
+        Ok(())
+    }
+
+    /// That there are as many operators as structure coefficients are made for.
+    fn check_dimension(&self, structure: &StructureCoefficients<'g>) -> Result<(), AlgebraError> {
+        let (algebra, operators) = (structure.operators(), self.operators());
+        if algebra == operators { Ok(()) } else { Err(AlgebraError::Dimension { algebra, operators }) }
+    }
+
+    /// The terms of c_rs^p c_pu^m − X_u c_rs^m + cyclic, m = 1..k, for all r < s < u.
+    fn jacobi_defects<'a>(
+        &'a self,
+        structure: &'a StructureCoefficients<'g>,
+    ) -> impl Iterator<Item = ((usize, usize, usize), Vec<Vec<Expr<'g>>>)> + 'a {
+        let k = if structure.nonzero().next().is_none() { 0 } else { self.operators() };
+        let triples =
+            (0..=k).flat_map(move |r| (r + 1..=k).flat_map(move |s| (s + 1..=k).map(move |u| (r, s, u))));
+        triples.map(move |(r, s, u)| {
+            let cycles = [(r, s, u), (s, u, r), (u, r, s)];
+            let defect = |m: usize| -> Vec<Expr<'g>> {
+                let terms = cycles.iter().flat_map(|&(r, s, u)| {
+                    let transport = self.apply(u, &[structure.get(r, s, m)])[0];
+                    let nested = (1..=k).map(move |p| structure.get(r, s, p) * structure.get(p, u, m));
+                    nested.chain([-transport])
+                });
+                terms.filter(|term| !term.is_zero()).collect()
+            };
+            ((r, s, u), (1..=k).map(defect).collect())
+        })
     }
 
     /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
@@ -185,54 +217,9 @@ impl<'g> Frame<'g> {
         };
         near.residual(self.graph(), &y.iter().enumerate().map(difference).collect::<Vec<_>>())
     }
-
-    /// Constant c with b c_rs = [X_r, X_s]: one linear system over many points, rounded to rationals and then
-    /// proved exactly.
-    fn constant_coefficients(
-        &self,
-        rank: usize,
-        near: &Neighbourhood<'g>,
-    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
-        let k = self.operators();
-        StructureCoefficients::from_pairs(k, |r, s| {
-            let terms = self.commutator_terms(r, s);
-            let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
-            let refusal = AlgebraError::RankDeficient { rank, operators: k, pair: (r, s) };
-            if commutator.iter().all(|x| x.is_zero()) {
-                return Ok(vec![Expr::ZERO; k]);
-            }
-            let c = self.fit_constants(&commutator, near).ok_or_else(|| refusal.clone())?;
-            if self.residual(&terms, &c, near) > Neighbourhood::ROUNDING { Err(refusal) } else { Ok(c) }
-        })
-    }
-
-    fn fit_constants(&self, commutator: &[Expr<'g>], near: &Neighbourhood<'g>) -> Option<Vec<Expr<'g>>> {
-        let (n, k) = (self.b().rows(), self.operators());
-        let entries: Vec<Expr<'g>> = self.b().entries().iter().chain(commutator).copied().collect();
-        let samples = near.samples(self.graph(), &entries, 4 * (k + 1));
-        let rows = samples.len() * n;
-        let matrix = DMatrix::from_fn(rows, k, |row, m| samples[row / n][row % n * k + m]);
-        let right = DVector::from_fn(rows, |row, _| samples[row / n][n * k + row % n]);
-        let svd = matrix.svd(true, true);
-        let largest = svd.singular_values.iter().copied().fold(0.0, f64::max);
-        if svd.rank(1e-10 * largest) < k {
-            return None; // dependent over the constants too: c is not unique
-        }
-        let solution = svd.solve(&right, 0.0).ok()?;
-        solution.iter().map(|&value| nearest_rational(value).map(Expr::from)).collect()
-    }
 }
 
 /// The pairs r < s of 0..=k.
 pub(crate) fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..=k).flat_map(move |r| (r + 1..=k).map(move |s| (r, s)))
-}
-
-/// The rational with a denominator up to 64 that equals `value` to ten digits, if there is one.
-fn nearest_rational(value: f64) -> Option<Number> {
-    (1..=64i64).find_map(|den| {
-        let num = (value * den as f64).round();
-        ((num / den as f64 - value).abs() < 1e-10 * (1.0 + value.abs()))
-            .then(|| Number::ratio(num as i64, den))
-    })
 }

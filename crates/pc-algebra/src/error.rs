@@ -55,6 +55,21 @@ pub enum AlgebraError {
         /// The first pair without constant coefficients.
         pair: (usize, usize),
     },
+    /// Operators of which a combination vanishes everywhere: to a bracket any multiple of it could be added.
+    #[error(
+        "the frame does not determine its structure coefficients: {}, with rank {rank} of {operators}: the algebra must \
+         be given",
+        acts_as_zero(combination, |s| format!("X_{s}"))
+    )]
+    Undetermined {
+        /// Rank of b.
+        rank: usize,
+        /// Number of operators.
+        operators: usize,
+        /// The combination: numbers of operators, from 1, with the texts of their coefficients, which are functions of
+        /// parameters and time. Empty if it was not found.
+        combination: Vec<(usize, String)>,
+    },
     /// A commutator outside the span of the operators.
     #[error(
         "the frame is not closed: [X_{}, X_{}] is not a combination of the X_m (relative residual {residual:.1e}), \
@@ -243,4 +258,26 @@ pub enum AlgebraError {
     /// An error of the expressions themselves.
     #[error(transparent)]
     Expr(#[from] ExprError),
+}
+
+/// Which combination of operators acts as zero on the coordinates, in words; `name` gives the name of an operator.
+pub fn acts_as_zero(combination: &[(usize, String)], name: impl Fn(usize) -> String) -> String {
+    let term = |(s, coefficient): &(usize, String)| match coefficient.as_str() {
+        "1" => format!("+ {}", name(*s)),
+        "-1" => format!("- {}", name(*s)),
+        sum if sum.contains([' ', '/']) => format!("+ ({sum})*{}", name(*s)),
+        other => match other.strip_prefix('-') {
+            Some(size) => format!("- {size}*{}", name(*s)),
+            None => format!("+ {other}*{}", name(*s)),
+        },
+    };
+    let sum = combination.iter().map(term).collect::<Vec<_>>().join(" ");
+    let sum = match sum.strip_prefix("- ") {
+        Some(rest) => format!("-{rest}"),
+        None => sum.strip_prefix("+ ").map_or_else(|| sum.clone(), str::to_owned),
+    };
+    match combination {
+        [] => "some combination of the operators acts as zero on the coordinates".to_owned(),
+        _ => format!("{sum} acts as zero on the coordinates"),
+    }
 }

@@ -85,7 +85,9 @@ mod bianchi;
 mod block_triangular;
 mod catalogue;
 mod closure;
+mod constant;
 mod echelon;
+mod elimination;
 mod error;
 mod exact;
 mod families;
@@ -113,7 +115,8 @@ mod weighed;
 
 pub use affine::{Quadratic, affine, quadratic};
 pub use catalogue::{CATALOGUE, Entry};
-pub use error::AlgebraError;
+pub use elimination::Elimination;
+pub use error::{AlgebraError, acts_as_zero};
 pub use frame::Frame;
 pub use frame_change::FrameChange;
 pub use group::{

@@ -129,14 +129,19 @@ pub(crate) fn check_jacobi(
     let triples =
         operators.clone().flat_map(|r| (r + 1..=k).flat_map(move |s| (s + 1..=k).map(move |u| (r, s, u))));
     for (r, s, u) in triples {
-        for component in 1..=k {
+        let cycles = [(r, s, u), (s, u, r), (u, r, s)];
+        let inner: Vec<(usize, usize, Number)> = cycles
+            .iter()
+            .flat_map(|&(r, s, u)| (1..=k).map(move |p| (r, s, p, u)))
+            .map(|(r, s, p, u)| (p, u, c(r, s, p)))
+            .filter(|(.., first)| !first.is_zero())
+            .collect();
+        for component in (1..=k).filter(|_| !inner.is_empty()) {
             let (mut defect, mut size) = (Number::ZERO, Weighed::from_f64(0.0));
-            for (r, s, u) in [(r, s, u), (s, u, r), (u, r, s)] {
-                for p in (1..=k).filter(|&p| !c(r, s, p).is_zero()) {
-                    let (first, second) = (c(r, s, p), c(p, u, component));
-                    defect = defect + first * second;
-                    size = size + Weighed::constant(first) * Weighed::constant(second);
-                }
+            for &(p, u, first) in &inner {
+                let second = c(p, u, component);
+                defect = defect + first * second;
+                size = size + Weighed::constant(first) * Weighed::constant(second);
             }
             // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
             let vanishes = defect.to_f64().abs() <= 1e-12 * size.size();

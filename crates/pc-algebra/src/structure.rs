@@ -17,6 +17,34 @@ pub struct StructureCoefficients<'g> {
 }
 
 impl<'g> StructureCoefficients<'g> {
+    /// The coefficients c_rs^m = `c(r, s, m)` for r < s ≤ k; r and s count from 0, which is time, and m from 0 to k − 1.
+    ///
+    /// Nothing is checked: [`Frame::check`](crate::Frame::check) and [`Frame::check_jacobi`](crate::Frame::check_jacobi)
+    /// say whether a frame has them.
+    ///
+    /// ```
+    /// # use pc_algebra::StructureCoefficients;
+    /// # use pc_expr::{Expr, Graph};
+    /// // A plane that turns at the rate Ω: [X_0, X_1] = Ω X_2, [X_0, X_2] = −Ω X_1.
+    /// let graph = Graph::new();
+    /// let rate = graph.symbol("Ω");
+    /// let c = StructureCoefficients::new(2, |r, s, m| match (r, s, m) {
+    ///     (0, 1, 1) => rate,
+    ///     (0, 2, 0) => -rate,
+    ///     _ => Expr::ZERO,
+    /// });
+    /// assert_eq!(c.get(2, 0, 1), rate);
+    /// ```
+    pub fn new(operators: usize, c: impl Fn(usize, usize, usize) -> Expr<'g>) -> StructureCoefficients<'g> {
+        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
+            Ok((0..operators).map(|m| c(r, s, m)).collect())
+        };
+        match StructureCoefficients::from_pairs(operators, pair) {
+            Ok(structure) => structure,
+            Err(never) => match never {},
+        }
+    }
+
     /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for r < s, r from 0.
     pub(crate) fn from_pairs<E>(
         operators: usize,
@@ -42,26 +70,14 @@ impl<'g> StructureCoefficients<'g> {
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> StructureCoefficients<'g> {
         let old = |s: usize| if s == 0 { 0 } else { order[s - 1] + 1 };
-        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
-            Ok((1..=self.operators).map(|m| self.get(old(r), old(s), old(m))).collect())
-        };
-        match StructureCoefficients::from_pairs(self.operators, pair) {
-            Ok(structure) => structure,
-            Err(never) => match never {},
-        }
+        StructureCoefficients::new(self.operators, |r, s, m| self.get(old(r), old(s), old(m + 1)))
     }
 
     /// The coefficients c_rs^m with r, s, m ≤ `operators`, as many as there are at most.
     #[must_use]
     pub fn restricted(&self, operators: usize) -> StructureCoefficients<'g> {
         let operators = operators.min(self.operators);
-        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
-            Ok((1..=operators).map(|m| self.get(r, s, m)).collect())
-        };
-        match StructureCoefficients::from_pairs(operators, pair) {
-            Ok(structure) => structure,
-            Err(never) => match never {},
-        }
+        StructureCoefficients::new(operators, |r, s, m| self.get(r, s, m + 1))
     }
 
     /// The coefficients passed through `f`.
@@ -177,15 +193,8 @@ impl LieAlgebra {
     }
 
     fn and_drift<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
-        let k = self.dim();
-        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
-            Ok((0..k)
-                .map(|m| if r == 0 { drift(s - 1, m) } else { self.constant(r - 1, s - 1, m) }.into())
-                .collect())
-        };
-        match StructureCoefficients::from_pairs(k, pair) {
-            Ok(structure) => structure,
-            Err(never) => match never {},
-        }
+        StructureCoefficients::new(self.dim(), |r, s, m| {
+            if r == 0 { drift(s - 1, m) } else { self.constant(r - 1, s - 1, m) }.into()
+        })
     }
 }

@@ -31,11 +31,15 @@ pub struct Polynomial<'g> {
 impl Graph {
     /// Each expression in the shortest form found: collected by powers of `variables` in this order, every
     /// coefficient without the symbols it does not depend on.
+    ///
+    /// What a value does not depend on is put to a number; those of the `variables` to no other than 0, so that none
+    /// stands in their place.
     pub fn shorten<'g>(&'g self, expressions: &[Expr<'g>], variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        expressions.iter().map(|&e| self.collect(e, variables)).collect()
+        expressions.iter().map(|&e| self.collect(e, variables, variables)).collect()
     }
 
-    fn collect<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Expr<'g> {
+    /// e collected by `variables`, which are some of `all`.
+    fn collect<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>], all: &[Expr<'g>]) -> Expr<'g> {
         if self.folding() == Folding::Structural || e.constant().is_some() || e.tree_cost() > TOO_LONG {
             return e;
         }
@@ -44,13 +48,14 @@ impl Graph {
             let powers = if present.contains(&z) { self.powers(e, z)? } else { return None };
             (powers.len() > 1).then_some((position, powers))
         }) else {
-            return self.forget(e);
+            return self.forget(e, all);
         };
         let rest = &variables[position + 1..];
         let z = variables[position];
-        let terms = powers.into_iter().enumerate().map(|(i, c)| self.collect(c, rest) * z.powi(i as i32));
+        let terms =
+            powers.into_iter().enumerate().map(|(i, c)| self.collect(c, rest, all) * z.powi(i as i32));
         let collected = self.sum(terms.collect::<Vec<_>>());
-        if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e) }
+        if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, all) }
     }
 
     /// e as a polynomial in all of `variables`, if it is one.
@@ -68,9 +73,6 @@ impl Graph {
                 }
             }
             terms = next;
-        }
-        for (_, c) in &mut terms {
-            *c = self.forget(*c);
         }
         Some(Polynomial { variables: variables.to_vec(), terms })
     }
@@ -113,24 +115,43 @@ impl Graph {
     }
 
     /// e written without the symbols and angles that it contains but does not depend on: they are put to a regular
-    /// value.
-    fn forget<'g>(&'g self, e: Expr<'g>) -> Expr<'g> {
+    /// value, `variables` to 0 if that is one.
+    fn forget<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Expr<'g> {
         let mut short = e;
         for z in self.repeated_symbols(e) {
             if self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
-                short = self.at_regular_point(short, z, true);
+                short = match variables.contains(&z) {
+                    true => self.at_zero(short, z),
+                    false => self.at_regular_point(short, z),
+                };
             }
         }
         for angle in self.composite_angles(short) {
-            short = self.at_regular_point(short, angle, false);
+            short = self.at_regular_angle(short, angle);
         }
         short
     }
 
-    /// e with sin z and cos z at a point of the circle that does not change its value, and with z a number too if
-    /// `whole`; e itself if there is none. The first point is taken at which no new divisor comes in, else the first.
-    fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, whole: bool) -> Expr<'g> {
-        let mut forms = self.forms_without(e, z, whole).peekable();
+    /// e with z = 0, if that does not change its value; e itself otherwise.
+    fn at_zero<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        let form = self.at(e, z, Number::ZERO);
+        if !form.is_undefined() && self.is_same_value(form, e) { form } else { e }
+    }
+
+    /// e with sin z and cos z at a point of the circle, and z at a number, that do not change its value; e itself if there
+    /// are none. The first point is taken at which no new divisor comes in, else the first.
+    fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        self.most_regular(e, self.forms_without(e, z, true))
+    }
+
+    /// The same with sin z and cos z only.
+    fn at_regular_angle<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        self.most_regular(e, self.forms_without(e, z, false))
+    }
+
+    /// The first of the forms of e in which no new divisor comes in, else the first, else e.
+    fn most_regular<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
+        let mut forms = forms.peekable();
         let first = forms.peek().copied();
         forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
     }

@@ -211,6 +211,43 @@ impl Graph {
         )
     }
 
+    /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and no function is
+    /// applied but sine, cosine and the exponential, circular and hyperbolic.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.is_decidable(&[x.sin() / y + 0.1]));
+    /// assert!(!graph.is_decidable(&[x, y.sqrt()]) && !graph.is_decidable(&[2f64.sqrt() * x]));
+    /// ```
+    pub fn is_decidable<'g>(&'g self, values: &[Expr<'g>]) -> bool {
+        let rounded = |c: Number| matches!(c, Number::Real(_));
+        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        if roots.iter().any(|root| matches!(root, Atom::Constant(c) if rounded(*c))) {
+            return false;
+        }
+        self.with(|dag| {
+            let cone = Cone::below(dag, roots);
+            cone.order.iter().all(|&node| match dag.node(node) {
+                Node::Constant(c) => !rounded(c),
+                Node::Symbol(_) | Node::Product { .. } => true,
+                Node::Sum { constant, terms } => {
+                    !rounded(constant) && dag.terms(terms).iter().all(|&(_, q)| !rounded(q))
+                }
+                Node::Call { function, .. } => matches!(
+                    function,
+                    Function::Sin
+                        | Function::Cos
+                        | Function::Exp
+                        | Function::Sinh
+                        | Function::Cosh
+                        | Function::Tanh
+                ),
+            })
+        })
+    }
+
     /// Whether something that is written with one of the `symbols` stands in a divisor.
     ///
     /// ```

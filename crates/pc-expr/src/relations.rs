@@ -42,8 +42,53 @@ impl Graph {
     /// ```
     pub fn linear_relations<'g>(&'g self, columns: &[Vec<Expr<'g>>]) -> Vec<Vec<Number>> {
         let components = columns.first().map_or(0, Vec::len);
+        let holds = |a: &Vec<Number>| {
+            let coefficients = || a.iter().map(|&a| Expr::from(a));
+            (0..components).all(|i| self.dot(coefficients(), columns.iter().map(|f| f[i])).is_zero())
+        };
+        let proposal = |vector: Vec<First>| whole(&vector.into_iter().map(fraction).collect::<Vec<_>>());
+        self.echelon(columns, &[]).null_space().into_iter().map(proposal).filter(holds).collect()
+    }
+
+    /// The columns that are combinations of those before them with coefficients a that do not change with the symbols of
+    /// the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the a_ji are functions of the
+    /// `constants`.
+    ///
+    /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. They are a
+    /// proposal, and right only where the coefficients are rational numbers.
+    ///
+    /// The other columns are independent over the functions of the `constants`, for certain; that a column is a combination
+    /// may be missed where functions stand in it of which fingerprints know no identities, or rounded constants.
+    ///
+    /// # Panics
+    /// If the columns have different lengths.
+    ///
+    /// ```
+    /// use pc_expr::{Graph, Number};
+    /// let graph = Graph::new();
+    /// let [x, p] = graph.symbols(["x", "p"]);
+    /// let columns = [x, p * x, p.square(), 0.37 * x].map(|f| vec![f]);
+    /// let dependent = |constants: &[_]| -> Vec<usize> {
+    ///     graph.dependent_columns(&columns, constants).into_iter().map(|(j, _)| j).collect()
+    /// };
+    /// assert_eq!((dependent(&[p]), dependent(&[])), (vec![1, 3], vec![3]));
+    /// assert_eq!(graph.dependent_columns(&columns, &[])[0].1[0], Number::ratio(37, 100));
+    /// ```
+    pub fn dependent_columns<'g>(
+        &'g self,
+        columns: &[Vec<Expr<'g>>],
+        constants: &[Expr<'g>],
+    ) -> Vec<(usize, Vec<Number>)> {
+        let vectors = self.echelon(columns, constants).null_space().into_iter();
+        let last = |vector: &[First]| vector.iter().rposition(|&x| x != First::ZERO).unwrap_or(0);
+        vectors.map(|v| (last(&v), v[..last(&v)].iter().map(|&x| fraction(-x)).collect())).collect()
+    }
+
+    /// The values of the columns at so many points that more say nothing new.
+    fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> Echelon {
+        let components = columns.first().map_or(0, Vec::len);
         assert!(columns.iter().all(|column| column.len() == components), "columns of one length");
-        let sampler = Sampler::new(self, &columns.concat());
+        let sampler = Sampler::new(self, &columns.concat(), constants);
         let mut echelon = Echelon::new(columns.len());
         let mut idle = 0;
         for point in 0.. {
@@ -57,12 +102,7 @@ impl Graph {
                 break;
             }
         }
-        let holds = |a: &Vec<Number>| {
-            let coefficients = || a.iter().map(|&a| Expr::from(a));
-            (0..components).all(|i| self.dot(coefficients(), columns.iter().map(|f| f[i])).is_zero())
-        };
-        let proposal = |vector: Vec<First>| whole(&vector.into_iter().map(fraction).collect::<Vec<_>>());
-        echelon.null_space().into_iter().map(proposal).filter(holds).collect()
+        echelon
     }
 }
 
@@ -76,11 +116,13 @@ struct Sampler<'g> {
     outputs: Vec<Atom>,
     cone: Cone,
     symbols: Vec<Expr<'g>>,
+    /// Symbols that have one value at all points.
+    constants: Vec<Expr<'g>>,
     calls: Vec<Expr<'g>>,
 }
 
 impl<'g> Sampler<'g> {
-    fn new(graph: &'g Graph, outputs: &[Expr<'g>]) -> Sampler<'g> {
+    fn new(graph: &'g Graph, outputs: &[Expr<'g>], constants: &[Expr<'g>]) -> Sampler<'g> {
         let symbols = graph.symbols_of(outputs);
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
         let cone = graph.with(|dag| Cone::below(dag, outputs.iter().copied()));
@@ -88,7 +130,7 @@ impl<'g> Sampler<'g> {
         let rooted = graph.with(|dag| cone.order.iter().any(|&id| !dag.is_plain(id)));
         let called = |&&id: &&NodeId| rooted || graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
         let calls = cone.order.iter().filter(called).map(|&id| graph.expr(Atom::Node(id))).collect();
-        Sampler { graph, outputs, cone, symbols, calls }
+        Sampler { graph, outputs, cone, symbols, constants: constants.to_vec(), calls }
     }
 
     /// The values at point number `point`.
@@ -126,9 +168,12 @@ impl<'g> Sampler<'g> {
     /// The values of symbols and calls.
     fn unknowns(&self, point: usize) -> FxHashMap<NodeId, First> {
         let page = Graph::with_folding(Folding::Structural);
-        let renamed = |symbol: &Expr<'g>| page.symbol(&format!("{symbol}@{point}"));
+        let renamed = |symbol: &Expr<'g>| match self.constants.contains(symbol) {
+            true => page.symbol(&symbol.to_string()),
+            false => page.symbol(&format!("{symbol}@{point}")),
+        };
         let renamed: Vec<_> = self.symbols.iter().map(|symbol| (*symbol, renamed(symbol))).collect();
-        // Every symbol below a call has another name, so that none is unbound.
+        // Every symbol below a call is in the list, so that none is unbound.
         let calls = self.graph.evaluate(&self.calls, &renamed).unwrap_or_default();
         let calls = self.calls.iter().copied().zip(calls);
         renamed

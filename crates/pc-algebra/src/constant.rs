@@ -1,0 +1,281 @@
+//! Constant structure coefficients, of frames whose operators are dependent at each point.
+//!
+//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at a point, and with coefficients that change from point
+//! to point many everywhere. With coefficients that are the same at all points, functions of parameters and time only, it
+//! has one at most if no combination of the operators with such coefficients vanishes, and none of these may be taken for
+//! the brackets if there are several.
+
+use nalgebra::{DMatrix, DVector};
+use pc_expr::{Expr, Graph, Number};
+
+use crate::closure::pairs;
+use crate::error::AlgebraError;
+use crate::frame::Frame;
+use crate::inverse::inverse;
+use crate::matrix::Matrix;
+use crate::sample::Neighbourhood;
+use crate::structure::StructureCoefficients;
+
+/// Operators whose singular values spread more than this are not seen to be independent in numbers.
+const DEPENDENT: f64 = 1e-9;
+/// Points tried for each operator before it is given up to find as many equations as unknowns.
+const POINTS: usize = 8;
+
+impl<'g> Frame<'g> {
+    /// The c_rs^m with b c_rs = [X_r, X_s] that do not depend on the coordinates.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the first pair for
+    /// which there are none.
+    pub(crate) fn constant_coefficients(
+        &self,
+        rank: usize,
+        near: &Neighbourhood<'g>,
+    ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        let k = self.operators();
+        let operators: Vec<Vec<Expr<'g>>> = (1..=k).map(|s| self.operator(s)).collect();
+        self.check_independent(rank, &operators, near)?;
+        let commutators: Vec<Vec<Expr<'g>>> = pairs(k).map(|(r, s)| self.commutator(r, s)).collect();
+        let mut found = self.combinations(&operators, &commutators, near).into_iter();
+        StructureCoefficients::from_pairs(k, |r, s| {
+            let refusal = AlgebraError::RankDeficient { rank, operators: k, pair: (r, s) };
+            found.next().flatten().ok_or(refusal)
+        })
+    }
+
+    /// That no combination of the operators with coefficients that do not depend on the coordinates vanishes.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Undetermined`]
+    fn check_independent(
+        &self,
+        rank: usize,
+        operators: &[Vec<Expr<'g>>],
+        near: &Neighbourhood<'g>,
+    ) -> Result<(), AlgebraError> {
+        let undetermined = |combination: Vec<(usize, String)>| {
+            let operators = operators.len();
+            Err(AlgebraError::Undetermined { rank, operators, combination })
+        };
+        let constants = self.constants(operators);
+        if let Some((last, _)) = self.graph().dependent_columns(operators, &constants).into_iter().next() {
+            let target = std::slice::from_ref(&operators[last]);
+            let known = self.combinations(&operators[..last], target, near).remove(0);
+            return undetermined(known.map_or_else(Vec::new, |a| vanishing(&a, last)));
+        }
+        if self.graph().is_decidable(&operators.concat()) {
+            return Ok(());
+        }
+        match self.vanishing_in_numbers(operators, near) {
+            Some(combination) => undetermined(combination),
+            None => Ok(()),
+        }
+    }
+
+    /// The symbols that are no coordinates.
+    fn constants(&self, columns: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let mut symbols = self.graph().symbols_of(&columns.concat());
+        symbols.retain(|symbol| !self.coordinates().contains(symbol));
+        symbols
+    }
+
+    /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if there are any; the X_s are the first operators
+    /// and independent. Looked for as fractions, in terms of parameters and time, and in rounded numbers, and tried each time.
+    fn combinations(
+        &self,
+        operators: &[Vec<Expr<'g>>],
+        targets: &[Vec<Expr<'g>>],
+        near: &Neighbourhood<'g>,
+    ) -> Vec<Option<Vec<Expr<'g>>>> {
+        let holds = |target: &[Expr<'g>], a: &[Expr<'g>]| {
+            let components: Vec<[Expr<'g>; 1]> = target.iter().map(|&y| [y]).collect();
+            self.residual(&components, a, near) <= Neighbourhood::ROUNDING
+        };
+        let is_zero = |target: &Vec<Expr<'g>>| target.iter().all(|y| y.is_zero());
+        let mut found: Vec<Option<Vec<Expr<'g>>>> =
+            targets.iter().map(|y| is_zero(y).then(|| vec![Expr::ZERO; operators.len()])).collect();
+        for way in [Frame::fractions, Frame::solved, Frame::fitted] {
+            let open: Vec<usize> = (0..targets.len()).filter(|&y| found[y].is_none()).collect();
+            if open.is_empty() {
+                break;
+            }
+            let rest: Vec<Vec<Expr<'g>>> = open.iter().map(|&y| targets[y].clone()).collect();
+            for (&y, a) in open.iter().zip(way(self, operators, &rest, near).unwrap_or_default()) {
+                found[y] = Some(a).filter(|a| holds(&targets[y], a));
+            }
+        }
+        found
+    }
+
+    /// The coefficients as fractions.
+    fn fractions(
+        &self,
+        operators: &[Vec<Expr<'g>>],
+        targets: &[Vec<Expr<'g>>],
+        _: &Neighbourhood<'g>,
+    ) -> Option<Vec<Vec<Expr<'g>>>> {
+        let k = operators.len();
+        let columns = [operators, targets].concat();
+        let dependent = self.graph().dependent_columns(&columns, &self.constants(&columns));
+        let fraction = |target: usize| {
+            let known = dependent.iter().find(|(column, _)| *column == k + target);
+            known.map_or_else(|| vec![Expr::ZERO; k], |(_, a)| a[..k].iter().map(|&a| a.into()).collect())
+        };
+        Some((0..targets.len()).map(fraction).collect())
+    }
+
+    /// The coefficients solved for, from as many of the equations Σ a_s X_s = Y at simple points as there are unknowns.
+    fn solved(
+        &self,
+        operators: &[Vec<Expr<'g>>],
+        targets: &[Vec<Expr<'g>>],
+        _: &Neighbourhood<'g>,
+    ) -> Option<Vec<Vec<Expr<'g>>>> {
+        let (k, n) = (operators.len(), self.coordinates().len());
+        let page = Graph::with_folding(self.graph().folding());
+        let columns = [operators, targets].concat();
+        let entries: Vec<Expr<'g>> =
+            (0..n).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        let mut equations: Vec<Vec<Expr<'_>>> = Vec::new();
+        for point in 0..POINTS * (k + n) {
+            let values = self.at_simple_point(&entries, point, &page);
+            for equation in values.chunks(columns.len()) {
+                let known: Vec<Vec<Expr<'_>>> = equations.iter().map(|row| row[..k].to_vec()).collect();
+                let regular = equation.iter().all(|x| !x.is_undefined());
+                let more = [known, vec![equation[..k].to_vec()]].concat();
+                if regular && page.generic_rank(&more) == more.len() {
+                    equations.push(equation.to_vec());
+                }
+                if equations.len() == k {
+                    return self.solution(&equations, k, targets.len(), &page);
+                }
+            }
+        }
+        None
+    }
+
+    /// a of Σ a_s X_s = Y, k equations with as many left-hand sides, for each of the right-hand sides.
+    fn solution<'h>(
+        &self,
+        equations: &[Vec<Expr<'h>>],
+        k: usize,
+        targets: usize,
+        page: &'h Graph,
+    ) -> Option<Vec<Vec<Expr<'g>>>> {
+        let inverse = inverse(page, &Matrix::from_fn(k, k, |row, s| equations[row][s]))?;
+        let solve = |target: usize| -> Option<Vec<Expr<'g>>> {
+            let right = |row: &Vec<Expr<'h>>| row[k + target];
+            let a: Vec<Expr<'h>> = (0..k)
+                .map(|s| page.dot(inverse.row(s).iter().copied(), equations.iter().map(right)))
+                .collect();
+            let a = page.shorten(&a, &[]);
+            let moves = |symbol: &Expr<'h>| symbol.to_string().contains('@');
+            let still = !page.symbols_of(&a).iter().any(moves);
+            still.then(|| page.transcribe(&a, self.graph()))
+        };
+        (0..targets).map(solve).collect()
+    }
+
+    /// The expressions with small numbers for coordinates that are arguments of no function, and other symbols for those
+    /// that are: what does not depend on them will forget them.
+    fn at_simple_point<'h>(&self, entries: &[Expr<'g>], point: usize, page: &'h Graph) -> Vec<Expr<'h>> {
+        let graph = self.graph();
+        let value =
+            |(i, symbol): (usize, &Expr<'g>)| match self.coordinates().iter().position(|x| x == symbol) {
+                None => (*symbol, page.symbol(&symbol.to_string())),
+                Some(place) if entries.iter().any(|&entry| graph.applies(entry, &[*symbol], |_| true)) => {
+                    (*symbol, page.symbol(&format!("{}@{point}", self.coordinates()[place])))
+                }
+                Some(place) => (*symbol, Expr::from(simple(place, i, point, self.coordinates().len()))),
+            };
+        let values: Vec<(Expr<'g>, Expr<'h>)> =
+            graph.symbols_of(entries).iter().enumerate().map(value).collect();
+        graph.evaluate(entries, &values).unwrap_or_default() // every symbol has a value
+    }
+
+    /// The coefficients in numbers, at the values that parameters and time have in the neighbourhood.
+    fn fitted(
+        &self,
+        operators: &[Vec<Expr<'g>>],
+        targets: &[Vec<Expr<'g>>],
+        near: &Neighbourhood<'g>,
+    ) -> Option<Vec<Vec<Expr<'g>>>> {
+        let k = operators.len();
+        let stacked = self.stacked(&[operators, targets].concat(), near);
+        let svd = stacked.columns(0, k).clone_owned().svd(true, true);
+        (0..targets.len())
+            .map(|target| {
+                let right: DVector<f64> = stacked.column(k + target).clone_owned();
+                let solution = svd.solve(&right, 0.0).ok()?;
+                Some(solution.iter().map(|&a| nearest_fraction(a).into()).collect())
+            })
+            .collect()
+    }
+
+    /// A combination of the operators that vanishes but for rounding, if there is one.
+    fn vanishing_in_numbers(
+        &self,
+        operators: &[Vec<Expr<'g>>],
+        near: &Neighbourhood<'g>,
+    ) -> Option<Vec<(usize, String)>> {
+        let mut stacked = self.stacked(operators, near);
+        let sizes: Vec<f64> = stacked.column_iter().map(|column| column.norm()).collect();
+        for (mut column, &size) in stacked.column_iter_mut().zip(&sizes) {
+            column /= if size > 0.0 { size } else { 1.0 };
+        }
+        if stacked.nrows() < operators.len() {
+            return Some(Vec::new()); // no values to judge by
+        }
+        let svd = stacked.svd(false, true);
+        let (least, &smallest) = (0..).zip(svd.singular_values.iter()).min_by(|a, b| a.1.total_cmp(b.1))?;
+        let largest = svd.singular_values.max();
+        let vector = svd.v_t?.row(least).into_owned();
+        let scaled: Vec<f64> =
+            vector.iter().zip(&sizes).map(|(v, size)| v / if *size > 0.0 { *size } else { 1.0 }).collect();
+        let most = scaled.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+        let present: Vec<usize> = (0..scaled.len()).filter(|&s| scaled[s].abs() > DEPENDENT * most).collect();
+        let last = scaled[*present.last()?];
+        let unit = if present.len() == 1 { last } else { -last };
+        let term = |s: usize| (s + 1, nearest_fraction(scaled[s] / unit).to_string());
+        (smallest <= DEPENDENT * largest).then(|| present.into_iter().map(term).collect())
+    }
+
+    /// The columns at points near the centre, one below the other; parameters and time have their values.
+    fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
+        let (graph, n) = (self.graph(), self.coordinates().len());
+        let centre =
+            |symbol: &Expr<'g>| near.centre.iter().find(|(known, _)| known == symbol).map_or(1.0, |c| c.1);
+        let values: Vec<(Expr<'g>, Expr<'g>)> =
+            self.constants(columns).iter().map(|symbol| (*symbol, centre(symbol).into())).collect();
+        let entries = graph.substitute(&columns.concat(), &values);
+        let samples = near.samples(graph, &entries, 4 * (columns.len() + 1));
+        DMatrix::from_fn(samples.len() * n, columns.len(), |row, s| samples[row / n][s * n + row % n])
+    }
+}
+
+/// Σ a_s X_s − X_last as (s, coefficient), from 1.
+fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
+    let known = (1..).zip(a).filter(|(_, a)| !a.is_zero()).map(|(s, a)| (s, a.to_string()));
+    let mut terms: Vec<(usize, String)> = known.collect();
+    terms.push((last + 1, if terms.is_empty() { "1" } else { "-1" }.to_owned()));
+    terms
+}
+
+/// The value of a coordinate: one after the other 1 with the others 0, then small pseudo-random numbers.
+fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number {
+    if point < coordinates {
+        return Number::integer(i32::from(point == place));
+    }
+    let mixed = (point * 31 + salt * 17 + place * 7 + 3) * 2_654_435_761 % 4_294_967_291;
+    Number::integer((mixed >> 7) as i32 % 7 + 1)
+}
+
+/// A fraction with a denominator up to 1000 that equals `value` to eleven digits, else the number itself.
+fn nearest_fraction(value: f64) -> Number {
+    let near = |den: i64| {
+        let num = (value * den as f64).round();
+        ((num / den as f64 - value).abs() < 1e-11 * (1.0 + value.abs()))
+            .then(|| Number::ratio(num as i64, den))
+    };
+    (1..=1000).find_map(near).unwrap_or_else(|| Number::from(value))
+}
