@@ -67,7 +67,7 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, Fault> 
         let function = model.function(&assembly, text)?;
         Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
     };
-    let value = bracket.of(in_momenta(f)?, in_momenta(g)?);
+    let value = bracket.of(in_momenta(f)?, in_momenta(g)?).map_err(|error| model.derivation_error(error))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
     let equations = model.equations_in(&assembly)?;

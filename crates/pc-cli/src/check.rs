@@ -4,7 +4,7 @@ mod frame;
 mod integrals;
 mod steady;
 
-use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, VectorField};
+use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, Form, Model, Verdict};
 use pc_nonholo::{Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
@@ -117,7 +117,7 @@ impl<'g> Report<'g> {
             given_algebra: model.document().algebra.is_some(),
             closure_residual: frame.closure_residual(structure, &near),
             jacobi_residual: frame.jacobi_residual(structure, &near),
-            algebra: frame::algebra(structure),
+            algebra: algebra(system),
             mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
             negative_energy: assembly.has_negative_energy(),
             free: equations.mass_matrix().rows(),
@@ -249,6 +249,15 @@ impl<'g> Report<'g> {
             "steady_motion": self.steady.object(),
             "second_derivation": self.second.as_ref().map(verification::object),
         })
+    }
+}
+
+/// The algebra of the operators in words, for the values of the parameters if it depends on them.
+fn algebra(system: &System<'_>) -> String {
+    let (always, bound) = (system.structure(), system.with_parameters_bound());
+    match bound.structure().are_constant() && !always.are_constant() {
+        true => frame::algebra(bound.structure(), "constant for these parameters"),
+        false => frame::algebra(always, "constant structure coefficients"),
     }
 }
 

@@ -168,7 +168,7 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Gives all structure coefficients (5), c_0s^m included; needed and checked as those of an
-    /// [algebra](SystemBuilder::algebra).
+    /// [algebra](SystemBuilder::algebra). They may contain parameters, time and coordinates.
     #[must_use]
     pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
         self.structure = Some(structure);
@@ -363,9 +363,9 @@ impl<'g> SystemBuilder<'g> {
     ///
     /// # Errors
     /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
-    /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed or contradict it;
-    /// [`MechError::FrameOfVelocities`] for a frame that contains velocities; [`MechError::SignalInMomentum`];
-    /// [`MechError::OfState`] for a frame or a body placed by first-order states;
+    /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed, contradict it, or violate
+    /// Jacobi's identity; [`MechError::FrameOfVelocities`] for a frame that contains velocities;
+    /// [`MechError::SignalInMomentum`]; [`MechError::OfState`] for a frame or a body placed by first-order states;
     /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
     /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
@@ -391,6 +391,7 @@ impl<'g> SystemBuilder<'g> {
             None if frame.coordinates().is_empty() && k > 0 => return Err(AlgebraError::AlgebraNeeded.into()),
             None => frame.structure_coefficients(&near)?,
             Some(given) => {
+                frame.check_jacobi(&given, &near)?;
                 frame.check(&given, &near)?;
                 given
             }

@@ -1,6 +1,7 @@
 //! Chetaev's canonical equations (10), (11).
 
-use pc_expr::{Expr, Style};
+use pc_algebra::{Matrix, determinant};
+use pc_expr::{Expr, Graph, Style};
 
 use crate::book::expanded;
 use crate::compiled::first_order::{FirstOrder, Implicit};
@@ -11,6 +12,9 @@ use crate::error::MechError;
 use crate::legendre::{Inverse, Legendre};
 use crate::stability::steady::check_length;
 use crate::system::System;
+
+/// The rows up to which a block of the mass matrix is inverted by cofactors.
+const MOST_COFACTORS: usize = 3;
 
 /// The canonical equations in coordinates and momenta y_s = ∂L/∂η_s, with H(t, x, y) = y_s η_s − L:
 ///
@@ -70,7 +74,7 @@ impl<'g> System<'g> {
         let (eta, hamiltonian, differentiated) = match &legendre.inverse {
             Inverse::Closed { momenta_at_rest, lagrangian_at_rest } => {
                 let impulse = impulse(&momenta, momenta_at_rest);
-                let eta = graph.shorten(&Factors::of(graph, &legendre.mass).solve(graph, &impulse), &order);
+                let eta = graph.shorten(&solution(graph, &legendre.mass, &impulse, &order), &order);
                 let kinetic = graph.dot(impulse.iter().copied(), eta.iter().copied()) / 2.0;
                 let hamiltonian = graph.shorten(&[kinetic - *lagrangian_at_rest], &order)[0];
                 (eta, hamiltonian, hamiltonian)
@@ -102,6 +106,72 @@ impl<'g> System<'g> {
             hamiltonian,
         })
     }
+}
+
+/// η of M η = y − p_0, for each block of M by cofactors over the determinant where it is small: multiplied out they are
+/// as a book has them, and regular where M is.
+fn solution<'g>(
+    graph: &'g Graph,
+    mass: &Matrix<Expr<'g>>,
+    impulse: &[Expr<'g>],
+    order: &[Expr<'g>],
+) -> Vec<Expr<'g>> {
+    let mut eta = vec![Expr::ZERO; impulse.len()];
+    for block in blocks(mass) {
+        let right: Vec<Expr<'g>> = block.iter().map(|&s| impulse[s]).collect();
+        let of_block = Matrix::from_fn(block.len(), block.len(), |r, s| mass[(block[r], block[s])]);
+        let by_cofactors =
+            if block.len() <= MOST_COFACTORS { cofactors(graph, &of_block, order) } else { None };
+        let solved = match by_cofactors {
+            Some(inverse) => (0..block.len())
+                .map(|r| graph.dot(inverse.row(r).iter().copied(), right.iter().copied()))
+                .collect(),
+            None => Factors::of(graph, &of_block).solve(graph, &right),
+        };
+        for (&s, value) in block.iter().zip(solved) {
+            eta[s] = value;
+        }
+    }
+    eta
+}
+
+/// The inverse of a symmetric matrix as cofactors over the determinant, both collected.
+fn cofactors<'g>(
+    graph: &'g Graph,
+    matrix: &Matrix<Expr<'g>>,
+    order: &[Expr<'g>],
+) -> Option<Matrix<Expr<'g>>> {
+    let size = matrix.rows();
+    let short = |matrix: &Matrix<Expr<'g>>| Some(graph.shorten(&[determinant(graph, matrix)?], order)[0]);
+    let whole = short(matrix).filter(|whole| !whole.is_zero())?;
+    let mut entries = Vec::with_capacity(size * size);
+    for (i, j) in (0..size * size).map(|at| (at / size, at % size)) {
+        let skip = |at: usize, place: usize| if at < place { at } else { at + 1 };
+        let minor = Matrix::from_fn(size - 1, size - 1, |r, s| matrix[(skip(r, i), skip(s, j))]);
+        let sign = if (i + j) % 2 == 0 { 1 } else { -1 };
+        entries.push(short(&minor)? * sign / whole);
+    }
+    Some(Matrix::from_fn(size, size, |i, j| entries[i * size + j]))
+}
+
+/// The sets of rows of a symmetric matrix that entries tie together, each rising.
+fn blocks(matrix: &Matrix<Expr<'_>>) -> Vec<Vec<usize>> {
+    let mut open: Vec<usize> = (0..matrix.rows()).collect();
+    let mut blocks = Vec::new();
+    while !open.is_empty() {
+        let mut block = vec![open.remove(0)];
+        let mut next = 0;
+        while let Some(&row) = block.get(next) {
+            let (tied, rest): (Vec<usize>, Vec<usize>) =
+                open.into_iter().partition(|&s| !matrix[(row, s)].is_zero());
+            block.extend(tied);
+            open = rest;
+            next += 1;
+        }
+        block.sort_unstable();
+        blocks.push(block);
+    }
+    blocks
 }
 
 /// M η = y − p_0

@@ -1,7 +1,7 @@
 //! What can be wrong with a mechanical system.
 
 use pc_algebra::AlgebraError;
-use pc_expr::{ExprError, Failure, readable};
+use pc_expr::{Expr, ExprError, Failure, Graph, readable};
 
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -373,6 +373,16 @@ pub enum MechError {
         /// Names and values of the coordinates where the residual was least.
         coordinates: Vec<(String, f64)>,
     },
+    /// A function of something that does not belong to it.
+    #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
+    NotAVariable {
+        /// What it is a function of.
+        what: &'static str,
+        /// The first symbol that is neither a variable nor declared as constant.
+        symbol: String,
+        /// What the function can contain.
+        known: Vec<String>,
+    },
     /// A vector field that could not be evaluated for a reason of its own.
     #[error("{cause}")]
     NotEvaluated {
@@ -409,6 +419,22 @@ fn quoted(names: &[String]) -> String {
 /// An error unless `found` is `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), MechError> {
     if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }) }
+}
+
+/// An error for the first symbol in `functions` that is not `known`.
+pub(crate) fn check_variables<'g>(
+    what: &'static str,
+    graph: &'g Graph,
+    functions: &[Expr<'g>],
+    known: &[Expr<'g>],
+) -> Result<(), MechError> {
+    match graph.symbols_of(functions).into_iter().find(|symbol| !known.contains(symbol)) {
+        None => Ok(()),
+        Some(symbol) => {
+            let known = known.iter().map(Expr::to_string).collect();
+            Err(MechError::NotAVariable { what, symbol: symbol.to_string(), known })
+        }
+    }
 }
 
 fn listed(values: &[(String, f64)]) -> String {

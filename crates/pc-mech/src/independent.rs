@@ -1,6 +1,6 @@
 //! Constraints solved for velocities: redundant coordinates.
 
-use pc_algebra::{Frame, Matrix, Neighbourhood, StructureCoefficients, inverse};
+use pc_algebra::{Elimination, Matrix, Neighbourhood, StructureCoefficients, inverse};
 use pc_expr::Expr;
 
 use crate::compiled::fault::Fault;
@@ -21,7 +21,8 @@ impl<'g> Multipliers<'g> {
     ///
     /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent ones are those that the constraints
     /// determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The equations are
-    /// singular where det C_D = 0, where the constraints themselves are not.
+    /// singular where det C_D = 0, where the constraints themselves are not. Its brackets are those of the system, carried
+    /// over as [`Elimination::structure_coefficients`] says, whatever the rank of the frame.
     ///
     /// # Errors
     /// [`MechError::SingularConstraint`] if the constraints are dependent there; [`MechError::ConstraintNotAffine`];
@@ -48,7 +49,7 @@ impl<'g> Multipliers<'g> {
         let mut near = Neighbourhood { centre: at.to_vec() };
         near.centre.extend(system.parameters().iter().copied());
         let solved = self.solved_for(&self.dependent_at(at)?)?;
-        let structure = self.allowed(&solved)?.structure_coefficients(&near)?;
+        let structure = self.elimination(&solved)?.structure_coefficients(system.structure(), &near)?;
         self.eliminated(&solved, structure)
     }
 
@@ -80,13 +81,19 @@ impl<'g> Multipliers<'g> {
         eta.filter(|eta| solved.iter().all(|(known, _)| known != eta)).collect()
     }
 
-    /// The frame of the velocities that the constraints allow.
-    fn allowed(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Result<Frame<'g>, MechError> {
+    /// The operators of the velocities that the constraints allow.
+    fn elimination(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Result<Elimination<'g>, MechError> {
         let system = self.equations().system();
-        let velocities = system.frame().velocities(system.quasi_velocities());
-        let velocities = system.graph().substitute(&velocities, solved);
-        let (time, x) = (system.frame().time(), system.frame().coordinates().to_vec());
-        Ok(Frame::from_velocities(system.graph(), time, x, &self.free(solved), &velocities)?)
+        let (graph, eta, free) = (system.graph(), system.quasi_velocities(), self.free(solved));
+        let dependent: Vec<usize> =
+            (0..eta.len()).filter(|&s| solved.iter().any(|(known, _)| *known == eta[s])).collect();
+        let value =
+            |&s: &usize| solved.iter().find(|(known, _)| *known == eta[s]).map_or(eta[s], |&(_, x)| x);
+        let values: Vec<Expr<'g>> = dependent.iter().map(value).collect();
+        let zeros: Vec<_> = free.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let rows: Vec<Vec<Expr<'g>>> = values.iter().map(|&value| graph.gradient(value, &free)).collect();
+        let matrix = Matrix::from_fn(rows.len(), free.len(), |d, s| rows[d][s]);
+        Ok(system.frame().eliminated(&dependent, matrix, graph.substitute(&values, &zeros))?)
     }
 
     /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) put in, and these structure
@@ -104,7 +111,8 @@ impl<'g> Multipliers<'g> {
         structure: StructureCoefficients<'g>,
     ) -> Result<System<'g>, MechError> {
         let system = self.equations().system();
-        let (graph, free, frame) = (system.graph(), self.free(solved), self.allowed(solved)?);
+        let (graph, free) = (system.graph(), self.free(solved));
+        let frame = self.elimination(solved)?.frame().clone();
         shape("the list of operators of the structure coefficients", structure.operators(), free.len())?;
         let x = frame.coordinates().iter().copied().zip(frame.velocities(&free));
         let rates = free.iter().map(|&eta| (eta, graph.symbol(&format!("{eta}'"))));

@@ -1,6 +1,6 @@
 //! The same system in the velocities of its coordinates: Lagrange's equations.
 
-use pc_algebra::{AlgebraError, Frame};
+use pc_algebra::{AlgebraError, Frame, LieAlgebra};
 use pc_expr::Expr;
 
 use crate::error::MechError;
@@ -27,7 +27,7 @@ impl<'g> System<'g> {
         let velocities: Vec<Expr<'g>> = coordinates.iter().map(|x| graph.symbol(&format!("{x}'"))).collect();
         let change = self.change(&self.frame.velocities(&self.quasi_velocities))?;
         let frame = Frame::coordinate(graph, self.frame.time(), coordinates.to_vec());
-        let structure = frame.structure_coefficients(&Default::default())?;
+        let structure = LieAlgebra::commutative(k).structure_coefficients(); // ∂/∂x_i commute
         self.changed(velocities, &change, frame, structure)
     }
 }

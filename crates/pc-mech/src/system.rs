@@ -137,6 +137,28 @@ impl<'g> System<'g> {
         self.parameters.iter().copied().chain(external).collect()
     }
 
+    /// The symbols of the system: time, state, parameters, external forces, and any other that stands in its frame,
+    /// brackets, Lagrangian or forces.
+    pub(crate) fn symbols(&self) -> Vec<Expr<'g>> {
+        let inputs = self.run_time_inputs();
+        let mut symbols: Vec<Expr<'g>> = [self.frame.time()]
+            .iter()
+            .chain(self.frame.coordinates())
+            .chain(&self.quasi_velocities)
+            .chain(inputs.iter().map(|(symbol, _)| symbol))
+            .copied()
+            .collect();
+        let entries = self.frame.b().entries().iter().chain(self.frame.b0()).chain(&self.forces);
+        let brackets = self.structure.nonzero().map(|(.., c)| c);
+        let written: Vec<Expr<'g>> = entries.copied().chain(brackets).chain([self.lagrangian]).collect();
+        for symbol in self.graph().symbols_of(&written) {
+            if !symbols.contains(&symbol) {
+                symbols.push(symbol);
+            }
+        }
+        symbols
+    }
+
     /// Quasi-velocities, then parameters: equations are collected by powers of these, in this order.
     pub(crate) fn collecting_order(&self) -> Vec<Expr<'g>> {
         let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);

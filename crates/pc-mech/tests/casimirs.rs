@@ -58,8 +58,8 @@ fn other_casimirs_of_bianchi_algebras() {
         ("bianchi7(1/4)", radius.log() - y3.atan2(y2)),
     ] {
         let bracket = bracket(&graph, name);
-        assert!(bracket.is_casimir(casimir), "{name}: {casimir}");
-        assert!(!bracket.is_casimir(y1) && !bracket.is_casimir(casimir * y2), "{name}");
+        assert!(bracket.is_casimir(casimir).unwrap(), "{name}: {casimir}");
+        assert!(!bracket.is_casimir(y1).unwrap() && !bracket.is_casimir(casimir * y2).unwrap(), "{name}");
     }
     // a = 1/3: u²ᐟ³ v⁴ᐟ³ is the root of a polynomial.
     let third = bracket(&graph, "bianchi6(-1/9)");
@@ -69,7 +69,7 @@ fn other_casimirs_of_bianchi_algebras() {
     assert_eq!(cubic[0], u * v.square());
     // Rational Casimirs of type V, from an ansatz: numerators and denominators.
     let five = bracket(&graph, "bianchi5");
-    assert_eq!(five.casimirs_among(&[y1 / y2, y3 / y2, y3 / y1]), [y3 / y2]);
+    assert_eq!(five.casimirs_among(&[y1 / y2, y3 / y2, y3 / y1]).unwrap(), [y3 / y2]);
 }
 
 /// The indecomposable algebras A_3,1 to A_3,9 in the notation of Patera and others; of A_3,7 the real
@@ -106,7 +106,7 @@ fn the_table_of_three_dimensional_algebras() {
             Number::integer(entry(r, s) - entry(s, r))
         };
         let bracket = PoissonBracket::lie_poisson(&graph, &LieAlgebra::new(3, constant).unwrap());
-        assert!(bracket.is_casimir(casimir), "A_3,{}", number + 1);
+        assert!(bracket.is_casimir(casimir).unwrap(), "A_3,{}", number + 1);
         assert_eq!(bracket.corank(), 1);
         assert_eq!(bracket.casimirs(2).len(), polynomials, "A_3,{}", number + 1);
     }

@@ -24,20 +24,20 @@ fn texts(found: &[Expr<'_>]) -> Vec<String> {
 }
 
 fn all_conserved<'g>(rates: &Rates<'g>, found: &[Expr<'g>]) {
-    assert!(found.iter().all(|&f| rates.verdict(f) == Conservation::Conserved), "{found:?}");
+    assert!(found.iter().all(|&f| rates.verdict(f).unwrap() == Conservation::Conserved), "{found:?}");
 }
 
 #[test]
 fn lagranges_top_has_four() {
     let graph = Graph::new();
     let rates = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]).poincare().unwrap().rates();
-    let found = rates.integrals(&rates.ansatz(2, 2));
+    let found = rates.integrals(&rates.ansatz(2, 2)).unwrap();
     all_conserved(&rates, &found);
     let expected = ["γ1^2 + γ2^2 + γ3^2", "ω3", "2*γ1*ω1 + 2*γ2*ω2 + γ3*ω3", "2*γ3 + ω1^2 + ω2^2"];
     assert_eq!(texts(&found), expected);
     // What is known is not found again.
     let ansatz = Ansatz { known: found[..3].to_vec(), ..rates.ansatz(2, 2) };
-    assert_eq!(rates.integrals(&ansatz), found[3..]);
+    assert_eq!(rates.integrals(&ansatz).unwrap(), found[3..]);
 }
 
 #[test]
@@ -48,7 +48,7 @@ fn a_triaxial_top_has_three() {
         ([4.0, 4.0, 1.0], [1.0, 0.0, 0.0]), // Goryachev–Chaplygin: a fourth for γ·y = 0 only
     ] {
         let rates = top(&graph, inertia, m).poincare().unwrap().rates();
-        let found = rates.integrals(&rates.ansatz(3, 2));
+        let found = rates.integrals(&rates.ansatz(3, 2)).unwrap();
         assert_eq!(found.len(), 3, "{found:?}");
         all_conserved(&rates, &found);
     }
@@ -62,15 +62,15 @@ fn kovalevskayas_top_has_hers() {
     let [g1, g2, w1, w2] = graph.symbols(["γ1", "γ2", "ω1", "ω2"]);
     let kovalevskaya = (w1.square() - w2.square() - g1).square() + (2.0 * w1 * w2 - g2).square();
     let rates = system.poincare().unwrap().rates();
-    assert_eq!(rates.integrals(&rates.ansatz(3, 2)).len(), 3);
-    let found = rates.integrals(&rates.ansatz(4, 2));
+    assert_eq!(rates.integrals(&rates.ansatz(3, 2)).unwrap().len(), 3);
+    let found = rates.integrals(&rates.ansatz(4, 2)).unwrap();
     assert_eq!(found.len(), 4, "{found:?}");
     all_conserved(&rates, &found);
     assert_eq!(found[3], kovalevskaya);
     // With a weight of many digits: μ = 29.4312, μ² = 866.19553344.
     let heavy = top(&graph, [2.0, 2.0, 1.0], [29.4312, 0.0, 0.0]).poincare().unwrap().rates();
     let (g1, g2) = (29.4312 * g1, 29.4312 * g2);
-    let found = heavy.integrals(&heavy.ansatz(4, 2));
+    let found = heavy.integrals(&heavy.ansatz(4, 2)).unwrap();
     let expected = (w1.square() - w2.square() - g1).square() + (2.0 * w1 * w2 - g2).square();
     assert!(found.len() == 4 && is_function_of(&graph, expected, &found));
     // In momenta, where the Casimirs are known.
@@ -78,12 +78,12 @@ fn kovalevskayas_top_has_hers() {
     let rates = canonical.rates();
     let mut known = system.bracket().casimirs(2);
     known.push(canonical.hamiltonian());
-    let found = rates.integrals(&Ansatz { known: known.clone(), ..rates.ansatz(4, 2) });
+    let found = rates.integrals(&Ansatz { known: known.clone(), ..rates.ansatz(4, 2) }).unwrap();
     assert_eq!(found.len(), 1);
     known.extend(&found);
     assert!(is_function_of(&graph, canonical.in_momenta(kovalevskaya), &known));
     // In involution with the energy, as with every function that commutes with it.
-    assert!(system.bracket().of(found[0], canonical.hamiltonian()).is_zero());
+    assert!(system.bracket().of(found[0], canonical.hamiltonian()).unwrap().is_zero());
 }
 
 /// Coefficients that are sines and cosines: the area integral in Euler's angles.
@@ -101,7 +101,7 @@ fn angles_enter_by_sine_and_cosine() {
     let [theta, phi, y1, y2, y3] = graph.symbols(["θ", "φ", "p_ω1", "p_ω2", "p_ω3"]);
     let canonical = system.canonical().unwrap();
     let rates = canonical.rates();
-    let found = rates.integrals(&rates.ansatz(2, 2));
+    let found = rates.integrals(&rates.ansatz(2, 2)).unwrap();
     let area = theta.sin() * (y1 * phi.sin() + y2 * phi.cos()) + y3 * theta.cos();
     assert_eq!(found.len(), 2, "{found:?}");
     assert_eq!(found[0], area);
@@ -118,10 +118,10 @@ fn a_free_particle_has_all() {
         .build()
         .unwrap();
     let rates = particle.canonical().unwrap().rates();
-    assert_eq!(texts(&rates.integrals(&rates.ansatz(1, 1))), ["p_x", "p_y", "y*p_x - x*p_y"]);
+    assert_eq!(texts(&rates.integrals(&rates.ansatz(1, 1)).unwrap()), ["p_x", "p_y", "y*p_x - x*p_y"]);
     let [t, x, y] = graph.symbols(["t", "x", "y"]);
     let functions = vec![Expr::ONE, x, y, t];
-    let found = rates.integrals(&Ansatz { degree: 1, functions, known: Vec::new() });
+    let found = rates.integrals(&Ansatz { degree: 1, functions, known: Vec::new() }).unwrap();
     assert_eq!(found.len(), 4); // all of them: the fifth function of (t, x, y, p) is time
     all_conserved(&rates, &found);
 }
@@ -141,7 +141,7 @@ fn a_body_in_a_fluid_has_casimirs_and_energy() {
         .unwrap();
     let canonical = body.canonical().unwrap();
     let rates = canonical.rates();
-    let found = rates.integrals(&rates.ansatz(2, 0));
+    let found = rates.integrals(&rates.ansatz(2, 0)).unwrap();
     assert_eq!(found.len(), 3, "{found:?}");
     let casimirs = body.bracket().casimirs(2);
     assert_eq!(casimirs.len(), 2);
@@ -163,21 +163,21 @@ fn keplers_problem_has_laplaces_vector() {
     let rates = canonical.rates();
     let functions = vec![Expr::ONE, phi.cos(), phi.sin(), phi.cos() / r, phi.sin() / r];
     let known = vec![l];
-    let found = rates.integrals(&Ansatz { degree: 2, functions: functions.clone(), known });
+    let found = rates.integrals(&Ansatz { degree: 2, functions: functions.clone(), known }).unwrap();
     assert_eq!(found.len(), 2, "{found:?}");
     let laplace = [
         phi.cos() * (l.square() / r - 1.0) + phi.sin() * p * l,
         phi.sin() * (l.square() / r - 1.0) - phi.cos() * p * l,
     ];
     for component in laplace {
-        assert_eq!(rates.verdict(component), Conservation::Conserved);
+        assert_eq!(rates.verdict(component).unwrap(), Conservation::Conserved);
         assert!(is_function_of(&graph, component, &[found[0], found[1], l]));
     }
     // Poisson's theorem: one component and the angular momentum give the other.
     let bracket = kepler.bracket();
-    assert_eq!(bracket.of(laplace[0], l), -laplace[1]);
-    assert_eq!(bracket.closure(&[l, laplace[0]]).len(), 3);
-    assert!(is_function_of(&graph, canonical.hamiltonian(), &bracket.closure(&[l, laplace[0]])));
+    assert_eq!(bracket.of(laplace[0], l).unwrap(), -laplace[1]);
+    assert_eq!(bracket.closure(&[l, laplace[0]]).unwrap().len(), 3);
+    assert!(is_function_of(&graph, canonical.hamiltonian(), &bracket.closure(&[l, laplace[0]]).unwrap()));
 }
 
 /// The same in Cartesian coordinates, with a root in the coefficients.
@@ -196,7 +196,7 @@ fn keplers_problem_in_cartesian_coordinates() {
     let r = (x.square() + y.square()).sqrt();
     let rates = kepler.canonical().unwrap().rates();
     let functions = vec![Expr::ONE, x, y, 1.0 / r, x / r, y / r];
-    let found = rates.integrals(&Ansatz { degree: 2, functions, known: Vec::new() });
+    let found = rates.integrals(&Ansatz { degree: 2, functions, known: Vec::new() }).unwrap();
     let moment = x * q - y * p;
     assert_eq!(found, [-moment, y / r + p * moment, 2.0 / r - p.square() - q.square()]);
     all_conserved(&rates, &found);
@@ -218,11 +218,13 @@ fn todas_chain_has_a_cubic_one() {
     let [q1, q2, q3, p1, p2, p3] = graph.symbols(["q1", "q2", "q3", "p_q1", "p_q2", "p_q3"]);
     let (e1, e2) = ((q1 - q2).exp(), (q2 - q3).exp());
     let rates = chain.canonical().unwrap().rates();
-    let found = rates.integrals(&Ansatz { degree: 3, functions: vec![Expr::ONE, e1, e2], known: Vec::new() });
+    let found = rates
+        .integrals(&Ansatz { degree: 3, functions: vec![Expr::ONE, e1, e2], known: Vec::new() })
+        .unwrap();
     assert_eq!(found.len(), 3, "{found:?}");
     all_conserved(&rates, &found);
     let cubic = p1.powi(3) + p2.powi(3) + p3.powi(3) + 3.0 * e1 * (p1 + p2) + 3.0 * e2 * (p2 + p3);
-    assert_eq!(rates.verdict(cubic), Conservation::Conserved);
+    assert_eq!(rates.verdict(cubic).unwrap(), Conservation::Conserved);
     assert!(is_function_of(&graph, cubic, &found) && !is_function_of(&graph, cubic, &found[..2]));
 }
 
@@ -241,7 +243,7 @@ fn a_sleigh_keeps_its_energy() {
         .build()
         .unwrap();
     let rates = sleigh.poincare_constrained(2).unwrap().rates();
-    let found = rates.integrals(&rates.ansatz(2, 0));
+    let found = rates.integrals(&rates.ansatz(2, 0)).unwrap();
     assert_eq!(texts(&found), ["4*v^2 + 5*ω^2"]);
 }
 
@@ -262,10 +264,10 @@ fn parameters_may_stay_symbols() {
     let rates = top.poincare().unwrap().rates();
     let [w1, w2, w3] = graph.symbols(["ω1", "ω2", "ω3"]);
     let [x, y, z] = [a * w1.square(), b * w2.square(), c * w3.square()];
-    assert_eq!(rates.integrals_among(&[x, y, z]), [x + y + z]);
-    assert_eq!(rates.integrals_among(&[a * x, b * y, c * z]), [a * x + b * y + c * z]);
-    assert!(rates.integrals_among(&[w1.square(), w2.square(), w3.square()]).is_empty());
-    assert_eq!(rates.with_parameters_bound().integrals(&rates.ansatz(2, 0)).len(), 2);
+    assert_eq!(rates.integrals_among(&[x, y, z]).unwrap(), [x + y + z]);
+    assert_eq!(rates.integrals_among(&[a * x, b * y, c * z]).unwrap(), [a * x + b * y + c * z]);
+    assert!(rates.integrals_among(&[w1.square(), w2.square(), w3.square()]).unwrap().is_empty());
+    assert_eq!(rates.with_parameters_bound().integrals(&rates.ansatz(2, 0)).unwrap().len(), 2);
 }
 
 /// A free rigid body in a quaternion, scalar first: q̇ = ½ Ξ(q) ω, L = ½ ω·Iω with any inertia matrix I.
@@ -316,7 +318,7 @@ fn a_free_body_keeps_its_angular_momentum_in_space() {
     // 30 products q_i q_j ω_s: of the 30-dimensional space three dimensions are integrals, no more.
     let rates = body.poincare().unwrap().rates();
     let products: Vec<Expr<'_>> = w.iter().flat_map(|&w| quadratic.iter().map(move |&f| f * w)).collect();
-    let linear = rates.integrals_among(&products);
+    let linear = rates.integrals_among(&products).unwrap();
     assert_eq!(linear.len(), 3, "{linear:?}");
     all_conserved(&rates, &linear);
     // The moments are combinations of what was found with numbers as coefficients: they add nothing to the span.
@@ -325,7 +327,7 @@ fn a_free_body_keeps_its_angular_momentum_in_space() {
     assert_eq!(graph.linear_relations(&columns).len(), 3);
 
     // With the ten functions alone, |q|² is the fourth, and the ansatz returns these four.
-    let found = rates.integrals(&Ansatz { degree: 1, functions: quadratic, known: Vec::new() });
+    let found = rates.integrals(&Ansatz { degree: 1, functions: quadratic, known: Vec::new() }).unwrap();
     assert_eq!(found.len(), 4, "{found:?}");
     all_conserved(&rates, &found);
     assert!(found.contains(&norm));
@@ -351,13 +353,14 @@ fn a_charge_in_a_field_keeps_its_canonical_momentum() {
         let rates = charge.poincare().unwrap().rates();
         let functions = [Expr::ONE, rho, rho.square(), field, field * rho, field * rho.square()];
         let functions: Vec<Expr<'_>> = functions[..if steady { 3 } else { 6 }].to_vec();
-        let linear = rates.integrals(&Ansatz { degree: 1, functions: functions.clone(), known: Vec::new() });
+        let linear =
+            rates.integrals(&Ansatz { degree: 1, functions: functions.clone(), known: Vec::new() }).unwrap();
         assert_eq!(linear.len(), 1, "{linear:?}");
         all_conserved(&rates, &linear);
         let proportional = graph.linear_relations(&[vec![linear[0]], vec![momentum]]);
         assert_eq!(proportional.len(), 1, "{}", linear[0]);
         // The speed is kept where no field is induced.
-        let found = rates.integrals(&Ansatz { degree: 2, functions, known: linear.clone() });
+        let found = rates.integrals(&Ansatz { degree: 2, functions, known: linear.clone() }).unwrap();
         let speed = along.square() + across.square();
         assert_eq!(found.len(), usize::from(steady), "{found:?}");
         assert!(!steady || is_function_of(&graph, speed, &[linear[0], found[0]]));

@@ -2,6 +2,8 @@
 
 mod words;
 
+use pc_mech::acts_as_zero;
+
 use self::words::{against, at, listed, rounded, suggest, undetermined_text};
 use crate::error::Category;
 
@@ -275,6 +277,17 @@ pub enum Fault {
         /// The pair.
         pair: [String; 2],
     },
+    /// A frame of which a combination vanishes, so that it says nothing of brackets along that.
+    #[error(
+        "the frame does not determine the brackets of the quasi-velocities: {}",
+        acts_as_zero(combination, |s| names[s - 1].clone())
+    )]
+    Undetermined {
+        /// The combination: numbers of quasi-velocities, from 1, with their coefficients.
+        combination: Vec<(usize, String)>,
+        /// The names of all quasi-velocities.
+        names: Vec<String>,
+    },
     /// A bracket that leaves the span of the frame.
     #[error(
         "the frame is not closed: [{}, {}] is no combination of the frame (relative residual {residual:.1e})",
@@ -384,6 +397,7 @@ impl Fault {
             | Fault::Jacobi { .. }
             | Fault::AlgebraNeeded
             | Fault::RankDeficient { .. }
+            | Fault::Undetermined { .. }
             | Fault::NotClosed { .. }
             | Fault::Contradiction { .. }
             | Fault::Degenerate { .. }
@@ -473,8 +487,10 @@ impl Fault {
             Fault::BracketNotLinear { .. } => "write for example \"w3\", \"-2*w1 + w2\" or \"0\"".into(),
             Fault::BracketsNotSkew { .. } => "[X, Y] = -[Y, X]; give one of the two".into(),
             Fault::Jacobi { .. } => "no frame of operators has these brackets; check their signs".into(),
-            Fault::AlgebraNeeded | Fault::RankDeficient { .. } => {
-                "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`".into()
+            Fault::AlgebraNeeded | Fault::RankDeficient { .. } | Fault::Undetermined { .. } => {
+                "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`, or `{}` if all are \
+                 zero"
+                    .into()
             }
             Fault::NotClosed { .. } => {
                 "the kinematics stand for constraints that are not integrable; give them in [constraints], and what has a rate \

@@ -499,10 +499,12 @@ impl Model {
         let names = |pair: (usize, usize)| [self.operator_name(pair.0), self.operator_name(pair.1)];
         let brackets_of = |pair: (usize, usize)| -> Place {
             let algebra = self.document.algebra.as_ref();
-            let section = algebra.map_or_else(|| self.operator_place(pair.1), |a| a.place.clone());
-            let Some(AlgebraDefinition::Brackets(brackets)) = algebra.map(|a| &a.definition) else {
-                return section;
+            let brackets = match algebra.map(|a| &a.definition) {
+                None => return self.operator_place(pair.1),
+                Some(AlgebraDefinition::Catalogue(name)) => return name.place.clone(),
+                Some(AlgebraDefinition::Brackets(brackets)) => brackets,
             };
+            let section = algebra.map_or_else(|| self.document.end(), |a| a.place.clone());
             let [r, s] = names(pair);
             let matches = |b: &&Bracket| {
                 (b.left.text == r && b.right.text == s) || (b.left.text == s && b.right.text == r)
@@ -514,6 +516,11 @@ impl Model {
                 &self.operator_place(pair.1),
                 Fault::RankDeficient { rank, operators, pair: names(pair) },
             ),
+            AlgebraError::Undetermined { combination, operators, .. } => {
+                let last = combination.last().map_or(1, |&(s, _)| s);
+                let names = (1..=operators).map(|s| self.operator_name(s)).collect();
+                self.error(&self.operator_place(last), Fault::Undetermined { combination, names })
+            }
             AlgebraError::NotClosed { pair, residual } => {
                 self.error(&self.operator_place(pair.1), Fault::NotClosed { pair: names(pair), residual })
             }

@@ -53,7 +53,8 @@ impl<'g> Constrained<'g> {
             let known = plain.tensor()[(i, j)];
             if i < n || j < n { known } else { known + more(i - n, j - n) }
         });
-        Ok(PoissonBracket::of_tensor(graph, plain.variables().to_vec(), tensor)?)
+        let bracket = PoissonBracket::of_tensor(graph, plain.variables().to_vec(), tensor)?;
+        Ok(bracket.with_constants(plain.constants().iter().copied()))
     }
 
     /// (∂L/∂η_α)_0 with the free quasi-velocities put in, and the number of these.

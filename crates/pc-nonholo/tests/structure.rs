@@ -66,7 +66,7 @@ fn the_bracket_generates_the_motion() {
         let bracket = constrained.almost_poisson_bracket().unwrap();
         let canonical = constrained.free_system().unwrap().canonical().unwrap();
         let rates = [canonical.velocities(), canonical.right_hand_side()].concat();
-        for (found, expected) in bracket.field(canonical.hamiltonian()).iter().zip(&rates) {
+        for (found, expected) in bracket.field(canonical.hamiltonian()).unwrap().iter().zip(&rates) {
             assert!((*found - *expected).is_zero(), "{found} instead of {expected}");
         }
     }

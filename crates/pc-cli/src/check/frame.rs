@@ -120,10 +120,10 @@ impl FrameFacts {
     }
 }
 
-/// The algebra of the operators in words.
-pub(super) fn algebra(structure: &StructureCoefficients<'_>) -> String {
+/// The algebra of the operators in words, of which `constant` says that they are.
+pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> String {
     if let Some(name) = recognised(structure) {
-        return format!("{name}, constant structure coefficients");
+        return format!("{name}, {constant}");
     }
     if structure.nonzero().next().is_none() {
         return "commutative".to_owned();
@@ -133,7 +133,7 @@ pub(super) fn algebra(structure: &StructureCoefficients<'_>) -> String {
     }
     let facts = structure.lie_algebra().and_then(|algebra| facts(&algebra).ok());
     let facts = facts.map_or_else(String::new, |facts| format!(": {facts}"));
-    format!("constant structure coefficients, not one of the catalogue{facts}")
+    format!("{constant}, not one of the catalogue{facts}")
 }
 
 /// What kind of algebra it is, its rank and its index.

@@ -36,6 +36,8 @@ enum Verdict<'g> {
     ConservedHere,
     /// It vanishes identically, if only for these values, where the function does not jump.
     BetweenJumps,
+    /// It is not known: the function is none of time and state alone, as one with reactions.
+    NoFunction,
     /// It is not seen to vanish.
     Rate {
         rate: Expr<'g>,
@@ -143,10 +145,11 @@ impl<'a, 'g> Search<'a, 'g> {
 
     fn verdict(&self, function: Expr<'g>) -> Verdict<'g> {
         match self.rates.verdict(function) {
-            Conservation::Conserved => Verdict::Conserved,
-            Conservation::ConservedHere => Verdict::ConservedHere,
-            Conservation::ConservedBetweenJumps => Verdict::BetweenJumps,
-            Conservation::Changing(rate) => self.changing(rate),
+            Ok(Conservation::Conserved) => Verdict::Conserved,
+            Ok(Conservation::ConservedHere) => Verdict::ConservedHere,
+            Ok(Conservation::ConservedBetweenJumps) => Verdict::BetweenJumps,
+            Ok(Conservation::Changing(rate)) => self.changing(rate),
+            Err(_) => Verdict::NoFunction,
         }
     }
 
@@ -249,7 +252,7 @@ impl<'a, 'g> Search<'a, 'g> {
             .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
             .map(|(casimir, value)| {
                 let here = if forced { self.verdict(value) } else { self.proved(value) };
-                let always = !forced && self.system().bracket().is_casimir(casimir);
+                let always = !forced && self.system().bracket().is_casimir(casimir).unwrap_or(false);
                 (value, if always { Verdict::Conserved } else { here })
             })
             .filter(|(_, verdict)| verdict.is_conserved())
@@ -288,7 +291,7 @@ impl<'a, 'g> Search<'a, 'g> {
         let mut ansatz = rates.ansatz(1, degree as u32);
         let conserved = list.iter().filter(|integral| integral.verdict.is_conserved());
         ansatz.known = conserved.map(|integral| self.bind(integral.value)).collect();
-        for (number, value) in (1..).zip(rates.integrals(&ansatz)) {
+        for (number, value) in (1..).zip(rates.integrals(&ansatz).unwrap_or_default()) {
             let verdict = self.proved(value);
             let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
             let name = format!("found {number}");
@@ -345,6 +348,7 @@ impl Verdict<'_> {
             Verdict::Conserved => format!("conserved{between} (proved)"),
             Verdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
             Verdict::BetweenJumps => "conserved where it does not jump (proved)".to_owned(),
+            Verdict::NoFunction => "not decided: it is no function of time and state alone".to_owned(),
             // Rounding of a rate that is zero there.
             Verdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
                 "not proved to be conserved, though it does not change at the start".to_owned()

@@ -2,6 +2,7 @@
 
 use pc_expr::{Expr, Function, Number, Scalar};
 
+use crate::error::MechError;
 use crate::integrals::conserved::Rates;
 use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
@@ -25,14 +26,20 @@ impl<'g> Rates<'g> {
     /// rate being folded to zero. Parameters are unknowns that the coefficients do not contain:
     /// [bind](Rates::with_parameters_bound) them to search for given values. What else may be missed is said
     /// at [`linear_relations`](pc_expr::Graph::linear_relations).
-    pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions).into_iter().map(|rate| vec![rate]).collect();
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of something that is not of the motion.
+    pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, MechError> {
+        let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions)?.into_iter().map(|rate| vec![rate]).collect();
         let relations = self.graph.linear_relations(&rates);
-        relations.iter().map(|a| combination(self.graph, a, functions)).collect()
+        Ok(relations.iter().map(|a| combination(self.graph, a, functions)).collect())
     }
 
     /// The integrals of the form of the ansatz, functionally independent of each other and of the known
     /// ones; of low degree first.
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of something that is not of the motion.
     ///
     /// ```
     /// use pc_mech::{Graph, System};
@@ -42,12 +49,12 @@ impl<'g> Rates<'g> {
     ///     .lagrangian(|_, x, v| (v[0].square() + v[1].square() - x[0].square() - x[1].square()) / 2.0)
     ///     .build()?;
     /// let rates = plane.canonical()?.rates();
-    /// let found = rates.integrals(&rates.ansatz(2, 2));
+    /// let found = rates.integrals(&rates.ansatz(2, 2))?;
     /// let shown: Vec<String> = found.iter().map(|f| f.to_string()).collect();
     /// assert_eq!(shown, ["y*p_x - x*p_y", "x^2 + p_x^2", "x*y + p_x*p_y"]);
     /// # Ok::<(), pc_mech::MechError>(())
     /// ```
-    pub fn integrals(&self, ansatz: &Ansatz<'g>) -> Vec<Expr<'g>> {
+    pub fn integrals(&self, ansatz: &Ansatz<'g>) -> Result<Vec<Expr<'g>>, MechError> {
         let moving: Vec<Generator<'g>> = self.moving.iter().map(|&z| (z, ansatz.degree)).collect();
         let functions: Vec<Expr<'g>> = monomials(&moving, ansatz.degree)
             .into_iter()
@@ -55,7 +62,7 @@ impl<'g> Rates<'g> {
             .collect();
         let variables: Vec<Expr<'g>> =
             [self.time].iter().chain(&self.coordinates).chain(&self.moving).copied().collect();
-        independent(self.graph, &variables, &ansatz.known, self.integrals_among(&functions))
+        Ok(independent(self.graph, &variables, &ansatz.known, self.integrals_among(&functions)?))
     }
 
     /// The ansatz of polynomials of degree ≤ `degree` in η or y whose coefficients are polynomials of degree

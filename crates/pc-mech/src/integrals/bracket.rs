@@ -4,7 +4,7 @@ use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients
 use pc_expr::{Expr, Graph};
 
 use crate::canonical::Canonical;
-use crate::error::{MechError, shape};
+use crate::error::{MechError, check_variables, shape};
 use crate::integrals::polynomials::independent;
 use crate::system::System;
 
@@ -18,13 +18,16 @@ use crate::system::System;
 /// c_0s^m ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f).
 /// What serves them is the [extended](System::extended_bracket) bracket.
 ///
-/// Symbols that are not among the variables count as constants.
+/// Functions may contain, beside the variables, what counts as constant: the symbols that stand in the tensor, those of
+/// the system it is a bracket of but for its quasi-velocities, and those [declared](PoissonBracket::with_constants). Any
+/// other symbol in a function is an error, quasi-velocities too: [`Canonical::in_momenta`] puts momenta in their place.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,
     variables: Vec<Expr<'g>>,
     tensor: Matrix<Expr<'g>>,
     time_momentum: Option<Expr<'g>>,
+    constants: Vec<Expr<'g>>,
 }
 
 impl<'g> System<'g> {
@@ -36,12 +39,13 @@ impl<'g> System<'g> {
     /// let [x, p] = graph.symbols(["x", "p_x"]);
     /// let builder = System::builder(&graph).coordinates(["x"]);
     /// let particle = builder.lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
-    /// assert_eq!(particle.bracket().of(x.square(), p), 2.0 * x);
+    /// assert_eq!(particle.bracket().of(x.square(), p)?, 2.0 * x);
+    /// assert!(particle.bracket().of(x, graph.symbol("x'")).is_err()); // p_x is meant
     /// # Ok::<(), pc_mech::MechError>(())
     /// ```
     pub fn bracket(&self) -> PoissonBracket<'g> {
         let y = self.momentum_symbols();
-        let variables = self.frame.coordinates().iter().chain(&y).copied().collect();
+        let variables: Vec<Expr<'g>> = self.frame.coordinates().iter().chain(&y).copied().collect();
         let n = self.frame.coordinates().len();
         // Of the rows (t, x, y_0, y) those of x and y.
         let row = |i: usize| if i < n { i + 1 } else { i + 2 };
@@ -49,6 +53,7 @@ impl<'g> System<'g> {
         PoissonBracket {
             graph: self.graph(),
             tensor: Matrix::from_fn(n + y.len(), n + y.len(), |i, j| tensor[(row(i), row(j))]),
+            constants: self.constants(&variables),
             variables,
             time_momentum: None,
         }
@@ -62,9 +67,20 @@ impl<'g> System<'g> {
     pub fn extended_bracket(&self) -> PoissonBracket<'g> {
         let (t, x, y) = (self.frame.time(), self.frame.coordinates(), self.momentum_symbols());
         let y0 = self.time_momentum_symbol(&y);
-        let variables = [t].iter().chain(x).chain(&[y0]).chain(&y).copied().collect();
+        let variables: Vec<Expr<'g>> = [t].iter().chain(x).chain(&[y0]).chain(&y).copied().collect();
         let tensor = extended_tensor(&self.frame, &self.structure, &y);
-        PoissonBracket { graph: self.graph(), tensor, variables, time_momentum: Some(y0) }
+        let constants = self.constants(&variables);
+        PoissonBracket { graph: self.graph(), tensor, variables, time_momentum: Some(y0), constants }
+    }
+
+    /// The symbols of the system that are neither among the variables of its bracket nor quasi-velocities: time unless it
+    /// is a variable, parameters, and what else its equations contain. Where L is not quadratic, H is written with the
+    /// quasi-velocities, at whose values its derivatives by the others are those of H(x, y).
+    fn constants(&self, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let closed = pc_algebra::quadratic(self.graph(), self.lagrangian, &self.quasi_velocities).is_some();
+        let mut constants = self.symbols();
+        constants.retain(|z| !variables.contains(z) && !(closed && self.quasi_velocities.contains(z)));
+        constants
     }
 
     /// The symbol of y_0: `p_t`, or one with more `p_` where that is taken.
@@ -120,8 +136,9 @@ impl<'g> PoissonBracket<'g> {
     /// let graph = Graph::new();
     /// let [y1, y2, y3] = graph.symbols(["y1", "y2", "y3"]);
     /// let bracket = PoissonBracket::lie_poisson(&graph, &LieAlgebra::so3());
-    /// assert_eq!(bracket.of(y1, y2), -y3);
-    /// assert!(bracket.is_casimir(y1.square() + y2.square() + y3.square()));
+    /// assert_eq!(bracket.of(y1, y2)?, -y3);
+    /// assert!(bracket.is_casimir(y1.square() + y2.square() + y3.square())?);
+    /// # Ok::<(), pc_mech::MechError>(())
     /// ```
     pub fn lie_poisson(graph: &'g Graph, algebra: &LieAlgebra) -> PoissonBracket<'g> {
         let k = algebra.dim();
@@ -129,7 +146,8 @@ impl<'g> PoissonBracket<'g> {
         let entry = |s: usize, r: usize| -> Expr<'g> {
             (0..k).map(|m| Expr::from(algebra.constant(r, s, m)) * y[m]).sum()
         };
-        PoissonBracket { graph, tensor: Matrix::from_fn(k, k, entry), variables: y, time_momentum: None }
+        let (tensor, constants) = (Matrix::from_fn(k, k, entry), Vec::new());
+        PoissonBracket { graph, tensor, variables: y, time_momentum: None, constants }
     }
 
     /// The bracket with (z_i, z_j) = `tensor`_ij of the variables z, whether or not it satisfies Jacobi's identity.
@@ -150,8 +168,33 @@ impl<'g> PoissonBracket<'g> {
                 let pair = [i, j].map(|z| variables[z].to_string());
                 Err(MechError::NotSkew { what: "a Poisson tensor", pair })
             }
-            None => Ok(PoissonBracket { graph, variables, tensor, time_momentum: None }),
+            None => {
+                let mut constants = graph.symbols_of(tensor.entries());
+                constants.retain(|z| !variables.contains(z));
+                Ok(PoissonBracket { graph, variables, tensor, time_momentum: None, constants })
+            }
         }
+    }
+
+    /// The same bracket with more symbols that count as constants in functions.
+    #[must_use]
+    pub fn with_constants(mut self, constants: impl IntoIterator<Item = Expr<'g>>) -> PoissonBracket<'g> {
+        self.constants.extend(constants);
+        self
+    }
+
+    /// The symbols that count as constants in functions.
+    pub fn constants(&self) -> &[Expr<'g>] {
+        &self.constants
+    }
+
+    /// That functions contain nothing but variables and constants.
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] naming the first other symbol.
+    pub(super) fn check(&self, functions: &[Expr<'g>]) -> Result<(), MechError> {
+        let known: Vec<Expr<'g>> = self.variables.iter().chain(&self.constants).copied().collect();
+        check_variables("a function in a Poisson bracket", self.graph, functions, &known)
     }
 
     /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. One that is not folded to
@@ -162,7 +205,7 @@ impl<'g> PoissonBracket<'g> {
             .flat_map(|i| (i + 1..z.len()).flat_map(move |j| (j + 1..z.len()).map(move |k| [i, j, k])));
         let mut defects = triples.map(|triple| {
             let [f, g, h] = triple.map(|i| z[i]);
-            ([f, g, h], self.jacobi_defect(f, g, h))
+            ([f, g, h], self.defect(f, g, h))
         });
         defects
             .find(|&(_, defect)| !Neighbourhood::anywhere(self.graph, &[defect]).vanishes(self.graph, defect))
@@ -192,33 +235,50 @@ impl<'g> PoissonBracket<'g> {
     ///
     /// The bracket of two integrals of the motion that it generates is an integral (Poisson's theorem); see
     /// [`closure`](PoissonBracket::closure).
-    pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Expr<'g> {
-        self.rates(&[f], g)[0]
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of something else.
+    pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Result<Expr<'g>, MechError> {
+        self.check(&[f, g])?;
+        Ok(self.bracket(f, g))
     }
 
     /// The rates (f, h) of the functions f, one each, along the flow of h, ż_i = (z_i, h).
-    pub fn rates(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Vec<Expr<'g>> {
-        let field = self.variables.iter().copied().zip(self.field(h)).collect::<Vec<_>>();
-        self.graph.directional(functions, &field)
+    ///
+    /// # Errors
+    /// As for [`of`](PoissonBracket::of).
+    pub fn rates(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Result<Vec<Expr<'g>>, MechError> {
+        self.check(functions)?;
+        self.check(&[h])?;
+        Ok(self.along(functions, h))
     }
 
     /// The components (z_i, h) = P_ij ∂h/∂z_j of the vector field of h, as many as variables.
-    pub fn field(&self, h: Expr<'g>) -> Vec<Expr<'g>> {
-        let slope = self.graph.gradient(h, &self.variables);
-        let component = |i: usize| self.graph.dot(self.tensor.row(i).iter().copied(), slope.iter().copied());
-        (0..self.variables.len()).map(component).collect()
+    ///
+    /// # Errors
+    /// As for [`of`](PoissonBracket::of).
+    pub fn field(&self, h: Expr<'g>) -> Result<Vec<Expr<'g>>, MechError> {
+        self.check(&[h])?;
+        Ok(self.components(h))
     }
 
     /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)): zero, by Jacobi's identity.
-    pub fn jacobi_defect(&self, f: Expr<'g>, g: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
-        let cycle = [(f, g, h), (g, h, f), (h, f, g)];
-        self.graph.sum(cycle.map(|(f, g, h)| self.of(f, self.of(g, h))))
+    ///
+    /// # Errors
+    /// As for [`of`](PoissonBracket::of).
+    pub fn jacobi_defect(&self, f: Expr<'g>, g: Expr<'g>, h: Expr<'g>) -> Result<Expr<'g>, MechError> {
+        self.check(&[f, g, h])?;
+        Ok(self.defect(f, g, h))
     }
 
     /// The functions and what their brackets, the brackets of these and so on add to them: functionally
     /// independent, the given ones first, as far as they are independent themselves. Integrals give
     /// integrals.
-    pub fn closure(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    ///
+    /// # Errors
+    /// As for [`of`](PoissonBracket::of).
+    pub fn closure(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, MechError> {
+        self.check(functions)?;
         let new = |known: &[Expr<'g>], f: &[Expr<'g>]| {
             independent(self.graph, &self.variables, known, f.iter().copied())
         };
@@ -226,12 +286,36 @@ impl<'g> PoissonBracket<'g> {
         let mut last = 1;
         while last < all.len() {
             for first in 0..last {
-                let bracket = self.of(all[first], all[last]);
+                let bracket = self.bracket(all[first], all[last]);
                 all.extend(new(&all, &[bracket]));
             }
             last += 1;
         }
-        all
+        Ok(all)
+    }
+
+    /// [`of`](PoissonBracket::of) functions that are known to be such.
+    fn bracket(&self, f: Expr<'g>, g: Expr<'g>) -> Expr<'g> {
+        self.along(&[f], g)[0]
+    }
+
+    /// [`rates`](PoissonBracket::rates) likewise.
+    pub(super) fn along(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Vec<Expr<'g>> {
+        let field = self.variables.iter().copied().zip(self.components(h)).collect::<Vec<_>>();
+        self.graph.directional(functions, &field)
+    }
+
+    /// [`field`](PoissonBracket::field) likewise.
+    fn components(&self, h: Expr<'g>) -> Vec<Expr<'g>> {
+        let slope = self.graph.gradient(h, &self.variables);
+        let component = |i: usize| self.graph.dot(self.tensor.row(i).iter().copied(), slope.iter().copied());
+        (0..self.variables.len()).map(component).collect()
+    }
+
+    /// [`jacobi_defect`](PoissonBracket::jacobi_defect) likewise.
+    fn defect(&self, f: Expr<'g>, g: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
+        let cycle = [(f, g, h), (g, h, f), (h, f, g)];
+        self.graph.sum(cycle.map(|(f, g, h)| self.bracket(f, self.bracket(g, h))))
     }
 
     /// Rank of the Poisson tensor at almost all points, always even.

@@ -2,24 +2,36 @@
 
 use pc_expr::Expr;
 
+use crate::error::MechError;
 use crate::integrals::bracket::PoissonBracket;
 use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
 impl<'g> PoissonBracket<'g> {
     /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: then f is an integral
     /// whatever the Hamiltonian.
-    pub fn is_casimir(&self, f: Expr<'g>) -> bool {
-        self.field(f).iter().all(|rate| rate.is_zero())
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of something else than variables and constants.
+    pub fn is_casimir(&self, f: Expr<'g>) -> Result<bool, MechError> {
+        Ok(self.field(f)?.iter().all(|rate| rate.is_zero()))
     }
 
     /// The Casimirs that are linear combinations of `functions` with rational coefficients; a basis of them.
     ///
     /// Each is proved, (C, z_i) being folded to zero. What may be missed is said at
     /// [`linear_relations`](pc_expr::Graph::linear_relations).
-    pub fn casimirs_among(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of something else than variables and constants.
+    pub fn casimirs_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, MechError> {
+        self.check(functions)?;
+        Ok(self.combinations(functions))
+    }
+
+    fn combinations(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.graph();
         let brackets: Vec<Vec<Expr<'g>>> =
-            self.variables().iter().map(|&z| self.rates(functions, z)).collect();
+            self.variables().iter().map(|&z| self.along(functions, z)).collect();
         let column = |j: usize| brackets.iter().map(|row| row[j]).collect();
         let columns: Vec<Vec<Expr<'g>>> = (0..functions.len()).map(column).collect();
         let relations = graph.linear_relations(&columns);
@@ -43,7 +55,7 @@ impl<'g> PoissonBracket<'g> {
             return Vec::new();
         }
         let generators: Vec<Generator<'g>> = self.variables().iter().map(|&z| (z, degree)).collect();
-        let found = self.casimirs_among(&monomials(&generators, degree));
+        let found = self.combinations(&monomials(&generators, degree));
         independent(self.graph(), self.variables(), &[], found)
     }
 }

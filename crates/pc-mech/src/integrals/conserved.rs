@@ -4,6 +4,7 @@ use pc_expr::{Expr, Graph};
 
 use crate::canonical::Canonical;
 use crate::compiled::ldl::Factors;
+use crate::error::{MechError, check_variables};
 use crate::poincare::Equations;
 use crate::system::System;
 
@@ -47,6 +48,8 @@ pub struct Rates<'g> {
     momenta: Vec<(Expr<'g>, Expr<'g>)>,
     /// Each symbol that changes, with its rate.
     pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
+    /// What counts as constant: parameters, external forces and any other symbol of the system.
+    constants: Vec<Expr<'g>>,
 }
 
 impl<'g> Equations<'g> {
@@ -100,6 +103,9 @@ impl<'g> Rates<'g> {
         states: Vec<Expr<'g>>,
     ) -> Rates<'g> {
         let (time, x) = (system.frame().time(), system.frame().coordinates());
+        let mut constants = system.symbols();
+        let state = system.state();
+        constants.retain(|z| *z != time && !state.contains(z));
         let state = system.state_with(moving).into_iter();
         let flow = state.zip(velocities.iter().chain(right).copied().chain(states));
         let flow = flow.chain([(time, Expr::ONE)]).chain(system.signal_rates());
@@ -112,26 +118,54 @@ impl<'g> Rates<'g> {
             accelerations: Vec::new(),
             momenta: Vec::new(),
             flow: flow.collect(),
+            constants,
         }
     }
 
+    /// That functions contain nothing but what has a rate and what counts as constant.
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] naming the first other symbol.
+    fn check(&self, functions: &[Expr<'g>]) -> Result<(), MechError> {
+        let first =
+            |pairs: &[(Expr<'g>, Expr<'g>)]| pairs.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>();
+        let known = [first(&self.flow), first(&self.accelerations), self.constants.clone()].concat();
+        check_variables("a function along the motion", self.graph, functions, &known)
+    }
+
     /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
-    pub fn of(&self, f: Expr<'g>) -> Expr<'g> {
-        self.of_all(&[f])[0]
+    ///
+    /// # Errors
+    /// [`MechError::NotAVariable`] for a function of a symbol that is none of the motion: neither one that changes along it
+    /// nor one that its equations contain.
+    pub fn of(&self, f: Expr<'g>) -> Result<Expr<'g>, MechError> {
+        Ok(self.of_all(&[f])?[0])
     }
 
     /// The rates of several functions, as many as these.
-    pub fn of_all(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    ///
+    /// # Errors
+    /// As for [`of`](Rates::of).
+    pub fn of_all(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, MechError> {
+        self.check(functions)?;
+        Ok(self.along(functions))
+    }
+
+    /// [`of_all`](Rates::of_all) of functions that are known to be such.
+    pub(crate) fn along(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let functions = self.graph.substitute(functions, &self.accelerations);
         self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)
     }
 
     /// Whether the motion keeps f constant. [`Conservation::Changing`] is no proof of the contrary where the
     /// rate contains roots, logarithms or the like: the graph knows few of their identities.
-    pub fn verdict(&self, f: Expr<'g>) -> Conservation<'g> {
-        let rate = self.of(f);
+    ///
+    /// # Errors
+    /// As for [`of`](Rates::of).
+    pub fn verdict(&self, f: Expr<'g>) -> Result<Conservation<'g>, MechError> {
+        let rate = self.of(f)?;
         let (always, here) = (rate.is_zero(), self.graph.substitute(&[rate], &self.parameters)[0].is_zero());
-        if here && self.has_jumps(f) {
+        Ok(if here && self.has_jumps(f) {
             Conservation::ConservedBetweenJumps
         } else if always {
             Conservation::Conserved
@@ -139,7 +173,7 @@ impl<'g> Rates<'g> {
             Conservation::ConservedHere
         } else {
             Conservation::Changing(rate)
-        }
+        })
     }
 
     /// Whether f is written with a sign, a step or an angle of what changes, and so may jump.

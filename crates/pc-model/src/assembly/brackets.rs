@@ -1,7 +1,7 @@
 //! The structure coefficients that a model gives.
 
 use pc_algebra::affine;
-use pc_mech::{AlgebraError, Expr, LieAlgebra, Number, StructureCoefficients};
+use pc_mech::{AlgebraError, Expr, LieAlgebra, StructureCoefficients};
 
 use super::Assembler;
 use crate::document::{AlgebraDefinition, Bracket};
@@ -22,7 +22,7 @@ impl<'g> Assembler<'g, '_> {
                     AlgebraError::UnknownAlgebra { name: wrong, known } => {
                         self.model.error(&name.place, Fault::UnknownAlgebra { name: wrong, known })
                     }
-                    other => self.model.algebra_error(other),
+                    other => self.model.error(&name.place, Fault::Derivation { message: other.to_string() }),
                 })?;
                 if algebra.dim() != eta.len() {
                     let (dimension, operators) = (algebra.dim(), eta.len());
@@ -54,31 +54,33 @@ impl<'g> Assembler<'g, '_> {
                 }
             }
         };
-        let mut table: Vec<((usize, usize), Vec<Number>)> = Vec::new();
+        let mut table: Vec<((usize, usize), Vec<Expr<'g>>)> = Vec::new();
         for bracket in brackets {
             let pair = (index(&bracket.left)?, index(&bracket.right)?);
             let value = self.scope.resolve(&bracket.value, Stage::Kinematics)?;
+            let still = |c: &Expr<'g>| self.coordinates().iter().all(|&x| !c.depends_on(x));
             let linear = affine(self.graph, value, eta).filter(|(_, rest)| rest.is_zero());
-            let constants: Option<Vec<Number>> =
-                linear.and_then(|(coefficients, _)| coefficients.iter().map(|c| c.constant()).collect());
-            let Some(constants) = constants else {
+            let Some(constants) = linear.map(|(c, _)| c).filter(|c| c.iter().all(still)) else {
                 let fault = |text| Fault::BracketNotLinear { text };
                 return Err(self.scope.error(&bracket.value, bracket.value.ast.span, fault));
             };
-            let opposite: Vec<Number> = constants.iter().map(|&c| -c).collect();
-            if table.iter().any(|(other, known)| *other == (pair.1, pair.0) && *known != opposite) {
+            let is_opposite =
+                |known: &[Expr<'g>]| known.iter().zip(&constants).all(|(&a, &b)| (a + b).is_zero());
+            if table.iter().any(|(other, known)| *other == (pair.1, pair.0) && !is_opposite(known)) {
                 let (left, right) = (bracket.left.text.clone(), bracket.right.text.clone());
                 return Err(self.model.error(&bracket.left.place, Fault::BracketsNotSkew { left, right }));
             }
             table.push((pair, constants));
         }
-        let constant = |r: usize, s: usize, m: usize| -> Number {
+        let entry = |r: usize, s: usize, m: usize| -> Expr<'g> {
             let direct = table.iter().find(|(pair, _)| *pair == (r, s)).map(|(_, c)| c[m]);
             let reverse = || table.iter().find(|(pair, _)| *pair == (s, r)).map(|(_, c)| -c[m]);
-            direct.or_else(reverse).unwrap_or(Number::ZERO)
+            direct.or_else(reverse).unwrap_or(Expr::ZERO)
         };
-        let algebra = LieAlgebra::new(k, |r, s, m| constant(r + 1, s + 1, m));
-        let structure = algebra.and_then(|algebra| algebra.with_time(|s, m| constant(0, s + 1, m)));
-        structure.map_err(|error| self.model.algebra_error(error))
+        Ok(StructureCoefficients::new(k, entry))
+    }
+
+    fn coordinates(&self) -> Vec<Expr<'g>> {
+        self.model.document().coordinates.iter().map(|x| self.graph.symbol(&x.name.text)).collect()
     }
 }
