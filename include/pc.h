@@ -358,6 +358,20 @@ typedef struct {
    * A time beyond which the equations are never evaluated; infinite, the default, for none.
    */
   double stop_time;
+  /**
+   * Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by default. Between two such
+   * places an even number of zeros may be missed.
+   */
+  uint32_t samples_per_step;
+  /**
+   * 0: room for a choice to come.
+   */
+  uint32_t reserved;
+  /**
+   * Events that follow each other ever faster are an error once what is left of the first of their distances is this part,
+   * from 0, for never, to less than 1; 1e-5 by default.
+   */
+  double accumulation;
 } pc_solver_options;
 
 /**

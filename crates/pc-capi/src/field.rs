@@ -179,12 +179,20 @@ impl VectorField for Field {
         delegate!(self, field => field.parameter_jacobian(t, y, jacobian))
     }
 
+    fn parameter_size(&self, j: usize) -> Option<f64> {
+        delegate!(self, field => field.parameter_size(j))
+    }
+
     fn has_projection(&self) -> bool {
         delegate!(self, field => field.has_projection())
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         delegate!(self, field => field.project(t, y))
+    }
+
+    fn time_dependence(&self) -> pc_expr::TimeDependence {
+        delegate!(self, field => field.time_dependence())
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

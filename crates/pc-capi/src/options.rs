@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 
 use ::pc_model::Variables;
-use pc_solve::{Krylov, LinearSolver, Method, NonlinearSolver, Options};
+use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
 use crate::error::Fault;
 use crate::pointer::{aligned, numbers};
@@ -112,6 +112,14 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinite, the default, for none.
     pub stop_time: f64,
+    /// Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by default. Between two such
+    /// places an even number of zeros may be missed.
+    pub samples_per_step: u32,
+    /// 0: room for a choice to come.
+    pub reserved: u32,
+    /// Events that follow each other ever faster are an error once what is left of the first of their distances is this part,
+    /// from 0, for never, to less than 1; 1e-5 by default.
+    pub accumulation: f64,
 }
 
 impl Default for pc_solver_options {
@@ -131,6 +139,9 @@ impl Default for pc_solver_options {
             min_step: 0.0,
             max_step: 0.0,
             stop_time: f64::INFINITY,
+            samples_per_step: 4,
+            reserved: 0,
+            accumulation: Accumulation::default().within,
         }
     }
 }
@@ -240,6 +251,7 @@ impl pc_solver_options {
         if self.stop_time.is_nan() || self.stop_time.is_finite() {
             options = options.stop_time(self.stop_time);
         }
-        Ok(options)
+        let accumulation = Accumulation { within: self.accumulation, ..Accumulation::default() };
+        Ok(options.samples_per_step(self.samples_per_step).accumulation(accumulation))
     }
 }

@@ -72,6 +72,8 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         rtol: 1e-12,
         atol: 1e-14,
         max_step: None,
+        samples_per_step: None,
+        accumulation: None,
         method: Method::Adams,
     };
     let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;

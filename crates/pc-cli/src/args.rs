@@ -95,6 +95,19 @@ pub struct DeriveArguments {
     pub format: Page,
 }
 
+/// How events are looked for.
+#[derive(Clone, Debug, Default, Args)]
+pub struct EventArguments {
+    /// Look for events at the ends of N equal parts of each step; else as the file says, else of 4. Between two such places
+    /// an even number of zeros may be missed
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub samples_per_step: Option<u32>,
+    /// Events that follow each other ever faster are an error once what is left of the first of their distances is
+    /// this part; else that of the file, else 1e-5; 0 for never
+    #[arg(long, value_name = "P", value_parser = part)]
+    pub accumulation: Option<f64>,
+}
+
 /// Arguments of `pc run`.
 #[derive(Clone, Debug, Args)]
 pub struct RunArguments {
@@ -116,6 +129,9 @@ pub struct RunArguments {
     /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
+    /// Events.
+    #[command(flatten)]
+    pub events: EventArguments,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
@@ -317,6 +333,14 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
         _ => Err("it must be positive".to_owned()),
+    }
+}
+
+/// From 0 to less than 1.
+fn part(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if (0.0..1.0).contains(&value) => Ok(value),
+        _ => Err("write a part from 0 to less than 1, such as 1e-6".to_owned()),
     }
 }
 

@@ -2,6 +2,7 @@
 //! command only.
 
 use pc_model::Model;
+use pc_solve::Accumulation;
 
 use crate::args::RunForm;
 use crate::plan::Plan;
@@ -30,6 +31,8 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         entry("--rtol", format!("{:e}", plan.rtol)),
         entry("--atol", format!("{:e}", plan.atol)),
         entry("--max-step", plan.max_step.map_or("none".to_owned(), |length| format!("{length:e}"))),
+        entry("--samples-per-step", plan.samples_per_step.map_or("4".to_owned(), |parts| parts.to_string())),
+        entry("--accumulation", format!("{:e}", plan.accumulation.unwrap_or(Accumulation::default().within))),
         entry("--method", plan.method.to_string().to_lowercase()),
         entry("--form", format!("{form:?}").to_lowercase()),
         entry("text of the model", format!("{}\n", model.document().source.text())),

@@ -2,7 +2,7 @@
 
 use pc_model::Model;
 use pc_model::document;
-use pc_solve::{Method, Options};
+use pc_solve::{Accumulation, Method, Options};
 
 use crate::args::{self, RunArguments, RunForm};
 use crate::error::CliError;
@@ -25,6 +25,10 @@ pub struct Plan {
     pub atol: f64,
     /// Largest length of a step, if it is limited.
     pub max_step: Option<f64>,
+    /// In how many parts of each step events are looked for, if that is said.
+    pub samples_per_step: Option<u32>,
+    /// To which part of their distance those of an event have shrunk when they accumulate, if that is said.
+    pub accumulation: Option<f64>,
     /// Method.
     pub method: Method,
 }
@@ -62,6 +66,11 @@ impl Plan {
             rtol: arguments.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
             atol: arguments.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
             max_step: arguments.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
+            samples_per_step: arguments
+                .events
+                .samples_per_step
+                .or(simulation.samples_per_step.as_ref().map(|n| n.value)),
+            accumulation: arguments.events.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
             method,
         })
     }
@@ -76,7 +85,14 @@ impl Plan {
 
     /// Method, tolerances and the limit of steps for the integrator.
     pub fn options(&self) -> Options {
-        let options = Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol);
+        let mut options =
+            Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol);
+        if let Some(parts) = self.samples_per_step {
+            options = options.samples_per_step(parts);
+        }
+        if let Some(within) = self.accumulation {
+            options = options.accumulation(Accumulation { within, ..Accumulation::default() });
+        }
         match self.max_step {
             Some(length) => options.max_step(length),
             None => options,

@@ -62,6 +62,9 @@ fn work_done(run: &Run) -> String {
     if work.error_test_failures > 0 {
         parts.push(count(work.error_test_failures, "rejected step"));
     }
+    if work.limited_steps > 0 {
+        parts.push(format!("{} shortened for what depends on time", count(work.limited_steps, "step")));
+    }
     parts.push(format!("{:.3} ms", run.wall.as_secs_f64() * 1e3));
     parts.join(", ")
 }
@@ -146,6 +149,7 @@ pub fn json(run: &Run) -> Value {
         "evaluations": work.rhs_evaluations,
         "jacobians": work.jacobian_evaluations,
         "rejected_steps": work.error_test_failures,
+        "limited_steps": work.limited_steps,
         "keeps_energy": run.keeps_energy,
         "drift": drift,
         "constraints": held,

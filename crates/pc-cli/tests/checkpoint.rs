@@ -294,7 +294,7 @@ fn what_is_not_a_checkpoint_of_this_run_with_events_is_refused() {
     run.refused(
         "b.check",
         &[],
-        "it is a checkpoint of version 2 of the format, not 3; begin anew without --resume",
+        "it is a checkpoint of version 2 of the format, not 4; begin anew without --resume",
     );
     let other = Run::new("bouncing-ball", &["--every", "20"]);
     fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");

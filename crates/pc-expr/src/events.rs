@@ -88,8 +88,9 @@ impl Event {
 
 /// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
 ///
-/// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to be
-/// exactly zero at the end of a step. A function that only touches zero causes none. A function that is zero at the
+/// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to zero to
+/// stay there. A function that touches zero, and is back on its side as soon as rounding tells times apart, causes none. A
+/// function that is zero at the
 /// start, or is brought to zero by a reset, has to leave zero first. A reset that carries a function from one sign to
 /// the other is no passage through zero.
 pub trait Events {
@@ -101,6 +102,29 @@ pub trait Events {
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+
+    /// Whether [`by_parameter`](Events::by_parameter) is implemented.
+    fn has_parameter_derivatives(&self) -> bool {
+        false
+    }
+
+    /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and writes ∂R/∂pⱼ of its
+    /// reset, as long as the state: zeros where nothing is reset or does not depend on pⱼ.
+    ///
+    /// Called only if there [are such](Events::has_parameter_derivatives), for sensitivities.
+    ///
+    /// # Errors
+    /// [`Failure`] where one is not defined; it ends the integration.
+    fn by_parameter(
+        &mut self,
+        _event: usize,
+        _parameter: usize,
+        _t: f64,
+        _y: &[f64],
+        _reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        Err(Failure::fatal(NoParameterDerivatives))
+    }
 
     /// Turns y⁻ into y⁺ at event number `event`; called only if that [resets](Event::resets).
     ///
@@ -118,7 +142,24 @@ impl<E: Events + ?Sized> Events for &mut E {
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         (**self).evaluate(t, y, values)
     }
+    fn has_parameter_derivatives(&self) -> bool {
+        (**self).has_parameter_derivatives()
+    }
+    fn by_parameter(
+        &mut self,
+        event: usize,
+        parameter: usize,
+        t: f64,
+        y: &[f64],
+        reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        (**self).by_parameter(event, parameter, t, y, reset)
+    }
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         (**self).reset(event, t, y)
     }
 }
+
+#[derive(Debug, thiserror::Error)]
+#[error("these events have no derivatives by parameters")]
+struct NoParameterDerivatives;

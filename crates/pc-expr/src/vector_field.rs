@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use crate::pattern::Pattern;
+use crate::profile::TimeDependence;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
@@ -94,6 +95,11 @@ pub trait VectorField {
         Err(Failure::fatal(NoParameterJacobian))
     }
 
+    /// The size of parameter `j`, |pⱼ| say, if it is known: what a change of it is small or large against.
+    fn parameter_size(&self, _j: usize) -> Option<f64> {
+        None
+    }
+
     /// Whether the states lie on a surface that f is tangent to and numerical errors leave.
     fn has_projection(&self) -> bool {
         false
@@ -107,6 +113,11 @@ pub trait VectorField {
     /// [`Failure`] where no state of the surface is found near `y`.
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
         Ok(())
+    }
+
+    /// How f depends on t explicitly: what an integrator must not step over. It is asked for when an integration begins.
+    fn time_dependence(&self) -> TimeDependence {
+        TimeDependence::Unknown
     }
 
     /// Says that the states go on from `y` at time t, a state that the motion did not come to by itself, such as one after
@@ -167,11 +178,17 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
         (**self).parameter_jacobian(t, y, jacobian)
     }
+    fn parameter_size(&self, j: usize) -> Option<f64> {
+        (**self).parameter_size(j)
+    }
     fn has_projection(&self) -> bool {
         (**self).has_projection()
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         (**self).project(t, y)
+    }
+    fn time_dependence(&self) -> TimeDependence {
+        (**self).time_dependence()
     }
     fn restart(&mut self, t: f64, y: &[f64]) {
         (**self).restart(t, y);

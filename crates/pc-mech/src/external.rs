@@ -1,7 +1,7 @@
 //! Forces that are computed outside: opaque functions of time and state.
 
 use pc_algebra::Frame;
-use pc_expr::{Expr, Failure, Pattern, VectorField};
+use pc_expr::{Expr, Failure, Pattern, TimeDependence, VectorField};
 
 use crate::canonical::Canonical;
 use crate::compiled::motion::Motion;
@@ -386,12 +386,20 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         Ok(())
     }
 
+    fn parameter_size(&self, j: usize) -> Option<f64> {
+        self.motion.parameter_size(j)
+    }
+
     fn has_projection(&self) -> bool {
         self.motion.has_projection()
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.motion.project(t, y)
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        self.motion.time_dependence().with_unknown()
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::NonNull;
 use std::slice;
 
@@ -152,10 +152,31 @@ impl<F> UserData<F> {
         callbacks.offset.as_mut().map(|offset| (&mut callbacks.field, offset))
     }
 
+    /// Whether f could be evaluated at what stands for a state in vectors of CVODES, when CVODES does not. A panic goes on.
+    pub(crate) fn look(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> bool
+    where
+        F: VectorField,
+    {
+        // SAFETY: owned and live, borrowed exclusively.
+        let callbacks = unsafe { self.0.as_mut() };
+        ydot.fill(f64::NAN);
+        let answer = callbacks.rhs(t, y, ydot);
+        if let Some(panic) = callbacks.panic.take() {
+            resume_unwind(panic);
+        }
+        callbacks.failure = None; // CVODES will meet it if it goes there
+        answer == SUCCESS
+    }
+
     /// The field, to be called when CVODES is not.
     pub(crate) fn field_mut(&mut self) -> &mut F {
         // SAFETY: owned and live, borrowed exclusively.
         &mut unsafe { self.0.as_mut() }.field
+    }
+
+    pub(crate) fn variation(&self) -> &Variation {
+        // SAFETY: owned and live; callbacks run only in calls that borrow the owner exclusively.
+        &unsafe { self.0.as_ref() }.variation
     }
 
     pub(crate) fn set_variation(&mut self, variation: Variation) {

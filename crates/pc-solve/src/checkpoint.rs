@@ -47,6 +47,8 @@ pub struct Checkpoint {
     /// Whether the motion has been started anew from a state that it did not come to by itself, as after a reset: what the
     /// field keeps by projection has the values then that it has here.
     pub(crate) jumped: bool,
+    /// S, column-major; empty without sensitivities.
+    pub(crate) sensitivities: Vec<f64>,
     /// Of a motion with events that has begun.
     pub(crate) past: Option<Past>,
 }
@@ -54,13 +56,11 @@ pub struct Checkpoint {
 /// What an integration with events knows of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Past {
-    /// When the motion began.
-    pub(crate) start: f64,
     /// For each event.
     pub(crate) events: Vec<EventPast>,
     /// The events that occur at the time of the checkpoint and have yet to be dealt with, each with what its function has
-    /// to exceed then to be told from zero.
-    pub(crate) due: Vec<(usize, f64)>,
+    /// to exceed then to be told from zero, and the side it goes on to.
+    pub(crate) due: Vec<(usize, f64, f64)>,
 }
 
 /// What is known of one event.
@@ -85,6 +85,7 @@ impl Checkpoint {
             statistics: Statistics::default(),
             steps_since_output: 0,
             jumped: false,
+            sensitivities: Vec::new(),
             past: None,
         }
     }
@@ -97,6 +98,11 @@ impl Checkpoint {
     /// Its state there.
     pub fn state(&self) -> &[f64] {
         &self.state
+    }
+
+    /// Its sensitivities there, column-major; empty if there are none.
+    pub fn sensitivities(&self) -> &[f64] {
+        &self.sensitivities
     }
 
     /// The outputs of [`solve_checkpointed`] up to that time.

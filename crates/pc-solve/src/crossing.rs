@@ -40,7 +40,22 @@ pub(crate) struct Crossing {
     pub(crate) events: Vec<usize>,
     /// What each function has to exceed there to be told from zero.
     pub(crate) noise: Vec<f64>,
+    /// The side of each of them a little later; 0 where it stays at zero.
+    pub(crate) beyond: Vec<f64>,
 }
+
+/// What is seen where a function is at or beyond zero.
+enum Located {
+    Crossing(Crossing),
+    /// All functions are back where they were, at this sample.
+    Touch(Sample),
+}
+
+/// A function that touches zero so often within one step is taken to pass through it.
+const MOST_TOUCHES: u32 = 32;
+
+/// Parts of a step after which a function that was at zero is looked at, one after the other until it has left.
+const EARLY: [f64; 4] = [1e-12, 1e-9, 1e-6, 1e-3];
 
 impl Sides {
     /// Functions that pass in these directions, of which nothing else is known.
@@ -63,18 +78,19 @@ impl Sides {
         Sides { directions, sides, noise }
     }
 
-    /// Where the functions are after a jump of the state.
+    /// Where the functions are after a jump of the state. Those that are not told from zero by `noise` go on to the side
+    /// that they move to.
     pub(crate) fn jump(&mut self, values: &[f64], noise: Vec<f64>) {
         self.sides.fill(0.0);
         self.noise = noise;
         self.pass(values);
     }
 
-    /// After the functions `events` have passed through zero at `values`. One that is exactly zero has yet to show on
-    /// which side it goes on; all have to exceed `noise` to pass again.
-    pub(crate) fn cross(&mut self, events: &[usize], values: &[f64], noise: &[f64]) {
-        for &i in events {
-            self.sides[i] = if values[i] == 0.0 { 0.0 } else { -self.sides[i] };
+    /// After the functions `events` have passed through zero at `values`, to the sides `beyond`; all have to exceed `noise`
+    /// to pass again.
+    pub(crate) fn cross(&mut self, events: &[usize], values: &[f64], noise: &[f64], beyond: &[f64]) {
+        for (&i, &side) in events.iter().zip(beyond) {
+            self.sides[i] = side;
             self.noise[i] = noise[i];
         }
         self.pass(values);
@@ -102,48 +118,111 @@ impl Sides {
 
     /// Looks from `from` to the time `to` for the first passage, with values by `evaluate`.
     ///
-    /// The functions are seen at both ends and in the middle, at first also near `from` while one of them is at zero, and
-    /// at the vertex of the parabola through these values where it suggests that a function passes through zero twice.
+    /// The functions are seen at the ends of `pieces` equal parts of that time, at first also near `from` while one of them
+    /// is at zero, and at the vertex of the parabola through three of these values in sequence where it suggests that a
+    /// function passes through zero twice.
     pub(crate) fn first<E>(
         &mut self,
         from: Sample,
         to: f64,
+        pieces: u32,
         evaluate: &mut impl FnMut(f64) -> Result<Vec<f64>, E>,
     ) -> Result<Passage, E> {
         if self.sides.is_empty() {
             return Ok(Passage::Clear(Sample { t: to, ..from }));
         }
-        let length = to - from.t;
         let mut sample = |t: f64| Ok(Sample { t, values: evaluate(t)? });
         let mut left = from;
-        if self.sides.contains(&0.0) {
-            let early = sample(left.t + 1e-3 * length)?;
-            if self.any_crossed(&early.values) {
-                return self.locate(left, early, &mut sample).map(Passage::Crossing);
-            }
-            self.pass(&early.values);
-            left = early;
+        if let Some(crossing) = self.leave(&mut left, to, &mut sample)? {
+            return Ok(Passage::Crossing(crossing));
         }
-        let middle = sample(left.t + 0.5 * (to - left.t))?;
-        let end = match sample(to) {
-            Ok(end) => end,
-            // What is beyond a passage need not have values.
-            Err(_) if self.any_crossed(&middle.values) => {
-                return self.locate(left, middle, &mut sample).map(Passage::Crossing);
+        // What is beyond a passage need not have values.
+        let (mut samples, mut fault) = (Vec::new(), None);
+        let length = to - left.t;
+        for k in 1..=pieces {
+            let t = if k == pieces { to } else { left.t + length * (f64::from(k) / f64::from(pieces)) };
+            match sample(t) {
+                Ok(next) => samples.push(next),
+                Err(error) => {
+                    fault = Some(error);
+                    break;
+                }
             }
-            Err(error) => return Err(error),
-        };
-        let mut samples = self.hidden([&left, &middle, &end], &mut sample)?;
-        samples.extend([middle, end]);
+        }
+        let row: Vec<&Sample> = std::iter::once(&left).chain(&samples).collect();
+        let mut hidden = Vec::new();
+        for three in row.windows(3) {
+            hidden.extend(self.hidden([three[0], three[1], three[2]], &mut sample)?);
+        }
+        samples.extend(hidden);
         samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
         for right in samples {
-            if self.any_crossed(&right.values) {
-                return self.locate(left, right, &mut sample).map(Passage::Crossing);
+            if let Some(crossing) = self.between(&mut left, right, &mut sample)? {
+                return Ok(Passage::Crossing(crossing));
             }
-            self.pass(&right.values);
-            left = right;
         }
-        Ok(Passage::Clear(left))
+        match fault {
+            Some(error) => Err(error),
+            None => Ok(Passage::Clear(left)),
+        }
+    }
+
+    /// Goes from `left` on until no function is at zero, or by a small part of the way to the time `to`.
+    fn leave<E>(
+        &mut self,
+        left: &mut Sample,
+        to: f64,
+        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+    ) -> Result<Option<Crossing>, E> {
+        let (start, length) = (left.clone(), to - left.t);
+        for part in EARLY {
+            if !self.sides.contains(&0.0) {
+                return Ok(None);
+            }
+            let t = start.t + part * length;
+            if (t - left.t) * length <= 0.0 {
+                continue; // there is no time between
+            }
+            let early = sample(t)?;
+            if let Some(crossing) = self.between(left, early, sample)? {
+                return Ok(Some(crossing));
+            }
+        }
+        for (i, side) in
+            self.sides.iter_mut().enumerate().filter(|(i, side)| **side == 0.0 && self.noise[*i] > 0.0)
+        {
+            let moved = left.values[i] - start.values[i];
+            if moved != 0.0 {
+                *side = 1.0_f64.copysign(moved);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Goes from `left` to `right` unless there is a passage between.
+    fn between<E>(
+        &mut self,
+        left: &mut Sample,
+        right: Sample,
+        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+    ) -> Result<Option<Crossing>, E> {
+        let mut touches = 0;
+        while self.any_crossed(&right.values) {
+            match self.locate(left.clone(), right.clone(), touches < MOST_TOUCHES, sample)? {
+                Located::Crossing(crossing) => return Ok(Some(crossing)),
+                Located::Touch(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => *left = after,
+                // Beyond `right`, where it touches.
+                Located::Touch(_) => break,
+            }
+            touches += 1;
+        }
+        // A function that touches zero here keeps its side.
+        let values: Vec<f64> = (0..self.sides.len())
+            .map(|i| if self.crossed(i, right.values[i]) { 0.0 } else { right.values[i] })
+            .collect();
+        self.pass(&values);
+        *left = right;
+        Ok(None)
     }
 
     /// Samples at which functions are beyond zero that are on one side of it at all three.
@@ -156,7 +235,10 @@ impl Sides {
         for i in 0..self.sides.len() {
             let side = self.sides[i];
             let mut points = three.map(|sample| (sample.t, sample.values[i] * side));
-            if points.iter().any(|&(_, u)| u <= 0.0) {
+            if self.noise[i] > 0.0 {
+                points[0].1 = points[0].1.max(0.0); // it has just passed through zero
+            }
+            if side == 0.0 || points[0].1 < 0.0 || points[1..].iter().any(|&(_, u)| u <= 0.0) {
                 continue;
             }
             while let Some((t, predicted)) = vertex(points) {
@@ -184,16 +266,18 @@ impl Sides {
         Ok(found)
     }
 
-    /// The first passage between `a`, where there has been none, and `b`, where there has: by secants, each the earliest
+    /// The first passage between `a`, where there has been none, and `b`, where there has, unless it is a touch: by secants, each the earliest
     /// of those of the functions, with Illinois' weights, and by bisection where these are slow.
     fn locate<E>(
         &self,
         mut a: Sample,
         mut b: Sample,
+        touches: bool,
         sample: &mut impl FnMut(f64) -> Result<Sample, E>,
-    ) -> Result<Crossing, E> {
+    ) -> Result<Located, E> {
         let scale = a.t.abs().max(b.t.abs()).max(1e-3 * (b.t - a.t).abs());
         let tolerance = LOCATED * scale;
+        let mut sides = self.clone();
         let (mut weight_a, mut weight_b, mut b_moved) = (1.0, 1.0, None);
         let (mut goal, mut tries) = ((b.t - a.t).abs() / 8.0, 0);
         loop {
@@ -208,7 +292,7 @@ impl Sides {
             let fraction = if tries > 4 {
                 0.5
             } else {
-                let crossed = (0..self.sides.len()).filter(|&i| self.crossed(i, b.values[i]));
+                let crossed = (0..sides.sides.len()).filter(|&i| sides.crossed(i, b.values[i]));
                 let secant = |i: usize| {
                     let (before, after) = (weight_a * a.values[i], weight_b * b.values[i]);
                     before / (before - after)
@@ -220,27 +304,35 @@ impl Sides {
             if middle.t == a.t || middle.t == b.t {
                 break; // there is no time between
             }
-            let moves_b = self.any_crossed(&middle.values);
+            let moves_b = sides.any_crossed(&middle.values);
             let repeated = if b_moved == Some(moves_b) { 0.5 } else { 1.0 };
             if moves_b {
                 (weight_a, weight_b) = (if repeated < 1.0 { 0.5 * weight_a } else { 1.0 }, 1.0);
                 b = middle;
             } else {
                 (weight_a, weight_b) = (1.0, if repeated < 1.0 { 0.5 * weight_b } else { 1.0 });
+                sides.pass(&middle.values); // what is told from zero need not be so again
                 a = middle;
             }
             b_moved = Some(moves_b);
         }
         let after = sample(b.t + (SAME * scale).copysign(b.t - a.t))?;
-        let together = |i: &usize| self.crossed(*i, b.values[*i]) || self.crossed(*i, after.values[*i]);
-        let events: Vec<usize> = (0..self.sides.len()).filter(together).collect();
+        let seen = |i: usize| sides.crossed(i, b.values[i]) || sides.crossed(i, after.values[i]);
+        let is_back = |i: usize| after.values[i] * sides.sides[i] > sides.noise[i];
+        let events: Vec<usize> =
+            (0..self.sides.len()).filter(|&i| seen(i) && !(touches && is_back(i))).collect();
+        if events.is_empty() {
+            return Ok(Located::Touch(after));
+        }
         let noise = (0..self.sides.len()).map(|i| {
             let near = [&a, &b, &after].map(|sample| sample.values[i].abs());
             let rounding = 16.0 * near.into_iter().fold(0.0, f64::max);
             if events.contains(&i) { rounding } else { 0.0 }
         });
         let noise = noise.collect();
-        Ok(Crossing { at: b, events, noise })
+        let side = |&i: &usize| if after.values[i] == 0.0 { 0.0 } else { 1.0_f64.copysign(after.values[i]) };
+        let beyond = events.iter().map(side).collect();
+        Ok(Located::Crossing(Crossing { at: b, events, noise, beyond }))
     }
 }
 

@@ -3,6 +3,7 @@
 mod breaks;
 mod checkpoint;
 mod dense;
+mod foresight;
 mod hybrid;
 mod interpolation;
 mod quadrature;
@@ -24,6 +25,7 @@ use crate::callback::UserData;
 use crate::code::Code;
 use crate::context::Context;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::events::Accumulation;
 use crate::handles::{Memory, NonlinearIteration, Vector};
 use crate::inequality::Inequality;
 use crate::linear::{Linear, LinearSolver};
@@ -72,6 +74,10 @@ pub struct Cvode<F> {
     restarted: bool,
     /// Whether there has been a restart.
     jumped: bool,
+    foresight: foresight::Foresight,
+    /// For events.
+    samples_per_step: u32,
+    accumulation: Accumulation,
 }
 
 /// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
@@ -201,7 +207,10 @@ impl<F: VectorField> Cvode<F> {
             return self.earlier;
         }
         let linear = self.linear.as_ref().map(|_| self.callbacks.linear());
-        self.earlier.followed_by(&Statistics::read(&self.memory, linear))
+        let mut since = Statistics::read(&self.memory, linear);
+        since.rhs_evaluations += self.foresight.evaluations;
+        since.limited_steps = self.foresight.limited;
+        self.earlier.followed_by(&since)
     }
 
     /// The linear solver of Newton's iteration, as chosen or as the field made it; none for the fixed-point iteration.
@@ -251,14 +260,21 @@ impl<F: VectorField> Cvode<F> {
             if self.direction.is_some_and(|direction| (t - self.step_time) * direction < 0.0) {
                 return Err(InputError::Behind { requested: t, current: self.step_time }.into());
             }
-            self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, t)?;
-        } else {
-            // SAFETY: the memory is live and initialised.
-            let code = unsafe { sys::CVodeClearStopTime(self.memory.raw()) };
-            self.context.check("CVodeClearStopTime", code)?;
         }
+        self.set_cvodes_stop_time(stop_time)?;
         self.stop_time = stop_time;
         Ok(())
+    }
+
+    fn set_cvodes_stop_time(&mut self, stop_time: Option<f64>) -> Result<(), SolveError> {
+        match stop_time {
+            Some(t) => self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, t),
+            None => {
+                // SAFETY: the memory is live and initialised.
+                let code = unsafe { sys::CVodeClearStopTime(self.memory.raw()) };
+                self.context.check("CVodeClearStopTime", code)
+            }
+        }
     }
 
     /// Checks that the integration can go on to `t`.
@@ -346,8 +362,15 @@ impl<F: VectorField> Cvode<F> {
             let length = length.copysign(towards - self.step_time);
             self.memory.set(&mut self.context, "CVodeSetInitStep", sys::CVodeSetInitStep, length)?;
         }
+        let end = self.stop_before_break(towards)?.or(self.stop_time);
+        let start = self.step_time;
+        let is_before = |place: &f64| end.is_none_or(|end| (end - place) * (end - start) > 0.0);
+        let landing = self.foresee(towards)?.filter(is_before);
+        if let Some(t) = landing {
+            self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, t)?;
+        }
         // CVODES minds its stop time only if the target is not nearer.
-        let target = self.stop_before_break(towards)?.or(self.stop_time).unwrap_or(towards);
+        let target = landing.or(end).unwrap_or(towards);
         let mut t = self.step_time;
         self.restarted = false;
         // SAFETY: all is live and of one context; callbacks use only the user data, which nobody holds meanwhile.
@@ -359,6 +382,9 @@ impl<F: VectorField> Cvode<F> {
         }
         let failure = self.callbacks.take_failure();
         let message = self.context.take_messages();
+        if landing.is_some() {
+            self.set_cvodes_stop_time(self.stop_time)?;
+        }
         if code != sys::CV_SUCCESS && code != sys::CV_TSTOP_RETURN {
             return Err(self.failed(Reason::Cvode { code: code.into(), message }, failure));
         }

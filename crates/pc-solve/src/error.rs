@@ -87,7 +87,10 @@ impl Reason {
             | Reason::Stalled
             | Reason::Event { .. }
             | Reason::Reset { .. }
-            | Reason::Accumulation { .. } => None,
+            | Reason::Accumulation { .. }
+            | Reason::Grazing { .. }
+            | Reason::Together { .. }
+            | Reason::Saltation { .. } => None,
         }
     }
 
@@ -117,6 +120,18 @@ impl Reason {
                 write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
             }
             Reason::Reset { event, t } => write!(f, "the event {event} cannot reset the state at t = {t}"),
+            Reason::Grazing { event, t } => write!(
+                f,
+                "the function of the event {event} touches zero at t = {t}: the motion after it has no derivatives"
+            ),
+            Reason::Together { events, t } => write!(
+                f,
+                "the events {} occur together at t = {t}: the motion after them has no derivatives",
+                events.join(", ")
+            ),
+            Reason::Saltation { t } => {
+                write!(f, "the rates of the motion cannot be evaluated on both sides of the reset at t = {t}")
+            }
             Reason::Accumulation { event, occurrences, t } => write!(
                 f,
                 "the event {event} occurs without end near t = {t:.5e} ({occurrences} times up to t = {time})"
@@ -188,6 +203,28 @@ pub enum Reason {
     Reset {
         /// Its name.
         event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// An event that resets the state is met at no speed: sensitivities have no bound.
+    Grazing {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// Events that reset the state occur together: sensitivities depend on which of them would come first.
+    Together {
+        /// Their names.
+        events: Vec<String>,
+        /// When they occurred.
+        t: f64,
+    },
+
+    /// The rates before or after a reset, by which sensitivities jump, cannot be evaluated.
+    Saltation {
         /// When it occurred.
         t: f64,
     },
@@ -383,6 +420,36 @@ pub enum InputError {
         max: f64,
     },
 
+    /// A checkpoint of an integration with another number of sensitivities.
+    #[error(
+        "the checkpoint has {found} columns of sensitivities, and {expected} are asked for: an integration with \
+         sensitivities is resumed with the same ones"
+    )]
+    Sensitivities {
+        /// Columns asked for.
+        expected: usize,
+        /// Columns of the checkpoint.
+        found: usize,
+    },
+
+    /// Derivatives by parameters, with events whose own derivatives by these are not known.
+    #[error(
+        "an event resets the state, and it is not known how its function and its reset depend on the parameters that \
+         sensitivities are asked for"
+    )]
+    EventParameters,
+
+    /// A step is to be looked at for events in 0 parts.
+    #[error("the number of samples per step must be at least 1")]
+    SamplesPerStep,
+
+    /// The part of a distance to which those of events shrink when they accumulate.
+    #[error("events accumulate within a part from 0 to less than 1 of their distance, not {within}")]
+    Accumulation {
+        /// The part given.
+        within: f64,
+    },
+
     /// The maximum number of steps is 0.
     #[error("the maximum number of steps must be at least 1")]
     MaxSteps,
@@ -559,7 +626,7 @@ pub enum InputError {
     },
 
     /// A new start of an integration with sensitivities: the derivatives of the new state are not known.
-    #[error("an integration with sensitivities cannot be started anew, as a reset by an event does")]
+    #[error("an integration with sensitivities cannot be started anew without those of the new state")]
     Restart,
 
     /// Interpolation before the first step.

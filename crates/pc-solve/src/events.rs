@@ -6,6 +6,7 @@ use std::fmt;
 use pc_expr::{Event, Events, Failure};
 
 type Function<'a> = Box<dyn FnMut(f64, &[f64]) -> Result<f64, Failure> + 'a>;
+type ByParameter<'a> = Box<dyn FnMut(usize, usize, f64, &[f64], &mut [f64]) -> Result<f64, Failure> + 'a>;
 type Reset<'a> = Box<dyn FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a>;
 
 /// Events given by closures.
@@ -36,6 +37,7 @@ pub struct FnEvents<'a> {
     events: Vec<Event>,
     functions: Vec<Function<'a>>,
     resets: Vec<Option<Reset<'a>>>,
+    by_parameter: Option<ByParameter<'a>>,
 }
 
 impl<'a> FnEvents<'a> {
@@ -70,6 +72,17 @@ impl<'a> FnEvents<'a> {
     }
 }
 
+impl<'a> FnEvents<'a> {
+    /// The same events with their derivatives by parameters, for sensitivities: a closure of (event, parameter, t, y) that
+    /// returns ∂g/∂pⱼ and writes ∂R/∂pⱼ to its last argument, as [`Events::by_parameter`] does.
+    pub fn with_parameter_derivatives(
+        self,
+        by_parameter: impl FnMut(usize, usize, f64, &[f64], &mut [f64]) -> Result<f64, Failure> + 'a,
+    ) -> Self {
+        FnEvents { by_parameter: Some(Box::new(by_parameter)), ..self }
+    }
+}
+
 impl fmt::Debug for FnEvents<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FnEvents").field("events", &self.events).finish_non_exhaustive()
@@ -86,6 +99,24 @@ impl Events for FnEvents<'_> {
             *value = function(t, y)?;
         }
         Ok(())
+    }
+
+    fn has_parameter_derivatives(&self) -> bool {
+        self.by_parameter.is_some()
+    }
+
+    fn by_parameter(
+        &mut self,
+        event: usize,
+        parameter: usize,
+        t: f64,
+        y: &[f64],
+        reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        match &mut self.by_parameter {
+            Some(by_parameter) => by_parameter(event, parameter, t, y, reset),
+            None => Ok(0.0),
+        }
     }
 
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
@@ -115,37 +146,53 @@ pub struct Occurrence {
 /// from event to event passes that time.
 ///
 /// So they are if each of their last distances is less than the one before, and going on as a geometric series would bring
-/// them to an end within a small part of the time since the start; or if they lie within 1e-12 of that time. An event
-/// whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and may be
-/// passed without being seen.
+/// them to an end within a small part of the distance from which they have been shrinking; or if rounding hardly tells
+/// their times apart: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going
+/// on. An event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
+/// may be passed without being seen.
+///
+/// A sound motion whose flights shrink so far before they grow again needs a smaller part, down to 0: then only rounding
+/// counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accumulation {
     /// So many occurrences of one event in sequence, at least 4.
     pub occurrences: usize,
-    /// The part of the time since the start.
+    /// The part of the first of the distances that have been shrinking, from 0 to less than 1.
     pub within: f64,
 }
 
 impl Default for Accumulation {
-    /// 6 occurrences and a rest of 1e-6.
+    /// 6 occurrences and a rest of 1e-5.
     fn default() -> Self {
-        Accumulation { occurrences: 6, within: 1e-6 }
+        Accumulation { occurrences: 6, within: 1e-5 }
     }
 }
+
+/// Times that lie within this part of themselves are hardly told apart.
+const UNRESOLVED: f64 = 1e-12;
 
 /// The last times of one event, and how often it has occurred.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct History {
     pub(crate) times: VecDeque<f64>,
     pub(crate) occurrences: u64,
+    /// The distance since which each has been less than the one before.
+    pub(crate) longest: f64,
 }
 
 impl History {
-    /// Notes an occurrence at `t` of an integration from `start`. If the last ones accumulate, the time at which they
+    /// Notes an occurrence at `t`. If the last ones accumulate, the time at which they
     /// do, by the sum of a geometric series [Aitken 1926].
-    pub(crate) fn note(&mut self, t: f64, start: f64, limit: Accumulation) -> Option<f64> {
+    pub(crate) fn note(&mut self, t: f64, limit: Accumulation) -> Option<f64> {
         let kept = limit.occurrences.max(4);
         self.occurrences += 1;
+        let mut latest = self.times.iter().rev();
+        if let Some(last) = latest.next() {
+            let grows = latest.next().is_none_or(|before| (t - last).abs() >= (last - before).abs());
+            if grows {
+                self.longest = (t - last).abs();
+            }
+        }
         self.times.push_back(t);
         if self.times.len() > kept {
             self.times.pop_front();
@@ -153,15 +200,14 @@ impl History {
         if self.times.len() < kept {
             return None;
         }
-        let since = (t - start).abs();
         let times = self.times.iter();
         let distances: Vec<f64> = times.clone().skip(1).zip(times).map(|(b, a)| b - a).collect();
         let (last, before) = (distances[kept - 2], distances[kept - 3]);
         let rest = last * last / (before - last);
         let shrink = distances.windows(2).all(|pair| pair[1].abs() < pair[0].abs());
-        if shrink && rest.abs() <= limit.within * since {
+        if shrink && rest.abs() <= limit.within * self.longest {
             return Some(t + rest);
         }
-        ((t - self.times[0]).abs() <= 1e-12 * since).then_some(t)
+        ((t - self.times[0]).abs() <= UNRESOLVED * t.abs()).then_some(t)
     }
 }

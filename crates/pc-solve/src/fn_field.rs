@@ -1,6 +1,6 @@
 //! Closures as vector fields.
 
-use pc_expr::{Failure, Pattern, VectorField};
+use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
 
 /// A function that writes to its last argument, of (t, y).
 type Write = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
@@ -61,6 +61,7 @@ struct Shape {
     names: Vec<String>,
     pattern: Option<Pattern>,
     parameters: usize,
+    autonomous: bool,
 }
 
 /// The vector field of dimension `dim` whose closure writes f(t, y) to its last argument.
@@ -144,6 +145,11 @@ impl<R, J, S, V, P, C> FnField<R, J, S, V, P, C> {
         K: FnMut(f64, &mut [f64]) -> Result<(), Failure>,
     {
         with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian)
+    }
+
+    /// The same field, which does not depend on t explicitly: an integrator need not look for what t alone may do to it.
+    pub fn autonomous(self) -> Self {
+        FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }
 
     /// The same field with names of its components, for messages; a component without one is called `y[i]`.
@@ -240,6 +246,10 @@ where
             Some(project) => project(t, y),
             None => Ok(()),
         }
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        if self.shape.autonomous { TimeDependence::Absent } else { TimeDependence::Unknown }
     }
 
     fn component_name(&self, i: usize) -> String {

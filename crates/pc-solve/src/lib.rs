@@ -67,7 +67,7 @@ pub use inequality::Inequality;
 pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use options::{Method, NonlinearSolver, Options, Tolerance};
-pub use pc_expr::{Direction, Event, Events, Failure, Pattern, VectorField};
+pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
 pub use sensitivity::{Correction, Sensitivities, SensitivityStatistics};
 pub use sensitivity_trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};
 pub use solve::{

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::error::InputError;
+use crate::events::Accumulation;
 use crate::inequality::Inequality;
 use crate::linear::LinearSolver;
 
@@ -82,6 +83,8 @@ pub struct Options {
     pub(crate) max_step: Option<f64>,
     pub(crate) max_order: Option<u32>,
     pub(crate) stop_time: Option<f64>,
+    pub(crate) samples_per_step: u32,
+    pub(crate) accumulation: Accumulation,
 }
 
 impl Default for Options {
@@ -111,6 +114,8 @@ impl Options {
             max_step: None,
             max_order: None,
             stop_time: None,
+            samples_per_step: 4,
+            accumulation: Accumulation::default(),
         }
     }
 
@@ -173,6 +178,17 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
+    /// In how many equal parts of each internal step events are looked for, at least 1 and 4 unless given; between two
+    /// such places [an even number](crate::Hybrid) of zeros of a function may be missed.
+    pub fn samples_per_step(self, parts: u32) -> Self {
+        Options { samples_per_step: parts, ..self }
+    }
+
+    /// When occurrences of an event are taken to accumulate, which is an error.
+    pub fn accumulation(self, accumulation: Accumulation) -> Self {
+        Options { accumulation, ..self }
+    }
+
     pub(crate) fn validate(&self, dim: usize) -> Result<(), InputError> {
         positive("the relative tolerance", self.relative_tolerance)?;
         match &self.absolute_tolerance {
@@ -210,6 +226,12 @@ impl Options {
             if !(1..=limit).contains(&found) {
                 return Err(InputError::MaxOrder { method: self.method, limit, found });
             }
+        }
+        if self.samples_per_step == 0 {
+            return Err(InputError::SamplesPerStep);
+        }
+        if !(0.0..1.0).contains(&self.accumulation.within) {
+            return Err(InputError::Accumulation { within: self.accumulation.within });
         }
         if let Some(t) = self.stop_time {
             finite("the stop time", t)?;

@@ -3,6 +3,7 @@
 use pc_expr::VectorField;
 
 use crate::error::InputError;
+use crate::linearisation::Linearisation;
 use crate::options::{check_length, finite, positive};
 
 /// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
@@ -41,6 +42,7 @@ pub struct Sensitivities {
     pub(crate) correction: Correction,
     pub(crate) error_control: bool,
     pub(crate) tolerances: Option<(f64, f64)>,
+    scales: Option<Vec<f64>>,
 }
 
 /// One column of S.
@@ -82,6 +84,7 @@ impl Sensitivities {
             correction: Correction::Staggered,
             error_control: true,
             tolerances: None,
+            scales: None,
         }
     }
 
@@ -133,7 +136,17 @@ impl Sensitivities {
         Sensitivities { error_control, ..self }
     }
 
-    /// Relative and absolute tolerance of the columns, positive; those of the state unless given.
+    /// Sizes p̄ of what the columns are derivatives by, positive, one for each: p̄ s has the unit of the state, and the
+    /// absolute tolerance of the column s is that of the state over p̄.
+    ///
+    /// Unless given, p̄ is the [size of a parameter](VectorField::parameter_size), or where that is not known the one by which
+    /// ∂f/∂p at the start is as large as f; that of a component of the start is its own; and all are at least 1.
+    pub fn scales(self, scales: impl Into<Vec<f64>>) -> Self {
+        Sensitivities { scales: Some(scales.into()), ..self }
+    }
+
+    /// Relative and absolute tolerance of the columns, positive; those of the state [scaled](Sensitivities::scales) unless
+    /// given.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         Sensitivities { tolerances: Some((relative, absolute)), ..self }
     }
@@ -151,6 +164,45 @@ impl Sensitivities {
     /// The parameter of each column.
     pub(crate) fn parameters(&self) -> Vec<Option<usize>> {
         self.columns.iter().map(|column| column.parameter).collect()
+    }
+
+    /// p̄ of each column, for a start at y(t) = y.
+    pub(crate) fn sizes(
+        &self,
+        field: &mut impl VectorField,
+        linearisation: &mut Linearisation,
+        t: f64,
+        y: &[f64],
+    ) -> Vec<f64> {
+        if let Some(scales) = &self.scales {
+            return scales.clone();
+        }
+        let is_unknown =
+            |column: &Column| column.parameter.is_some_and(|j| field.parameter_size(j).is_none());
+        let mut rates = vec![f64::NAN; y.len()];
+        // Where there is no derivative the integration will say so.
+        let known = !self.columns.iter().any(is_unknown)
+            || field.rhs(t, y, &mut rates).is_ok() && linearisation.parameter_jacobian(field, t, y).is_ok();
+        let size = |column: &Column| match (column.parameter, &column.start) {
+            (Some(j), _) => match field.parameter_size(j) {
+                Some(size) => size,
+                None if known => {
+                    let by_parameter = linearisation.by_parameter(j).iter();
+                    let ratios = rates.iter().zip(by_parameter).map(|(f, by)| (f / by).abs());
+                    ratios.filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
+                }
+                None => 1.0,
+            },
+            (None, Start::Unit(i)) => y[*i].abs(),
+            (None, _) => 1.0,
+        };
+        // Never so small that the columns would be computed less exactly than the state.
+        self.columns
+            .iter()
+            .map(|column| {
+                Some(size(column)).filter(|size| size.is_finite()).map_or(1.0, |size| size.max(1.0))
+            })
+            .collect()
     }
 
     /// S(t₀), column-major.
@@ -191,6 +243,12 @@ impl Sensitivities {
                         finite(&format!("a sensitivity of {} at the start", field.component_name(i)), value)?;
                     }
                 }
+            }
+        }
+        if let Some(scales) = &self.scales {
+            check_length("the scales of the sensitivities", scales.len(), self.len())?;
+            for &scale in scales {
+                positive("the scale of a sensitivity", scale)?;
             }
         }
         if let Some((relative, absolute)) = self.tolerances {

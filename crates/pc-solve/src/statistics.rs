@@ -40,6 +40,9 @@ pub struct Statistics {
     pub preconditioner_evaluations: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,
+    /// Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
+    /// does not let expect: the beginning of a pulse, a jump.
+    pub limited_steps: u64,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
     /// Order of the next step, 0 before the first.
@@ -73,6 +76,7 @@ impl Statistics {
                 .preconditioner_evaluations
                 .saturating_add(later.preconditioner_evaluations),
             preconditioner_solves: self.preconditioner_solves.saturating_add(later.preconditioner_solves),
+            limited_steps: self.limited_steps.saturating_add(later.limited_steps),
             first_step: if self.steps > 0 { self.first_step } else { later.first_step },
             ..*later
         }
@@ -115,6 +119,7 @@ impl Statistics {
             jacobian_products: of_linear(sys::CVodeGetNumJtimesEvals),
             preconditioner_evaluations: of_linear(sys::CVodeGetNumPrecEvals),
             preconditioner_solves: of_linear(sys::CVodeGetNumPrecSolves),
+            limited_steps: 0,
             last_order: order(sys::CVodeGetLastOrder),
             current_order: order(sys::CVodeGetCurrentOrder),
             first_step: number(sys::CVodeGetActualInitStep),

@@ -24,6 +24,11 @@ impl Variation {
         Variation { linearisation, parameters }
     }
 
+    /// The parameter of each column, none for derivatives by the start.
+    pub(crate) fn parameters(&self) -> &[Option<usize>] {
+        &self.parameters
+    }
+
     /// Writes ṡ of all columns s at (t, y).
     fn rates<'a>(
         &mut self,

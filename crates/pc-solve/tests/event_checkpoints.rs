@@ -233,12 +233,12 @@ fn an_integration_goes_on_from_wherever_it_stands() {
     assert!(due > 0, "the bounce is due where the step before it ends");
 }
 
-/// A function of time with these values from 0, 0.5, 0.54, 0.6 and 0.7 on, and its zeros found from event to event, each time
+/// A function of time with these values from 0, 0.45, 0.54, 0.6 and 0.7 on, and its zeros found from event to event, each time
 /// from a checkpoint; then from one at 0.55.
 fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
     let events = || {
         FnEvents::new().with(Event::new("zero"), move |t, _| {
-            Ok(values[[0.5, 0.54, 0.6, 0.7].iter().filter(|&&from| t >= from).count()])
+            Ok(values[[0.45, 0.54, 0.6, 0.7].iter().filter(|&&from| t >= from).count()])
         })
     };
     // One step to the end.
@@ -268,10 +268,10 @@ fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
 fn functions_near_zero_stay_on_their_sides() {
     let (near, nearer) = (1e-30, 1e-31);
     for values in [[-near, near, -nearer, 1.0, 1.0], [near, -near, nearer, -1.0, -1.0]] {
-        assert_eq!(zeros_of(values), [[0.5], [0.5]]);
+        assert_eq!(zeros_of(values), [[0.45], [0.45]]);
     }
     for values in [[-near, near, near, near, -1.0], [near, -near, -near, -near, 1.0]] {
-        assert_eq!(zeros_of(values), [[0.5, 0.7], [0.5, 0.7]]);
+        assert_eq!(zeros_of(values), [[0.45, 0.7], [0.45, 0.7]]);
     }
 }
 
@@ -316,7 +316,7 @@ fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
         let failure = solve(broken, from, &times, &options, steps, keep).unwrap_err();
         assert_eq!(failure.reached.trajectory.times(), [0.5, 1.0]);
         let (t, failed) = last.unwrap();
-        assert!(failed && t < 2.0_f64.sqrt() && t > 0.3);
+        assert!(failed && t < 2.0_f64.sqrt() && t > 0.05, "{t}");
         assert!(failure.to_string().starts_with("the event floor cannot reset the state at t = 1.41"));
     }
 }
@@ -387,7 +387,7 @@ fn what_is_not_of_this_motion_is_refused() {
         assert_eq!(error, CheckpointError::Version { found });
         assert_eq!(
             error.to_string(),
-            format!("it is a checkpoint of version {version} of the format, not 3")
+            format!("it is a checkpoint of version {version} of the format, not 4")
         );
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use crate::args::{self, Method, ModelArguments, RunArguments, RunForm};
+use crate::args::{self, EventArguments, Method, ModelArguments, RunArguments, RunForm};
 use crate::saving::SavingArguments;
 
 /// Arguments of `pc sweep`.
@@ -57,6 +57,9 @@ pub struct SweepArguments {
     /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = args::positive)]
     pub max_step: Option<f64>,
+    /// Events.
+    #[command(flatten)]
+    pub events: EventArguments,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = args::method)]
     pub method: Option<Method>,
@@ -81,6 +84,7 @@ impl SweepArguments {
             rtol: self.rtol,
             atol: self.atol,
             max_step: self.max_step,
+            events: self.events.clone(),
             method: self.method,
             form: self.form,
             project: self.project.clone(),

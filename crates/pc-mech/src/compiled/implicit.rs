@@ -81,6 +81,11 @@ impl Newton {
         })
     }
 
+    /// The program of M, p and r.
+    pub(crate) fn program(&self) -> &Program {
+        self.equations.program()
+    }
+
     /// Writes w after y in `known`, and leaves M there factorised in `solver`.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, VectorField};
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField};
 
 use crate::compiled::columns::derivative;
 use crate::compiled::fault::check_finite;
@@ -115,6 +115,15 @@ impl InMomenta {
     /// The motion of (x, η), to be changed.
     pub(crate) fn inner_mut(&mut self) -> &mut Motion {
         &mut self.inner
+    }
+
+    /// What contains t, as far as it is a function of t alone: what the motion of (x, η) shows of others is in other variables.
+    pub(crate) fn time_dependence(&self) -> TimeDependence {
+        match self.inner.time_dependence() {
+            TimeDependence::Known(profile) if profile.follows_states() => TimeDependence::Unknown,
+            TimeDependence::Known(profile) => TimeDependence::Known(profile).with_unknown(),
+            other => other,
+        }
     }
 
     /// The places of the Jacobian.

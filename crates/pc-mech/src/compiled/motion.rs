@@ -1,6 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Expr, Failure, Pattern, TimeDependence, VectorField};
 
 use crate::compiled::columns::Layout;
 use crate::compiled::elimination;
@@ -529,6 +529,10 @@ impl VectorField for Motion {
         outcome.map_err(|fault| self.failure(fault, t, y))
     }
 
+    fn parameter_size(&self, j: usize) -> Option<f64> {
+        self.parameters.get(j).map(|value| value.abs())
+    }
+
     fn has_projection(&self) -> bool {
         let inner = self.in_quasi_velocities();
         inner.surface.is_some() || inner.kept.is_some()
@@ -539,6 +543,14 @@ impl VectorField for Motion {
             return motion.project(t, y);
         }
         self.project_in_turn(t, y).map_err(|fault| self.failure(fault, t, y))
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.time_dependence(self.names.len(), &self.parameters),
+            Form::Staged(staged) => staged.time_dependence(&self.parameters),
+            Form::InMomenta(motion) => motion.time_dependence(),
+        }
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

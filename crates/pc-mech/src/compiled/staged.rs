@@ -1,7 +1,7 @@
 //! First-order systems whose M is factorised in numbers: programs before the solution for w, and after it.
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
 use crate::compiled::columns::{Layout, derivative, nonzeros};
 use crate::compiled::fault::{Fault, check_finite};
@@ -82,6 +82,14 @@ impl Staged {
 
     pub(crate) fn cost(&self) -> &Cost {
         &self.cost
+    }
+
+    pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
+        let equations = match &self.unknowns {
+            Unknowns::Linear { equations, .. } => equations.program(),
+            Unknowns::Implicit(newton) => newton.program(),
+        };
+        TimeDependence::of(&[equations, self.rates.program()], self.dim, p)
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program};
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
 use crate::compiled::columns::{Columns, Layout, derivative};
 use crate::compiled::fault::{Fault, blame, check_finite};
@@ -70,6 +70,10 @@ impl Unrolled {
     /// The operations of ẏ; those of the pivots are not counted.
     pub(crate) fn cost(&self, dim: usize) -> Cost {
         self.rates.program().leading(dim).cost()
+    }
+
+    pub(crate) fn time_dependence(&self, dim: usize, p: &[f64]) -> TimeDependence {
+        TimeDependence::of(&[self.rates.program()], dim, p)
     }
 
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {

@@ -1,6 +1,6 @@
 //! The equations of variation (Poincaré; Chetaev's equations of perturbed motion in the first approximation).
 
-use pc_expr::{Failure, VectorField};
+use pc_expr::{Failure, TimeDependence, VectorField};
 
 use crate::error::MechError;
 
@@ -59,6 +59,10 @@ impl<F: VectorField> VectorField for Variation<F> {
 
     fn enter(&mut self, t: f64, end: f64) -> bool {
         self.field.enter(t, end)
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        self.field.time_dependence()
     }
 
     /// The names of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component `x`.

@@ -9,6 +9,9 @@ use crate::error::{ErrorKind, ModelError};
 /// The most rows of a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
 
+/// The most places in one step where events are looked for.
+pub(super) const MOST_SAMPLES_PER_STEP: u32 = 10_000;
+
 /// How the motion is computed; what is left out is left to the program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
@@ -26,6 +29,10 @@ pub struct Simulation {
     pub atol: Option<Located<f64>>,
     /// Largest length of a step, positive.
     pub max_step: Option<Located<f64>>,
+    /// In how many parts of a step events are looked for, at least 1.
+    pub samples_per_step: Option<Located<u32>>,
+    /// To which part of their distance those of an event have shrunk when they accumulate, from 0 to less than 1.
+    pub accumulation: Option<Located<f64>>,
     /// Integration method.
     pub method: Option<Located<Method>>,
     /// Form of the equations.
@@ -46,6 +53,8 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             "max_step" => {
                 result.max_step = Some(positive(&item, "a length greater than 0", "max_step = 0.01")?);
             }
+            "samples_per_step" => result.samples_per_step = Some(samples_per_step(&item)?),
+            "accumulation" => result.accumulation = Some(part(&item)?),
             "method" => {
                 result.method = Some(item.choice(&[
                     ("bdf", Method::Bdf),
@@ -62,7 +71,17 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {
                 return Err(item.unknown(&[
-                    "t_start", "t_end", "samples", "rtol", "atol", "max_step", "method", "form", "project",
+                    "t_start",
+                    "t_end",
+                    "samples",
+                    "rtol",
+                    "atol",
+                    "max_step",
+                    "samples_per_step",
+                    "accumulation",
+                    "method",
+                    "form",
+                    "project",
                 ]));
             }
         }
@@ -80,6 +99,31 @@ fn samples(item: &Item<'_>) -> Result<Located<usize>, ModelError> {
             example: "samples = 101",
         })),
     }
+}
+
+fn samples_per_step(item: &Item<'_>) -> Result<Located<u32>, ModelError> {
+    let value = item.integer()?.value;
+    match u32::try_from(value) {
+        Ok(count) if (1..=MOST_SAMPLES_PER_STEP).contains(&count) => Ok(item.located(count)),
+        _ => Err(item.error(ErrorKind::OutOfRange {
+            expected: "1 to 10000 samples per step",
+            found: value.to_string(),
+            example: "samples_per_step = 16",
+        })),
+    }
+}
+
+/// From 0 to less than 1.
+fn part(item: &Item<'_>) -> Result<Located<f64>, ModelError> {
+    let number = item.number()?;
+    if (0.0..1.0).contains(&number.value) {
+        return Ok(number);
+    }
+    Err(item.error(ErrorKind::OutOfRange {
+        expected: "a part from 0 to less than 1",
+        found: number.value.to_string(),
+        example: "accumulation = 1e-6",
+    }))
 }
 
 fn tolerance(item: &Item<'_>, example: &'static str) -> Result<Located<f64>, ModelError> {

@@ -1,14 +1,15 @@
 //! Checkpoints as bytes.
 //!
 //! ```text
-//! pc checkpoint 3\n
+//! pc checkpoint 4\n
 //! length of the label, label
 //! t, dim, y; number of outputs, times, states
 //! number of occurrences, of each: event, t, y⁻, y⁺
 //! the work
 //! 1 if the motion was started anew after a jump, else 0
-//! 0, or 1 and what is known of events: start; number of events, of each: side, noise, how often, number of the last
-//!     times, these; number of those due, of each: event, noise
+//! number of entries of S, these
+//! 0, or 1 and what is known of events: number of events, of each: side, noise, how often, longest distance, number of
+//!     the last times, these; number of those due, of each: event, noise, side
 //! CRC-32 of all that is before
 //! ```
 //! All numbers are little-endian, integers and floats of 64 bits.
@@ -19,7 +20,7 @@ use crate::statistics::Statistics;
 use crate::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
-const VERSION: u64 = 3;
+const VERSION: u64 = 4;
 
 /// Why bytes are not a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -73,6 +74,7 @@ impl Checkpoint {
             work.jacobian_products,
             work.preconditioner_evaluations,
             work.preconditioner_solves,
+            work.limited_steps,
             u64::from(work.last_order),
             u64::from(work.current_order),
             self.steps_since_output,
@@ -81,6 +83,8 @@ impl Checkpoint {
         }
         put_numbers(&mut bytes, &[work.first_step, work.last_step, work.current_step, work.current_time]);
         put_integer(&mut bytes, u64::from(self.jumped));
+        put_integer(&mut bytes, self.sensitivities.len() as u64);
+        put_numbers(&mut bytes, &self.sensitivities);
         put_integer(&mut bytes, u64::from(self.past.is_some()));
         if let Some(past) = &self.past {
             past.put(&mut bytes);
@@ -119,30 +123,30 @@ impl Checkpoint {
 
 impl Past {
     fn put(&self, bytes: &mut Vec<u8>) {
-        put_numbers(bytes, &[self.start]);
         put_integer(bytes, self.events.len() as u64);
         for EventPast { side, noise, history } in &self.events {
             put_numbers(bytes, &[*side, *noise]);
             put_integer(bytes, history.occurrences);
+            put_numbers(bytes, &[history.longest]);
             put_integer(bytes, history.times.len() as u64);
             history.times.iter().for_each(|&t| put_numbers(bytes, &[t]));
         }
         put_integer(bytes, self.due.len() as u64);
-        for &(event, noise) in &self.due {
+        for &(event, noise, side) in &self.due {
             put_integer(bytes, event as u64);
-            put_numbers(bytes, &[noise]);
+            put_numbers(bytes, &[noise, side]);
         }
     }
 
     fn take(bytes: &mut &[u8]) -> Option<Past> {
-        let start = number(bytes)?;
         let events = list(bytes, |bytes| {
             let (side, noise, occurrences) = (number(bytes)?, number(bytes)?, integer(bytes)?);
-            let history = History { times: list(bytes, number)?.into(), occurrences };
+            let longest = number(bytes)?;
+            let history = History { times: list(bytes, number)?.into(), occurrences, longest };
             Some(EventPast { side, noise, history })
         })?;
-        let due = list(bytes, |bytes| Some((index(bytes)?, number(bytes)?)))?;
-        due.iter().all(|&(event, _)| event < events.len()).then_some(Past { start, events, due })
+        let due = list(bytes, |bytes| Some((index(bytes)?, number(bytes)?, number(bytes)?)))?;
+        due.iter().all(|&(event, ..)| event < events.len()).then_some(Past { events, due })
     }
 }
 
@@ -179,6 +183,7 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         jacobian_products: integer(bytes)?,
         preconditioner_evaluations: integer(bytes)?,
         preconditioner_solves: integer(bytes)?,
+        limited_steps: integer(bytes)?,
         last_order: u32::try_from(integer(bytes)?).ok()?,
         current_order: u32::try_from(integer(bytes)?).ok()?,
         ..Statistics::default()
@@ -192,6 +197,8 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         ..checkpoint.statistics
     };
     checkpoint.jumped = flag(bytes)?;
+    let entries = index(bytes)?;
+    checkpoint.sensitivities = numbers(bytes, entries)?;
     checkpoint.past = if flag(bytes)? { Some(Past::take(bytes)?) } else { None };
     let events = checkpoint.past.as_ref().map_or(0, |past| past.events.len());
     let known = checkpoint.occurrences.iter().all(|occurrence| occurrence.event < events);

@@ -3,6 +3,7 @@
 mod checkpoint;
 mod occur;
 mod run;
+mod saltation;
 mod step;
 
 use std::fmt;
@@ -18,11 +19,23 @@ use crate::statistics::Statistics;
 /// An integration of ẏ = f(t, y) by [`Cvode`] with [`Events`].
 ///
 /// Along each internal step the functions of the events are evaluated at states on the polynomial of the method,
-/// [projected](VectorField::project) where the field does so: at its ends, in its middle, and where these values suggest
-/// that a function passes through zero twice. A passage is located to 1e-15 of the time, and functions that pass
-/// through zero within 1e-14 of each other do so together: their resets are applied one after the other, in the order of
+/// [projected](VectorField::project) where the field does so: at the ends of so many equal parts of the step as
+/// [asked for](crate::Options::samples_per_step), and where three of these values in sequence suggest that a function
+/// passes through zero twice. Between two of these places an even number of passages of a function may be missed; of an odd
+/// number one is found, so that it is always on the side that it is taken to be on. After a passage the rest of the step is
+/// looked at in as many parts again.
+///
+/// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass through zero within 16
+/// times that of each other do so together: their resets are applied one after the other, in the order of
 /// the events, each to the state that the one before has left. After a reset the integration
 /// [restarts](Cvode::restart) with the same options.
+///
+/// A function that comes to zero, or beyond it, and is back on its side that much later touches zero: nothing occurs. One
+/// that comes to zero and stays there passes when it comes, and not when it leaves. What counts is the function as it is
+/// computed, with its rounding.
+///
+/// After a reset the events that caused it have to leave zero before they can occur again: a function that the reset has
+/// left so near to zero that the tolerances do not tell it from zero goes on to the side that it moves to.
 ///
 /// CVODES has a search for roots of its own. It is not used because it knows neither projected states nor what a reset
 /// does to the functions, reports one of two roots in a step at most, and may report a root again after a restart.
@@ -33,9 +46,7 @@ pub struct Hybrid<F, E> {
     /// Stands at the end of its last step; its `time` is that of this integration.
     engine: Cvode<F>,
     events: E,
-    accumulation: Accumulation,
     histories: Vec<History>,
-    start: f64,
     /// 1 or −1 since the first step.
     direction: Option<f64>,
     /// Up to where it is known what occurs, the functions there, and y.
@@ -47,6 +58,8 @@ pub struct Hybrid<F, E> {
     /// The events that occur at the front and have yet to be dealt with.
     due: Vec<usize>,
     noise: Vec<f64>,
+    /// The side of zero that each of those due goes on to.
+    beyond: Vec<f64>,
     /// y(`time`), unless `time` is the front.
     output: Vec<f64>,
 }
@@ -65,25 +78,31 @@ impl<F: VectorField, E: Events> fmt::Debug for Hybrid<F, E> {
 impl<F: VectorField> Cvode<F> {
     /// This integration, with events from where it stands.
     ///
+    /// Its [sensitivities](Cvode::with_sensitivities), if there are any, are those of the motion with its events: they jump
+    /// where a reset does. For that resets are also applied to states near by, and events that reset have to tell their
+    /// [derivatives](Events::by_parameter) by the parameters that are asked for.
+    ///
     /// # Errors
-    /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there.
+    /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there;
+    /// [`InputError::EventParameters`].
     pub fn with_events<E: Events>(self, events: E) -> Result<Hybrid<F, E>, SolveError> {
-        if self.sensitivity.is_some() && events.events().iter().any(Event::resets) {
-            return Err(InputError::Restart.into());
+        let resets = events.events().iter().any(Event::resets);
+        let by_parameters = self.sensitivity_parameters().iter().any(Option::is_some);
+        if resets && by_parameters && !events.has_parameter_derivatives() {
+            return Err(InputError::EventParameters.into());
         }
         let (t, state) = (self.time, self.state().to_vec());
         let n = events.events().len();
         let sides = Sides::new(directions(&events));
         let mut engine = self;
         if t != engine.step_time {
-            engine.restart(t, &state)?;
+            let matrix = engine.sensitivities()?.to_vec();
+            engine.restart_with_sensitivities(t, &state, &matrix)?;
         }
         let mut hybrid = Hybrid {
             engine,
             events,
-            accumulation: Accumulation::default(),
             histories: vec![History::default(); n],
-            start: t,
             direction: None,
             front: Sample { t, values: Vec::new() },
             output: state.clone(),
@@ -92,6 +111,7 @@ impl<F: VectorField> Cvode<F> {
             sides,
             due: Vec::new(),
             noise: Vec::new(),
+            beyond: Vec::new(),
         };
         hybrid.front.values = hybrid.evaluate(t, &state)?;
         hybrid.sides.pass(&hybrid.front.values);
@@ -104,9 +124,12 @@ fn directions(events: &impl Events) -> Vec<Direction> {
 }
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
-    /// When occurrences of an event accumulate, which is an error.
+    /// When occurrences of an event accumulate, which is an error; as the [options](crate::Options::accumulation) say unless
+    /// given.
     pub fn accumulation(self, accumulation: Accumulation) -> Self {
-        Hybrid { accumulation, ..self }
+        let mut hybrid = self;
+        hybrid.engine.accumulation = accumulation;
+        hybrid
     }
 
     /// Where the integration stands: the time last advanced to, or that of the event that stopped it.
@@ -117,6 +140,14 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// y at [`time`](Hybrid::time).
     pub fn state(&self) -> &[f64] {
         if self.engine.time == self.front.t { &self.front_state } else { &self.output }
+    }
+
+    /// S at [`time`](Hybrid::time), as [`Cvode::sensitivities`] gives it: S⁺ at an event.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sensitivities(&mut self) -> Result<&[f64], SolveError> {
+        self.engine.sensitivities()
     }
 
     /// The vector field.
@@ -152,6 +183,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         }
         let to = self.engine.step_time;
         let (engine, events) = (&mut self.engine, &mut self.events);
+        let pieces = engine.samples_per_step;
         let mut blamed = 0;
         let mut values = |t: f64| {
             let state = if t == to {
@@ -163,7 +195,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             values_at(events, t, state, &mut blamed).map_err(|failure| Fault::Event(t, failure))
         };
         let mut sides = self.sides.clone();
-        let passage = match sides.first(self.front.clone(), to, &mut values) {
+        let passage = match sides.first(self.front.clone(), to, pieces, &mut values) {
             Ok(passage) => passage,
             Err(Fault::Solver(error)) => return Err(self.stay(error)),
             Err(Fault::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
@@ -171,9 +203,9 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         if self.engine.time == self.front.t {
             self.output.copy_from_slice(&self.front_state);
         }
-        let (front, noise, due) = match passage {
-            Passage::Clear(end) => (end, Vec::new(), Vec::new()),
-            Passage::Crossing(crossing) => (crossing.at, crossing.noise, crossing.events),
+        let (front, noise, due, beyond) = match passage {
+            Passage::Clear(end) => (end, Vec::new(), Vec::new(), Vec::new()),
+            Passage::Crossing(crossing) => (crossing.at, crossing.noise, crossing.events, crossing.beyond),
         };
         let state = if front.t == to {
             self.engine.step_state.as_slice()
@@ -185,7 +217,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         };
         self.front_state.copy_from_slice(state);
         self.sides_before = std::mem::replace(&mut self.sides, sides);
-        (self.front, self.noise, self.due) = (front, noise, due);
+        (self.front, self.noise, self.due, self.beyond) = (front, noise, due, beyond);
         Ok(())
     }
 
@@ -197,7 +229,8 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             return Ok(false);
         }
         let time = self.engine.time;
-        self.engine.restart(target, &self.front_state)?;
+        let matrix = self.engine.sensitivities_to_keep();
+        self.engine.restart_with_sensitivities(target, &self.front_state, &matrix)?;
         self.engine.direction = self.direction;
         self.engine.time = if time == self.front.t { target } else { time };
         self.front.t = target;

@@ -15,17 +15,23 @@ impl<F: VectorField> Cvode<F> {
     /// next step may go either way.
     ///
     /// # Errors
-    /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities; [`SolveError::Setup`] if CVODES refuses. The
-    /// integration is then where it was.
+    /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities, which
+    /// [have to be given too](Cvode::restart_with_sensitivities); [`SolveError::Setup`] if CVODES refuses. The integration is
+    /// then where it was.
     pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
+        if self.sensitivity.is_some() {
+            return Err(InputError::Restart.into());
+        }
+        self.restart_alone(t, y)
+    }
+
+    /// The same, of the state without its sensitivities.
+    pub(super) fn restart_alone(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         finite("the start time", t)?;
         check_length("the start", y.len(), self.field().dim())?;
         if let Some(i) = y.iter().position(|value| !value.is_finite()) {
             let what = format!("{} at the start", self.field().component_name(i));
             return Err(InputError::NotFinite { what, value: y[i] }.into());
-        }
-        if self.sensitivity.is_some() {
-            return Err(InputError::Restart.into());
         }
         inequality::check(self.field(), y, &self.inequalities)?;
         let before = self.statistics();
@@ -34,6 +40,7 @@ impl<F: VectorField> Cvode<F> {
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), t, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
         self.callbacks.restart(t, y);
+        self.foresight.restart();
         self.step_state.as_mut_slice().copy_from_slice(y);
         self.time = t;
         self.step_time = t;

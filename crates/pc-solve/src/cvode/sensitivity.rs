@@ -10,7 +10,7 @@ use super::{Cvode, Ending};
 use crate::error::{Reason, SolveError};
 use crate::handles::{NonlinearIteration, Vector};
 use crate::linearisation::Linearisation;
-use crate::options::{NonlinearSolver, Options};
+use crate::options::{NonlinearSolver, Options, check_length, finite};
 use crate::sensitivity::{Correction, Sensitivities, SensitivityStatistics};
 use crate::variation::{self, Variation};
 
@@ -23,6 +23,8 @@ pub(super) struct Forward {
     /// S(`time`) when asked for, S(t0) before; column-major.
     matrix: Vec<f64>,
     correction: Correction,
+    /// The work before the last restart.
+    earlier: SensitivityStatistics,
 }
 
 impl Forward {
@@ -45,24 +47,38 @@ impl<F: VectorField> Cvode<F> {
         sensitivities: &Sensitivities,
     ) -> Result<Self, SolveError> {
         sensitivities.validate(&field)?;
-        let linearisation = Linearisation::new(&field, options);
-        let mut cvode = Cvode::new(field, t0, y0, options)?;
+        let start = sensitivities.start(field.dim());
+        Cvode::new(field, t0, y0, options)?.and_sensitivities(sensitivities, options, start)
+    }
+
+    /// This integration, which has not begun, with columns that are `start` now.
+    pub(super) fn and_sensitivities(
+        mut self,
+        sensitivities: &Sensitivities,
+        options: &Options,
+        start: Vec<f64>,
+    ) -> Result<Self, SolveError> {
+        sensitivities.validate(self.field())?;
         if sensitivities.is_empty() {
-            return Ok(cvode);
+            return Ok(self);
         }
-        cvode.callbacks.set_variation(Variation::new(linearisation, sensitivities.parameters()));
-        cvode.begin_sensitivities(sensitivities, options.nonlinear_solver)?;
-        Ok(cvode)
+        let mut linearisation = Linearisation::new(self.field(), options);
+        let (t, y) = (self.time, self.state().to_vec());
+        let scales = sensitivities.sizes(self.callbacks.field_mut(), &mut linearisation, t, &y);
+        self.callbacks.set_variation(Variation::new(linearisation, sensitivities.parameters()));
+        self.begin_sensitivities(sensitivities, options.nonlinear_solver, start, scales)?;
+        Ok(self)
     }
 
     fn begin_sensitivities(
         &mut self,
         sensitivities: &Sensitivities,
         solver: NonlinearSolver,
+        matrix: Vec<f64>,
+        mut scales: Vec<f64>,
     ) -> Result<(), SolveError> {
         let Cvode { memory, context, step_state, .. } = self;
         let count = sensitivities.len() as c_int;
-        let matrix = sensitivities.start(step_state.as_slice().len());
         let columns = matrix
             .chunks_exact(step_state.as_slice().len())
             .map(|column| Vector::new(context, column))
@@ -81,6 +97,7 @@ impl<F: VectorField> Cvode<F> {
             columns,
             matrix,
             correction: sensitivities.correction,
+            earlier: SensitivityStatistics::default(),
         };
         let (mut raw, iteration) = (forward.raw(), forward._nonlinear_iteration.raw());
         self.sensitivity = Some(forward);
@@ -91,6 +108,12 @@ impl<F: VectorField> Cvode<F> {
         let code =
             unsafe { sys::CVodeSensInit(mem, count, method, Some(variation::rates::<F>), raw.as_mut_ptr()) };
         context.check("CVodeSensInit", code)?;
+        // SAFETY: sensitivities are initialised; CVODES copies one size for each column, and needs no parameters, since their
+        // equations are ours.
+        let code = unsafe {
+            sys::CVodeSetSensParams(mem, std::ptr::null_mut(), scales.as_mut_ptr(), std::ptr::null_mut())
+        };
+        context.check("CVodeSetSensParams", code)?;
         match sensitivities.tolerances {
             Some((relative, absolute)) => {
                 let mut absolute = vec![absolute; sensitivities.len()];
@@ -122,26 +145,81 @@ impl<F: VectorField> Cvode<F> {
     /// # Errors
     /// [`SolveError::Integration`] if a derivative has grown beyond the largest number.
     pub fn sensitivities(&mut self) -> Result<&[f64], SolveError> {
-        if self.direction.is_some()
-            && let Some(forward) = &self.sensitivity
+        if let Some(matrix) = self.sensitivities_at(self.time)?
+            && let Some(forward) = &mut self.sensitivity
         {
-            let mut raw = forward.raw();
-            // SAFETY: a step has been taken with sensitivities; there are as many vectors as columns.
-            let code = unsafe { sys::CVodeGetSensDky(self.memory.raw(), self.time, 0, raw.as_mut_ptr()) };
-            if code != sys::CV_SUCCESS {
-                let reason = Reason::Cvode { code: code.into(), message: self.context.take_messages() };
-                return Err(self.error(reason, None));
-            }
-        }
-        let Some(forward) = &mut self.sensitivity else { return Ok(&[]) };
-        if self.direction.is_some() {
-            let dim = self.step_state.as_slice().len();
-            for (values, column) in forward.matrix.chunks_exact_mut(dim).zip(&forward.columns) {
-                values.copy_from_slice(column.as_slice());
-            }
+            forward.matrix = matrix;
         }
         self.finite_sensitivities()?;
         Ok(self.sensitivity.as_ref().map_or(&[], |forward| &forward.matrix))
+    }
+
+    /// S at `t` in the last internal step; none where there is nothing but a start.
+    pub(super) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
+        let Some(forward) = self.sensitivity.as_ref().filter(|_| self.direction.is_some() && !self.restarted)
+        else {
+            return Ok(None);
+        };
+        let mut raw = forward.raw();
+        // SAFETY: a step has been taken with sensitivities; there are as many vectors as columns, which nobody looks at.
+        let code = unsafe { sys::CVodeGetSensDky(self.memory.raw(), t, 0, raw.as_mut_ptr()) };
+        if code != sys::CV_SUCCESS {
+            let message = format!("the sensitivities at t = {t} cannot be interpolated");
+            return Err(self.error(Reason::Cvode { code: code.into(), message }, None));
+        }
+        Ok(Some(forward.columns.iter().flat_map(Vector::as_slice).copied().collect()))
+    }
+
+    /// The parameter of each column.
+    pub(super) fn sensitivity_parameters(&self) -> &[Option<usize>] {
+        self.callbacks.variation().parameters()
+    }
+
+    /// S where the integration stands, for a checkpoint; empty without sensitivities.
+    pub(super) fn sensitivities_to_keep(&self) -> Vec<f64> {
+        match self.sensitivities_at(self.time) {
+            Ok(Some(matrix)) => matrix,
+            // What cannot be had is not finite, and refused by whoever goes on from it.
+            Err(_) => self.sensitivity.as_ref().map_or(Vec::new(), |s| vec![f64::NAN; s.matrix.len()]),
+            Ok(None) => self.sensitivity.as_ref().map_or(Vec::new(), |s| s.matrix.clone()),
+        }
+    }
+
+    /// Starts anew at y(t) = y as [`restart`](Cvode::restart) does, with these columns of S.
+    ///
+    /// Behind a jump that depends on the state, S jumps too.
+    ///
+    /// # Errors
+    /// As for [`restart`](Cvode::restart); [`SolveError::Input`] unless `matrix` is finite and as long as
+    /// [`sensitivities`](Cvode::sensitivities).
+    pub fn restart_with_sensitivities(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        matrix: &[f64],
+    ) -> Result<(), SolveError> {
+        let expected = self.sensitivity.as_ref().map_or(0, |forward| forward.matrix.len());
+        check_length("the sensitivities", matrix.len(), expected)?;
+        for &value in matrix {
+            finite("a sensitivity", value)?;
+        }
+        let work = self.sensitivity_statistics();
+        self.restart_alone(t, y)?;
+        let Some(forward) = &mut self.sensitivity else { return Ok(()) };
+        forward.earlier = work;
+        forward.matrix.copy_from_slice(matrix);
+        let dim = self.step_state.as_slice().len();
+        for (column, values) in forward.columns.iter_mut().zip(matrix.chunks_exact(dim)) {
+            column.as_mut_slice().copy_from_slice(values);
+        }
+        let method = match forward.correction {
+            Correction::Staggered => sys::CV_STAGGERED,
+            Correction::Simultaneous => sys::CV_SIMULTANEOUS,
+        };
+        let mut raw = forward.raw();
+        // SAFETY: sensitivities are initialised, by the same method; CVODES copies the vectors.
+        let code = unsafe { sys::CVodeSensReInit(self.memory.raw(), method, raw.as_mut_ptr()) };
+        self.context.check("CVodeSensReInit", code)
     }
 
     fn finite_sensitivities(&self) -> Result<(), SolveError> {
@@ -190,11 +268,12 @@ impl<F: VectorField> Cvode<F> {
         };
         // Those of a simultaneous correction are counted with the state's.
         let alone = |get| if forward.correction == Correction::Staggered { counter(get) } else { 0 };
+        let earlier = forward.earlier;
         SensitivityStatistics {
-            evaluations: counter(sys::CVodeGetSensNumRhsEvals),
-            error_test_failures: counter(sys::CVodeGetSensNumErrTestFails),
-            nonlinear_iterations: alone(sys::CVodeGetSensNumNonlinSolvIters),
-            nonlinear_failures: alone(sys::CVodeGetSensNumNonlinSolvConvFails),
+            evaluations: earlier.evaluations + counter(sys::CVodeGetSensNumRhsEvals),
+            error_test_failures: earlier.error_test_failures + counter(sys::CVodeGetSensNumErrTestFails),
+            nonlinear_iterations: earlier.nonlinear_iterations + alone(sys::CVodeGetSensNumNonlinSolvIters),
+            nonlinear_failures: earlier.nonlinear_failures + alone(sys::CVodeGetSensNumNonlinSolvConvFails),
         }
     }
 }

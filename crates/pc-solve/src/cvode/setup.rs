@@ -6,6 +6,7 @@ use pc_expr::VectorField;
 use sundials_sys as sys;
 
 use super::Cvode;
+use super::foresight::Foresight;
 use crate::callback::{self, UserData};
 use crate::context::Context;
 use crate::error::{InputError, SolveError};
@@ -26,6 +27,7 @@ impl<F: VectorField> Cvode<F> {
         options.validate(y0.len())?;
         inequality::check(&field, y0, &options.inequalities)?;
         let linear_solver = linear::choose(&field, options)?;
+        let foresight = Foresight::new(&field, t0, options);
 
         // Dropped in reverse order if one of them fails.
         let mut context = Context::new()?;
@@ -85,6 +87,9 @@ impl<F: VectorField> Cvode<F> {
             earlier: Statistics::default(),
             restarted: false,
             jumped: false,
+            foresight,
+            samples_per_step: options.samples_per_step,
+            accumulation: options.accumulation,
         };
         cvode.set_stop_time(options.stop_time)?;
         Ok(cvode)

@@ -1,5 +1,6 @@
 //! A hanging chain: point masses on stiff damped springs, in a plane.
 
+use pc_expr::TimeDependence;
 use pc_solve::{Failure, Pattern, VectorField};
 
 /// Mass i has place and velocity y[4 i..4 i + 4] = (x, z, ẋ, ż). Spring i, of unit length, is between mass i − 1 and
@@ -93,6 +94,10 @@ impl Chain {
 impl VectorField for Chain {
     fn dim(&self) -> usize {
         4 * self.links
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        TimeDependence::Absent
     }
 
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {

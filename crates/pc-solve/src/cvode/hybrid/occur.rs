@@ -9,6 +9,9 @@ use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::Occurrence;
 use crate::inequality;
 
+/// A function is near zero after a reset within so many times what the tolerances of the state make of zero.
+const TOLERANCES: f64 = 10.0;
+
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does:
     /// by the first terminal event, else where `occurred` stops it.
@@ -20,23 +23,33 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         self.engine.time = t;
         let mut state = self.front_state.clone();
         let mut occurrences = Vec::with_capacity(self.due.len());
+        let mut matrix = self.sensitivities_before(t)?;
         for event in self.due.clone() {
             let state_before = state.clone();
             if self.events.events()[event].resets() {
-                self.reset(event, t, &mut state)?;
+                let mut after = state.clone();
+                self.reset(event, t, &mut after)?;
+                if !matrix.is_empty() {
+                    matrix = self.jump_of_sensitivities(event, t, &state, &after, &matrix)?;
+                    // Resets of states near by may have changed what the field keeps.
+                    after.copy_from_slice(&state);
+                    self.reset(event, t, &mut after)?;
+                }
+                state = after;
             }
             let state_after = state.clone();
             occurrences.push(Occurrence { event, time: t, state_before, state_after });
         }
         if occurrences.iter().any(|occurrence| self.events.events()[occurrence.event].resets()) {
             let values = self.evaluate(t, &state)?;
-            self.engine.restart(t, &state)?;
+            self.engine.restart_with_sensitivities(t, &state, &matrix)?;
             self.engine.direction = self.direction;
-            self.sides.jump(&values, std::mem::take(&mut self.noise));
+            let noise = self.noise_after_reset(t, &state, &values);
+            self.sides.jump(&values, noise);
             self.front.values = values;
             self.front_state = state;
         } else {
-            self.sides.cross(&self.due, &self.front.values, &self.noise);
+            self.sides.cross(&self.due, &self.front.values, &self.noise, &self.beyond);
         }
         self.due.clear();
 
@@ -52,7 +65,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         let ending = terminal.or(stopped);
         for occurrence in &occurrences {
             let event = occurrence.event;
-            let accumulates = self.histories[event].note(t, self.start, self.accumulation);
+            let accumulates = self.histories[event].note(t, self.engine.accumulation);
             if let (Some(t), None) = (accumulates, ending) {
                 let occurrences = self.histories[event].occurrences;
                 let reason = Reason::Accumulation { event: self.name(event), occurrences, t };
@@ -62,8 +75,49 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok(ending)
     }
 
+    /// S⁻ at the front, if a reset is to change it: no more than one, since it is not defined where several occur together.
+    fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        let resets = self.due.iter().filter(|&&event| self.events.events()[event].resets()).count();
+        if resets == 0 || self.engine.sensitivity.is_none() {
+            return Ok(Vec::new());
+        }
+        if resets > 1 {
+            let events = self.due.iter().map(|&event| self.name(event)).collect();
+            return Err(self.failed(Reason::Together { events, t }, None));
+        }
+        Ok(self.engine.sensitivities()?.to_vec())
+    }
+
+    /// What each function has to exceed after a reset to be told from zero. For those that caused it that is what the
+    /// tolerances of the state make of zero, Σᵢ |g(y + δᵢ) − g(y)| with δᵢ = rtol |yᵢ| + atolᵢ, if they are that near.
+    fn noise_after_reset(&mut self, t: f64, state: &[f64], values: &[f64]) -> Vec<f64> {
+        let mut noise = std::mem::take(&mut self.noise);
+        if self.due.iter().all(|&event| values[event].abs() <= noise[event]) {
+            return noise;
+        }
+        let mut moved = state.to_vec();
+        let mut perturbation = vec![0.0; values.len()];
+        let mut at = vec![0.0; values.len()];
+        for i in 0..state.len() {
+            moved[i] = state[i] + self.engine.foresight.tolerance(i, state[i]);
+            // Where a function has no value nothing is known.
+            if self.events.evaluate(t, &moved, &mut at).is_ok() {
+                let changes = perturbation.iter_mut().zip(at.iter().zip(values));
+                changes.for_each(|(sum, (at, value))| *sum += (at - value).abs());
+            }
+            moved[i] = state[i];
+        }
+        for &event in &self.due {
+            let value = values[event].abs();
+            if value > noise[event] && value <= TOLERANCES * perturbation[event] {
+                noise[event] = 2.0 * value;
+            }
+        }
+        noise
+    }
+
     /// y⁺ of one event, in the place of y⁻.
-    fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
+    pub(super) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         let mut result = self.events.reset(event, t, state);
         if let (Ok(()), Some(i)) = (&result, state.iter().position(|value| !value.is_finite())) {
             let component = self.field().component_name(i);

@@ -73,6 +73,34 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok(Ending::Completed)
     }
 
+    /// As [`run`](Hybrid::run), and gives each (t, y, S) to `output`, y⁺ and S⁺ at the time of an event.
+    ///
+    /// # Errors
+    /// As for [`run`](Hybrid::run) and [`sensitivities`](Hybrid::sensitivities).
+    pub fn run_with_sensitivities(
+        &mut self,
+        times: &[f64],
+        mut output: impl FnMut(f64, &[f64], &[f64]) -> ControlFlow<()>,
+        mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        let end = self.engine.check_times(times)?;
+        for &t in times {
+            let ending = self.advance(t, end, &mut occurred, &mut |_, _| ControlFlow::Continue(()))?;
+            if let Some(Ending::Stopped) = ending {
+                return Ok(Ending::Stopped);
+            }
+            let matrix = self.engine.sensitivities()?.to_vec();
+            let flow = output(self.time(), self.state(), &matrix);
+            if let Some(ending) = ending {
+                return Ok(ending);
+            }
+            if flow.is_break() {
+                return Ok(Ending::Stopped);
+            }
+        }
+        Ok(Ending::Completed)
+    }
+
     /// Integrates to `end`, gives the motion as [`Segment`]s, one for each internal step or part of it between events,
     /// and tells what occurs to `occurred`, after the segment that ends there.
     ///

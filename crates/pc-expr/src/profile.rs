@@ -1,0 +1,232 @@
+//! How a vector field depends on time explicitly.
+//!
+//! An integrator evaluates f at the ends of its steps. What f does between them because t itself stands in it (a pulse, a
+//! switch) leaves no trace there, and a body at rest is carried over it in one step. But a program of f tells where that
+//! may be: over any interval of time its parts are enclosed, with their first two derivatives, by interval arithmetic
+//! [Moore 1966]. Where the enclosures say that a part rises, or falls, and bends one way, nothing is hidden; else the
+//! interval is halved. So no pulse is missed for being short.
+
+mod interval;
+mod jet;
+mod part;
+mod scan;
+
+use self::part::{Analysis, Line, Part};
+use self::scan::{Feature, Kind, Scan};
+use crate::program::Program;
+
+/// How f(t, y) depends on t explicitly.
+#[derive(Clone, Debug, Default)]
+pub enum TimeDependence {
+    /// Not at all.
+    Absent,
+    /// As a profile shows.
+    Known(Box<TimeProfile>),
+    /// Only evaluations can tell.
+    #[default]
+    Unknown,
+}
+
+/// More instructions than these between t, the state and a steep function of both are not looked at on each step.
+const LONGEST: usize = 256;
+
+impl TimeDependence {
+    /// That of rates computed by these programs, whose states begin with `dim` components of y, for values of the parameters.
+    pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> TimeDependence {
+        let mut profile = TimeProfile { parts: Vec::new(), mixed: Vec::new(), sampled: false };
+        let mut explicit = false;
+        for program in programs {
+            let Analysis { explicit: here, forcing, mixed } = Analysis::of(program, parameters);
+            explicit |= here;
+            if !forcing.is_empty() {
+                profile.parts.push(Watched { part: forcing, scan: None });
+            }
+            if mixed.is_empty() {
+                continue;
+            }
+            if program.state_len() == dim && mixed.len() <= LONGEST {
+                profile.mixed.push(mixed);
+            } else {
+                profile.sampled = true;
+            }
+        }
+        if explicit { TimeDependence::Known(Box::new(profile)) } else { TimeDependence::Absent }
+    }
+
+    /// That of rates to which something unknown adds.
+    #[must_use]
+    pub fn with_unknown(self) -> TimeDependence {
+        match self {
+            TimeDependence::Known(mut profile) => {
+                profile.sampled = true;
+                TimeDependence::Known(profile)
+            }
+            TimeDependence::Absent | TimeDependence::Unknown => TimeDependence::Unknown,
+        }
+    }
+}
+
+/// Where the parts of f that contain t turn, bend, jump or have corners.
+///
+/// Functions of t alone are followed wherever the motion goes. Of steep functions of t and the state, such as a pulse that
+/// travels, it is seen what they do along the direction of the motion.
+/// ```
+/// use pc_expr::{Graph, Inputs, Program, TimeDependence};
+///
+/// // ẏ = exp(−((t − 5)/0.01)²) − y
+/// let graph = Graph::new();
+/// let [t, y] = graph.symbols(["t", "y"]);
+/// let rate = (-((t - 5.0) / 0.01).square()).exp() - y;
+/// let inputs = Inputs { time: Some(t), state: vec![y], parameters: vec![] };
+/// let program = Program::new(&graph, &inputs, &[rate])?;
+/// let TimeDependence::Known(mut profile) = TimeDependence::of(&[&program], 1, &[]) else { panic!() };
+/// let times = profile.surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false);
+/// assert!(times.few.iter().any(|t| (t - 5.0).abs() < 0.005), "{times:?}");
+/// assert!(profile.surprises((0.0, 4.0), (&[0.0], &[0.0]), 10.0, false).few.is_empty());
+/// # Ok::<(), pc_expr::ExprError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct TimeProfile {
+    parts: Vec<Watched>,
+    mixed: Vec<Part>,
+    /// Whether there are functions of t and the state that are not followed.
+    sampled: bool,
+}
+
+/// Times at which something may be that nobody would see at both ends of an interval, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surprises {
+    /// Those of functions that have no more than 32 of them there.
+    pub few: Vec<f64>,
+    /// Those of functions that have more, such as fast oscillations.
+    pub many: Vec<f64>,
+    /// Up to where they are known, if not to the end of the interval.
+    pub until: Option<f64>,
+}
+
+impl Surprises {
+    /// Takes note that of the interval not all is known.
+    fn limit(&mut self, known: f64, (t, to): (f64, f64)) {
+        if known != to && self.until.is_none_or(|until| (known - t).abs() < (until - t).abs()) {
+            self.until = Some(known);
+        }
+    }
+}
+
+/// So many are few.
+const FEW: usize = 32;
+
+/// Functions of t alone, and how far they are known.
+#[derive(Clone, Debug)]
+struct Watched {
+    part: Part,
+    scan: Option<Scan>,
+}
+
+impl TimeProfile {
+    /// Whether only evaluations can tell what some steep functions of t and the state do.
+    pub fn is_partial(&self) -> bool {
+        self.sampled
+    }
+
+    /// Whether it is asked along the motion: there are steep functions of t and the state.
+    pub fn follows_states(&self) -> bool {
+        !self.mixed.is_empty()
+    }
+
+    /// The times between `t` and `to`, in order, at which something may be that nobody would see at both ends of that
+    /// interval: jumps and corners, and the turns and bends of what may rise and fall between.
+    ///
+    /// `at` is (y, ẏ) at t. Where there are thousands, they are known up to one of them; but with `enough`, what is beyond is
+    /// looked at coarsely. Later calls go on from `to` or before, up to `end` and beyond.
+    pub fn surprises(
+        &mut self,
+        (t, to): (f64, f64),
+        at: (&[f64], &[f64]),
+        end: f64,
+        enough: bool,
+    ) -> Surprises {
+        let direction = if to < t { -1.0 } else { 1.0 };
+        let mut times = Surprises::default();
+        for Watched { part, scan } in &mut self.parts {
+            let scan = match scan {
+                Some(scan) if scan.covers(t, to) => scan,
+                _ => {
+                    // Where no end is in sight, a window that is not outrun at once.
+                    let far = if (end - to) * direction >= 0.0 { end } else { t + 16.0 * (to - t) };
+                    scan.insert(Scan::new(part, t, far, Line::default()))
+                }
+            };
+            let (known, features) = scan.between(part, (t, to), Line::default(), enough);
+            choose(features.iter(), (t, known), part, &mut times);
+            times.limit(known, (t, to));
+        }
+        let line = Line { t, state: at.0, rates: at.1 };
+        for part in &mut self.mixed {
+            let mut scan = Scan::new(part, t, to, line);
+            let (known, features) = scan.between(part, (t, to), line, enough);
+            choose(features.iter(), (t, known), part, &mut times);
+            times.limit(known, (t, to));
+        }
+        for times in [&mut times.few, &mut times.many] {
+            times.sort_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
+            times.dedup();
+        }
+        times
+    }
+}
+
+/// The features between `t` and `to` of each function that has a sharp one, rises or falls steeply, or turns and does not
+/// bend one way all along.
+fn choose<'a>(
+    features: impl Iterator<Item = &'a Feature> + Clone,
+    (t, to): (f64, f64),
+    part: &Part,
+    times: &mut Surprises,
+) {
+    let direction = if to < t { -1.0 } else { 1.0 };
+    let inside = features.filter(|feature| (feature.t - to) * direction < 0.0);
+    let mut seen = vec![Seen::default(); part.watched.len()];
+    for feature in inside.clone() {
+        seen[feature.function].note(feature.kind, (to - t).abs());
+    }
+    for feature in inside.filter(|feature| feature.kind != Kind::Unsure) {
+        let seen = seen[feature.function];
+        if seen.hides() {
+            let times = if seen.places <= FEW { &mut times.few } else { &mut times.many };
+            times.push(feature.t);
+        }
+    }
+}
+
+/// How often a function does what.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    places: usize,
+    sharp: usize,
+    turns: usize,
+    bends: usize,
+    unsure: usize,
+}
+
+impl Seen {
+    fn note(&mut self, kind: Kind, length: f64) {
+        self.places += usize::from(kind != Kind::Unsure);
+        match kind {
+            Kind::Sharp => self.sharp += 1,
+            Kind::Turn => self.turns += 1,
+            // What rises so steeply may come to an end with another function that does.
+            Kind::Bend(time) if time < length => self.sharp += 1,
+            Kind::Bend(_) => self.bends += 1,
+            Kind::Unsure => self.unsure += 1,
+        }
+    }
+
+    /// Whether its values at both ends, and the way it comes to one and leaves the other, need not tell what is between.
+    fn hides(self) -> bool {
+        self.sharp > 0 || self.turns > 1 || self.bends > 1 || self.turns == 1 && self.bends + self.unsure > 0
+    }
+}
+
+#[cfg(test)]
+mod tests;

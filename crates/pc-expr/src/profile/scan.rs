@@ -1,0 +1,224 @@
+//! Where functions of time turn, bend, jump and have corners, one after the other.
+
+use std::collections::VecDeque;
+
+use super::interval::Interval;
+use super::jet::Jet;
+use super::part::{Line, Part};
+
+/// Pieces of a window over which the range of a function is first looked at.
+const PIECES: u32 = 32;
+/// A function that neither rises or falls all through a piece, nor bends one way all through it, may vary there by this
+/// part of its range without being looked at more closely.
+const FLAT: f64 = 1.0 / 64.0;
+/// The same if it does one of both: it turns or changes its bend there once.
+const TURN: f64 = 0.25;
+/// Turns and bends by less than this part of the range since the last one are none.
+const SWING: f64 = 1e-3;
+/// Rounding of a value, with a margin.
+const ROUNDING: f64 = 1e-12;
+/// Pieces are not halved below this part of a window.
+const SHORTEST: f64 = 1e-13;
+/// Evaluations for one question.
+const MOST: u32 = 20_000;
+
+/// A place where a function of time does not go on as before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Feature {
+    pub(super) t: f64,
+    /// Number of the function among those watched.
+    pub(super) function: usize,
+    pub(super) kind: Kind,
+}
+
+/// What a function does at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// It has a jump or a corner, as far as can be seen.
+    Sharp,
+    /// It begins to fall, or to rise.
+    Turn,
+    /// It begins to bend the other way. At the rate there it would go through its range in this time.
+    Bend(f64),
+    /// Perhaps it does so.
+    Unsure,
+}
+
+/// What is known of one function so far.
+#[derive(Clone, Debug)]
+struct Track {
+    /// How much it varies over the window.
+    range: f64,
+    rate: Sign,
+    bend: Sign,
+    /// The rate over the last piece.
+    last_rate: Interval,
+    /// The values at the last feature, and at the end of the last piece.
+    at_feature: Option<f64>,
+    at_end: f64,
+}
+
+/// The last sign of a derivative other than zero, and up to where it was known.
+#[derive(Clone, Copy, Debug)]
+struct Sign {
+    sign: i8,
+    until: f64,
+}
+
+impl Sign {
+    /// Takes note of a sign from `a` to `b`. If the last one was the opposite, where it changed, and whether just at `a`.
+    fn pass(&mut self, (a, b): (f64, f64), sign: Option<i8>) -> Option<(f64, bool)> {
+        let sign = sign?;
+        let changed = sign != 0 && self.sign == -sign;
+        let place = changed.then_some((self.until + 0.5 * (a - self.until), self.until == a));
+        if sign != 0 {
+            self.sign = sign;
+        }
+        self.until = b;
+        place
+    }
+}
+
+/// The features of what is watched along a window, found as far as asked for.
+#[derive(Clone, Debug)]
+pub(super) struct Scan {
+    /// From where the features are kept.
+    from: f64,
+    end: f64,
+    shortest: f64,
+    /// Pieces yet to be looked at, the next one last; each in the direction of travel.
+    pieces: Vec<(f64, f64)>,
+    tracks: Vec<Track>,
+    features: VecDeque<Feature>,
+}
+
+impl Scan {
+    pub(super) fn new(part: &mut Part, start: f64, end: f64, line: Line<'_>) -> Scan {
+        let at = |i: u32| start + (end - start) * (f64::from(i) / f64::from(PIECES));
+        let mut pieces: Vec<(f64, f64)> = (0..PIECES).map(|i| (at(i), at(i + 1))).collect();
+        let mut ranges = vec![None::<Interval>; part.watched.len()];
+        for &piece in &pieces {
+            for (range, jet) in ranges.iter_mut().zip(part.over(piece, line)) {
+                if jet.value.width().is_finite() {
+                    *range = Some(range.map_or(jet.value, |range| range.hull(jet.value)));
+                }
+            }
+        }
+        let track = |range: Option<Interval>| Track {
+            range: range.map_or(0.0, Interval::width),
+            rate: Sign { sign: 0, until: start },
+            bend: Sign { sign: 0, until: start },
+            last_rate: Interval::ALL,
+            at_feature: None,
+            at_end: 0.0,
+        };
+        pieces.reverse();
+        Scan {
+            from: start,
+            end,
+            shortest: (SHORTEST * (end - start).abs())
+                .max(8.0 * f64::EPSILON * start.abs().max(end.abs()))
+                .max(f64::MIN_POSITIVE),
+            pieces,
+            tracks: ranges.into_iter().map(track).collect(),
+            features: VecDeque::new(),
+        }
+    }
+
+    /// Whether what is asked for lies ahead in the window.
+    pub(super) fn covers(&self, t: f64, to: f64) -> bool {
+        let direction = if self.end < self.from { -1.0 } else { 1.0 };
+        (t - self.from) * direction >= 0.0
+            && (to - t) * direction >= 0.0
+            && (self.end - to) * direction >= 0.0
+    }
+
+    /// Forgets the features up to `t` and finds those up to `to`, or as far as so many evaluations show them; beyond, pieces
+    /// are taken as they are if that is `enough`. Returns up to where they are known.
+    pub(super) fn between(
+        &mut self,
+        part: &mut Part,
+        (t, to): (f64, f64),
+        line: Line<'_>,
+        enough: bool,
+    ) -> (f64, &VecDeque<Feature>) {
+        let direction = if to < t { -1.0 } else { 1.0 };
+        self.from = t;
+        self.features.retain(|feature| (feature.t - t) * direction > 0.0);
+        let mut left = MOST;
+        while let Some(&(a, b)) = self.pieces.last() {
+            // A sign that is not known yet may show a change before.
+            let open = self.tracks.iter().any(|track| track.rate.until != a || track.bend.until != a);
+            if (a - to) * direction > 0.0 && (!open || left == 0) {
+                break;
+            }
+            if left == 0 && !enough {
+                return (a, &self.features);
+            }
+            self.pieces.pop();
+            let middle = a + 0.5 * (b - a);
+            let shortest = (b - a).abs() <= self.shortest || left == 0;
+            left = left.saturating_sub(1);
+            let tracks = &mut self.tracks;
+            let jets: Vec<Jet> = part.over((a, b), line).collect();
+            if !shortest && !tracks.iter().zip(&jets).all(|(track, jet)| track.is_plain(jet)) {
+                self.pieces.extend([(middle, b), (a, middle)]);
+                continue;
+            }
+            for (function, (track, jet)) in tracks.iter_mut().zip(&jets).enumerate() {
+                track.pass((a, b), jet, shortest, |t, kind| {
+                    self.features.push_back(Feature { t, function, kind });
+                });
+            }
+        }
+        (to, &self.features)
+    }
+}
+
+impl Track {
+    /// Whether a piece shows all that there is to be seen.
+    fn is_plain(&self, jet: &Jet) -> bool {
+        let known = (jet.rate.sign().is_some(), jet.bend.sign().is_some());
+        let part = match known {
+            (true, true) => return true,
+            (false, false) => FLAT,
+            _ => TURN,
+        };
+        jet.value.width() <= (part * self.range).max(ROUNDING * jet.value.size())
+    }
+
+    /// Takes note of a piece.
+    fn pass(&mut self, (a, b): (f64, f64), jet: &Jet, shortest: bool, mut found: impl FnMut(f64, Kind)) {
+        if shortest && !self.is_plain(jet) {
+            found(b, Kind::Sharp);
+        }
+        let Interval { lo, hi } = jet.value;
+        let (first, last) = match jet.rate.sign() {
+            Some(sign) if sign < 0 => (hi, lo),
+            Some(_) => (lo, hi),
+            None => (0.5 * (lo + hi), 0.5 * (lo + hi)),
+        };
+        let swing = (self.at_end - *self.at_feature.get_or_insert(first)).abs();
+        let matters = swing.is_nan() || swing >= SWING * self.range;
+        if let Some((t, at_once)) = self.rate.pass((a, b), jet.rate.sign())
+            && matters
+        {
+            self.at_feature = Some(self.at_end);
+            let smooth = |rate: Interval| rate.lo == 0.0 || rate.hi == 0.0;
+            let smooth = !at_once || smooth(self.last_rate) && smooth(jet.rate);
+            found(t, if smooth { Kind::Turn } else { Kind::Sharp });
+        }
+        if let Some((t, _)) = self.bend.pass((a, b), jet.bend.sign())
+            && matters
+        {
+            self.at_feature = Some(self.at_end);
+            let rate = self.last_rate.size().max(jet.rate.size());
+            found(t, Kind::Bend(self.range / rate));
+        }
+        if jet.bend.sign().is_none() {
+            found(a + 0.5 * (b - a), Kind::Unsure);
+        }
+        self.last_rate = jet.rate;
+        self.at_end = last;
+    }
+}

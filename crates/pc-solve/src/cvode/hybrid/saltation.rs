@@ -1,0 +1,91 @@
+//! How a reset changes the derivatives of a motion.
+
+use pc_expr::{Events, VectorField};
+
+use super::Hybrid;
+use crate::error::{Reason, SolveError};
+
+/// A function that changes at less than this part of the sum of its terms along the motion only touches zero.
+const GRAZING: f64 = 1e-9;
+
+impl<F: VectorField, E: Events> Hybrid<F, E> {
+    /// S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
+    /// ```text
+    /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
+    /// ```
+    /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000) 204, eqs. (37)–(43)]. The
+    /// derivatives by (t, y) are central difference quotients along the columns and along the motion, those by parameters
+    /// the events' own.
+    pub(super) fn jump_of_sensitivities(
+        &mut self,
+        event: usize,
+        t: f64,
+        before: &[f64],
+        after: &[f64],
+        matrix: &[f64],
+    ) -> Result<Vec<f64>, SolveError> {
+        let dim = before.len();
+        let rates_before = self.rates_at(t, before)?;
+        let rates_after = self.rates_at(t, after)?;
+        let (along, size, reset_along) = self.derivative_along(event, (t, before), (1.0, &rates_before))?;
+        if along.abs() <= GRAZING * size {
+            return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
+        }
+        let parameters = self.engine.sensitivity_parameters().to_vec();
+        let mut jumped = Vec::with_capacity(matrix.len());
+        for (column, parameter) in matrix.chunks_exact(dim).zip(parameters) {
+            let (mut change, _, mut reset) = self.derivative_along(event, (t, before), (0.0, column))?;
+            if let Some(j) = parameter {
+                let mut by_parameter = vec![f64::NAN; dim];
+                match self.events.by_parameter(event, j, t, before, &mut by_parameter) {
+                    Ok(function) => change += function,
+                    Err(failure) => return Err(self.event_error(event, t, failure)),
+                }
+                reset.iter_mut().zip(&by_parameter).for_each(|(reset, by)| *reset += by);
+            }
+            let shift = -change / along;
+            let entry = |i: usize| reset[i] + (reset_along[i] - rates_after[i]) * shift;
+            jumped.extend((0..dim).map(entry));
+        }
+        Ok(jumped)
+    }
+
+    fn rates_at(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut rates = vec![f64::NAN; state.len()];
+        let outcome = self.engine.callbacks.field_mut().rhs(t, state, &mut rates);
+        match outcome {
+            Ok(()) => Ok(rates),
+            Err(failure) => Err(self.failed(Reason::Saltation { t }, Some(failure))),
+        }
+    }
+
+    /// The derivatives of g and R along (1, v) or (0, v) of time and state, and |g_t| + Σ |g_yᵢ vᵢ| or what is known of it.
+    fn derivative_along(
+        &mut self,
+        event: usize,
+        (t, state): (f64, &[f64]),
+        (in_time, v): (f64, &[f64]),
+    ) -> Result<(f64, f64, Vec<f64>), SolveError> {
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let length = largest(v).max(in_time);
+        if length == 0.0 {
+            return Ok((0.0, 0.0, vec![0.0; state.len()]));
+        }
+        // As for products with ∂f/∂y: truncation and rounding are alike.
+        let least = self.engine.foresight.least_size();
+        let step = f64::EPSILON.cbrt() * largest(state).max(least) / length;
+        let (mut values, mut states) = (Vec::new(), Vec::new());
+        for sign in [1.0, -1.0] {
+            let mut moved: Vec<f64> = state.iter().zip(v).map(|(y, v)| y + sign * step * v).collect();
+            let at = t + sign * step * in_time;
+            values.push(self.evaluate(at, &moved)?[event]);
+            self.reset(event, at, &mut moved)?;
+            states.push(moved);
+        }
+        let quotient = |ahead: f64, behind: f64| (ahead - behind) / (2.0 * step);
+        let reset =
+            states[0].iter().zip(&states[1]).map(|(ahead, behind)| quotient(*ahead, *behind)).collect();
+        let size = (values[0].abs() + values[1].abs()) / (2.0 * step);
+        Ok((quotient(values[0], values[1]), size, reset))
+    }
+}

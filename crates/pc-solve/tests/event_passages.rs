@@ -1,0 +1,238 @@
+//! Which zeros of a function are passages, however they are met, and when too many accumulate.
+
+use std::ops::ControlFlow::Continue;
+
+use pc_solve::{
+    Accumulation, Cvode, Event, FnEvents, Method, Options, Reason, SolveError, VectorField, from_fn,
+    solve_with_events,
+};
+use proptest::prelude::*;
+
+fn clock() -> impl VectorField {
+    from_fn(1, |_t, _y: &[f64], ydot: &mut [f64]| {
+        ydot[0] = 1.0;
+        Ok(())
+    })
+    .autonomous()
+}
+
+/// The zeros that are found of a function of the clock, which shows `start` at time `start`.
+fn passages(function: impl Fn(f64) -> f64, start: f64, end: f64, options: &Options) -> Vec<f64> {
+    let events = FnEvents::new().with(Event::new("zero"), move |_, y| Ok(function(y[0])));
+    let motion = solve_with_events(clock(), start, &[start], &[end], options, events).unwrap();
+    motion.occurrences.iter().map(|occurrence| occurrence.time).collect()
+}
+
+fn is_near(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
+    found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= tolerance)
+}
+
+/// However it is written, and whether or not the first zero is hit exactly.
+#[test]
+fn a_zero_after_one_that_is_hit_exactly_is_found() {
+    for method in [Method::Adams, Method::Bdf] {
+        let options = Options::new(method);
+        let found = passages(|y| (y - 5.0) * (5.01 - y), 0.0, 10.0, &options);
+        assert!(is_near(&found, &[5.0, 5.01], 1e-13), "{method}: {found:?}");
+        let found = passages(|y| 0.005f64.powi(2) - (y - 5.005).powi(2), 0.0, 10.0, &options);
+        // The square is that of 5e-3, and a rounding of it moves the zero by 1e-14 of 5e-3 and the rounding of y.
+        assert!(is_near(&found, &[5.0, 5.01], 1e-13), "{method}: {found:?}");
+    }
+}
+
+/// Second passages from 1e-3 to 1e-5 after first ones all over the time.
+#[test]
+fn passages_close_to_each_other_are_both_found() {
+    let mut lost = 0;
+    for k in 0..600 {
+        let first = 10.0 * (0.618_033_988_749_894_8 * f64::from(k + 1)).fract();
+        let apart = 10.0f64.powf(-3.0 - 2.0 * (0.414_213_562_373_095 * f64::from(k)).fract());
+        // Every third one at a number that steps hit.
+        let first = if k % 3 == 0 { (8.0 * first).round() / 8.0 + 0.125 } else { first };
+        let found = passages(|y| (y - first) * (first + apart - y), 0.0, 12.0, &Options::default());
+        lost += usize::from(!is_near(&found, &[first, first + apart], 1e-12));
+    }
+    assert_eq!(lost, 0);
+}
+
+/// A function that comes to zero and turns back does not pass; one that stays there passes when it comes.
+#[test]
+fn touches_are_no_passages() {
+    for at in [0.3, 1.0, 2.5, 5.0] {
+        // Exact at the zero, and nowhere below it.
+        for options in [Options::default(), Options::default().max_step(at / 8.0)] {
+            assert_eq!(passages(|y| (y - at).abs(), 0.0, 10.0, &options), [0.0; 0], "{at}");
+            assert_eq!(passages(|y| (y - at).powi(2), 0.0, 10.0, &options), [0.0; 0], "{at}");
+            assert_eq!(passages(|y| -(y - at).powi(4), 0.0, 10.0, &options), [0.0; 0], "{at}");
+            let stays = passages(|y| (at - y).max(0.0), 0.0, 10.0, &options);
+            assert!(is_near(&stays, &[at], 1e-14), "{at}: {stays:?}");
+            // It leaves zero to the other side, where it came from, and to the other side again.
+            let through = |y: f64| (at - y).max(0.0) + (at + 1.0 - y).min(0.0);
+            assert!(is_near(&passages(through, 0.0, 10.0, &options), &[at], 1e-14));
+            let back = |y: f64| (at - y).max(0.0) + (y - at - 1.0).max(0.0) - 2.0 * (y - at - 2.0).max(0.0);
+            assert!(is_near(&passages(back, 0.0, 10.0, &options), &[at, at + 3.0], 1e-13));
+        }
+    }
+}
+
+/// A function that touches zero where another passes loses nothing.
+#[test]
+fn a_touch_hides_no_passage() {
+    let events = FnEvents::new()
+        .with(Event::new("touch"), |_, y| Ok((y[0] - 5.0).abs()))
+        .with(Event::new("pass"), |_, y| Ok(y[0] - 5.0))
+        .with(Event::new("later"), |_, y| Ok(5.001 - y[0]));
+    let motion = solve_with_events(clock(), 0.0, &[0.0], &[10.0], &Options::default(), events).unwrap();
+    let found: Vec<usize> = motion.occurrences.iter().map(|occurrence| occurrence.event).collect();
+    assert_eq!(found, [1, 2]);
+}
+
+/// A step that is looked at in so many parts shows pairs of zeros farther apart than two of them.
+#[test]
+fn a_step_shows_as_much_as_is_asked_for() {
+    let wave = |y: f64| (40.0 * y + 0.1).sin();
+    let options = |samples| Options::default().initial_step(1.0).samples_per_step(samples);
+    let expected: Vec<f64> = (1..127).map(|n| (f64::from(n) * std::f64::consts::PI - 0.1) / 40.0).collect();
+    let expected: Vec<f64> = expected.into_iter().filter(|t| *t < 9.9).collect();
+    let found = passages(wave, 0.0, 9.9, &options(1000));
+    assert!(is_near(&found, &expected, 1e-12), "{}", found.len());
+    let few = passages(wave, 0.0, 9.9, &options(1));
+    assert!(few.len() < expected.len() && (expected.len() - few.len()) % 2 == 0, "{}", few.len());
+    assert!(solve_with_events(clock(), 0.0, &[0.0], &[1.0], &options(0), FnEvents::new()).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, rng_seed: proptest::test_runner::RngSeed::Fixed(16), ..ProptestConfig::default() })]
+
+    /// A piecewise polynomial with these zeros: a product of their distances between breaks, scaled by another positive
+    /// number in each piece. In steps shorter than two zeros are apart all are found, and nothing else.
+    #[test]
+    fn zeros_of_piecewise_polynomials_are_found(
+        gaps in prop::collection::vec(0.05..1.0_f64, 1..12),
+        exact in prop::collection::vec(any::<bool>(), 12),
+        scales in prop::collection::vec(-3.0..3.0_f64, 13),
+        samples in 1_u32..8,
+    ) {
+        let mut zeros = Vec::new();
+        let mut t = 0.0;
+        for (gap, exact) in gaps.iter().zip(&exact) {
+            t += gap;
+            // Some lie where steps end.
+            t = if *exact { (t * 64.0).ceil() / 64.0 } else { t };
+            zeros.push(t);
+        }
+        let function = |y: f64| {
+            let piece = zeros.iter().filter(|&&zero| zero + 0.02 < y).count();
+            10.0_f64.powf(scales[piece]) * zeros.iter().map(|zero| y - zero).product::<f64>()
+        };
+        let options = Options::default().max_step(1.0 / 64.0).samples_per_step(samples);
+        let found = passages(function, 0.0, t + 0.5, &options);
+        prop_assert!(is_near(&found, &zeros, 1e-13), "{:?} {:?}", found, zeros);
+    }
+}
+
+/// Located to 1e-15 of the time, where the function is exact.
+#[test]
+fn passages_are_located_to_rounding() {
+    for scale in [1e-6, 1.0, 1e6] {
+        for k in 0..50 {
+            let at = scale * (0.1 + (0.618_033_988_749_894_8 * f64::from(k)).fract());
+            let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(t - at));
+            let motion = solve_with_events(clock(), 0.0, &[0.0], &[2.0 * scale], &Options::default(), events);
+            let found = motion.unwrap().occurrences[0].time;
+            assert!((found - at).abs() <= 1e-15 * at, "{found} for {at}");
+        }
+    }
+}
+
+/// A ball that bounces with e = ½ and is kicked up again once it is slow: no bounce is the last.
+fn kicked(below: f64) -> FnEvents<'static> {
+    FnEvents::new().with_reset(
+        Event::new("bounce").falling(),
+        |_, y| Ok(y[0]),
+        move |_, y| {
+            y[1] = if y[1] > -below { 1.0 } else { -0.5 * y[1] };
+            Ok(())
+        },
+    )
+}
+
+fn ball() -> impl VectorField {
+    from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[y[1], -1.0]);
+        Ok(())
+    })
+    .autonomous()
+}
+
+/// Whether bounces accumulate does not depend on how long the motion has been going on.
+#[test]
+fn bounces_that_are_kicked_on_do_not_accumulate() {
+    let start = 2e4;
+    for t0 in [0.0, -start] {
+        let cvode = Cvode::new(ball(), t0, &[1.0, 0.0], &Options::default().max_steps(u64::MAX)).unwrap();
+        let mut hybrid = cvode.with_events(kicked(0.01)).unwrap();
+        let mut bounces = 0_u32;
+        hybrid
+            .advance_to(t0 + start, |_| {
+                bounces += 1;
+                Continue(())
+            })
+            .unwrap();
+        assert!(bounces > 10_000);
+    }
+    // A ball that comes to rest does so after any time.
+    for flights in [0, 2000] {
+        let mut left = flights;
+        let events = FnEvents::new().with_reset(
+            Event::new("bounce").falling(),
+            |_, y| Ok(y[0]),
+            move |_, y| {
+                y[1] *= if left > 0 { -1.0 } else { -0.5 };
+                left -= i32::from(left > 0);
+                Ok(())
+            },
+        );
+        let options = Options::default().relative_tolerance(1e-13).absolute_tolerance(1e-15);
+        let failure = solve_with_events(ball(), 0.0, &[1.0, 0.0], &[1e6], &options, events).unwrap_err();
+        let SolveError::Integration(error) = failure.error else { panic!("{}", failure.error) };
+        let Reason::Accumulation { t, .. } = error.reason else { panic!("{error}") };
+        let limit = 2.0_f64.sqrt() * (3.0 + 2.0 * f64::from(flights));
+        // The rest of 1e-5 flights, extrapolated, and the errors of so many bounces.
+        assert!((t - limit).abs() < 1e-8 * limit, "{t} is not {limit}");
+    }
+}
+
+/// The rule is set in the options, of all ways of running.
+#[test]
+fn the_accumulation_is_chosen() {
+    let run = |within| {
+        let accumulation = Accumulation { within, ..Accumulation::default() };
+        let options = Options::default().accumulation(accumulation);
+        solve_with_events(ball(), 0.0, &[1.0, 0.0], &[30.0], &options, kicked(1e-4))
+    };
+    assert!(run(0.1).is_err() && run(1e-5).is_ok() && run(0.0).is_ok());
+    assert!(run(1.0).is_err() && run(-1.0).is_err() && run(f64::NAN).is_err());
+}
+
+/// A reset that leaves the function within the tolerances of zero, on the wrong side too, does not make it occur again.
+#[test]
+fn an_event_does_not_occur_again_before_it_has_left() {
+    for off in [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 3e-12, -3e-12] {
+        for (restitution, expected) in [(-0.5, 1), (0.5, 1)] {
+            // Falling through a curtain, or bouncing off it, each a little beside where it was.
+            let events = FnEvents::new().with_reset(
+                Event::new("curtain").falling(),
+                |_, y| Ok(y[0]),
+                move |_, y| {
+                    y[0] += off;
+                    y[1] *= restitution;
+                    Ok(())
+                },
+            );
+            let motion =
+                solve_with_events(ball(), 0.0, &[1.0, 0.0], &[2.0], &Options::default(), events).unwrap();
+            assert_eq!(motion.occurrences.len(), expected, "{off} {restitution}");
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Forces that act for a short while on a body at rest: none is stepped over.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, TimeDependence};
+use pc_solve::{Failure, Method, Options, Trajectory, VectorField, from_fn, solve};
+
+/// ẍ = −x + F(t, x), compiled.
+struct Spring {
+    program: Arc<Program>,
+    kernel: Interpreter,
+    /// Whether it shows how it depends on time.
+    shows: bool,
+}
+
+impl Spring {
+    fn new(force: impl for<'g> Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Spring {
+        let graph = Graph::new();
+        let [t, x, v] = graph.symbols(["t", "x", "v"]);
+        let inputs = Inputs { time: Some(t), state: vec![x, v], parameters: Vec::new() };
+        let program = Arc::new(Program::new(&graph, &inputs, &[v, force(t, x) - x]).unwrap());
+        Spring { kernel: Interpreter::new(Arc::clone(&program)), program, shows: true }
+    }
+}
+
+impl VectorField for Spring {
+    fn dim(&self) -> usize {
+        2
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.kernel.eval(t, y, &[], ydot);
+        Ok(())
+    }
+    fn time_dependence(&self) -> TimeDependence {
+        if self.shows { TimeDependence::of(&[&self.program], 2, &[]) } else { TimeDependence::Unknown }
+    }
+}
+
+/// The motion from rest at 0 to `end`.
+fn motion(field: impl VectorField, end: f64, method: Method) -> Trajectory {
+    solve(field, 0.0, &[0.0, 0.0], &[end], &Options::new(method)).unwrap()
+}
+
+fn gauss(at: f64, width: f64) -> Spring {
+    Spring::new(move |t, _| (-((t - at) / width).square()).exp())
+}
+
+/// After the pulse x = w √π e^(−w²/4) sin(t − at), as ∫ sin(t − s) F(s) ds over all s gives.
+fn after_gauss(t: f64, at: f64, width: f64) -> f64 {
+    width * PI.sqrt() * (-width * width / 4.0).exp() * (t - at).sin()
+}
+
+/// The tolerance of a motion of size w at rtol 1e-9, over some hundred steps, and the sum of absolute ones.
+fn near(found: f64, expected: f64, width: f64) -> bool {
+    (found - expected).abs() < 1e-6 * width + 1e-9
+}
+
+#[test]
+fn a_pulse_on_a_body_at_rest_is_not_stepped_over() {
+    for method in [Method::Adams, Method::Bdf] {
+        for width in [0.2, 1e-2, 1e-3, 1e-4] {
+            for at in [0.05, 1.234_567, 5.0, 8.9] {
+                let motion = motion(gauss(at, width), 10.0, method);
+                let expected = after_gauss(10.0, at, width);
+                // A pulse that begins before 0 lacks what was before.
+                let found = motion.state(0)[0];
+                let whole = at > 5.0 * width;
+                assert!(
+                    !whole || near(found, expected, width),
+                    "{method} {width} {at}: {found}, not {expected}"
+                );
+                assert!(!whole || motion.statistics().limited_steps > 0, "{method} {width} {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pulses_of_many_forms_are_not_stepped_over() {
+    let (at, w) = (6.543_21, 1e-3);
+    type Force = Box<dyn for<'g> Fn(Expr<'g>, Expr<'g>) -> Expr<'g>>;
+    // Each with its integral: a pulse so short against the period gives that speed.
+    let forces: [(&str, f64, Force); 7] = [
+        ("switch on and off", w, Box::new(move |t, _| (t - at).step(1.0, 0.0) - (t - at - w).step(1.0, 0.0))),
+        ("triangle", w, Box::new(move |t, _| (1.0 - ((t - at) / w).abs()).max(0.0))),
+        ("cusp", 2.0 * w, Box::new(move |t, _| (-((t - at) / w).abs()).exp())),
+        (
+            "tanh up and down",
+            2.0 * w,
+            Box::new(move |t, _| {
+                let edge = |shift: f64| ((t - at) / (0.05 * w) + shift).tanh();
+                edge(10.0) - edge(-10.0)
+            }),
+        ),
+        ("on the state", w * PI.sqrt(), Box::new(move |t, x| (-((t - at) / w).square()).exp() * (1.0 + x))),
+        ("travelling", w * PI.sqrt(), Box::new(move |t, x| (-((t - at + x) / w).square()).exp())),
+        ("between", w, Box::new(move |t, _| ((t - at) * (at + w - t)).step(1.0, 0.0))),
+    ];
+    for (name, speed, force) in forces {
+        let motion = motion(Spring::new(|t, x| force(t, x)), 10.0, Method::Adams);
+        // To the first order in w/period: the place of the pulse is known to w.
+        let expected = speed * (10.0 - at).sin();
+        let found = motion.state(0)[0];
+        assert!((found - expected).abs() < 3.0 * w * speed, "{name}: {found}, not {expected}");
+    }
+}
+
+/// A train of pulses, far apart and all seen; forwards and backwards.
+#[test]
+fn each_of_many_pulses_is_met() {
+    /// exp(−(sin(πt/10)/0.001)²): at 0, 10, 20, …, each of width 0.01/π.
+    fn train(t: Expr<'_>) -> Expr<'_> {
+        (-((t * (PI / 10.0)).sin() / 1e-3).square()).exp()
+    }
+    let width = 1e-2 / PI;
+    for direction in [1.0, -1.0] {
+        let free = Graph::new();
+        let [t, v] = free.symbols(["t", "v"]);
+        let inputs = Inputs { time: Some(t), state: vec![v], parameters: Vec::new() };
+        let program = Arc::new(Program::new(&free, &inputs, &[train(t) + 0.0 * v]).unwrap());
+        struct Body(Arc<Program>, Interpreter);
+        impl VectorField for Body {
+            fn dim(&self) -> usize {
+                1
+            }
+            fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+                self.1.eval(t, y, &[], ydot);
+                Ok(())
+            }
+            fn time_dependence(&self) -> TimeDependence {
+                TimeDependence::of(&[&self.0], 1, &[])
+            }
+        }
+        let body = Body(Arc::clone(&program), Interpreter::new(program));
+        let start = 5.0 * direction;
+        let motion = solve(body, start, &[0.0], &[1005.0 * direction], &Options::default()).unwrap();
+        let expected = direction * 100.0 * width * PI.sqrt();
+        let found = motion.state(0)[0];
+        assert!((found - expected).abs() < 1e-6 * expected.abs(), "{found}, not {expected}");
+    }
+}
+
+/// What contains no t is evaluated as often as if nobody looked.
+#[test]
+fn a_field_without_time_costs_nothing() {
+    let pendulum = || {
+        from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {
+            ydot.copy_from_slice(&[y[1], -y[0].sin()]);
+            Ok(())
+        })
+    };
+    let run = |field: &mut dyn VectorField| {
+        let motion = solve(field, 0.0, &[1.0, 0.0], &[100.0], &Options::default()).unwrap();
+        *motion.statistics()
+    };
+    let (plain, looked) = (run(&mut pendulum().autonomous()), run(&mut pendulum()));
+    assert_eq!(plain.limited_steps, 0);
+    // One that is known by its values alone is looked at 64 times, and begins with another step.
+    assert!(looked.rhs_evaluations <= plain.rhs_evaluations * 11 / 10 + 80, "{plain:?} {looked:?}");
+    let spring = Spring::new(|_, x| x * 0.5);
+    let same = from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[y[1], 0.5 * y[0] - y[0]]);
+        Ok(())
+    });
+    let start = [1.0, 0.0];
+    let of = |field: &mut dyn VectorField| {
+        *solve(field, 0.0, &start, &[50.0], &Options::default()).unwrap().statistics()
+    };
+    assert_eq!(of(&mut { spring }).rhs_evaluations, of(&mut same.autonomous()).rhs_evaluations);
+}
+
+/// A smooth force is followed at hardly more evaluations than without the look-out.
+#[test]
+fn a_smooth_force_costs_little() {
+    fn force(t: Expr<'_>) -> Expr<'_> {
+        0.3 * (2.0 * t).cos() + (0.1 * t).tanh()
+    }
+    let end = 100.0;
+    let shown = motion(Spring::new(|t, _| force(t)), end, Method::Adams);
+    let mut plain = Spring::new(|t, _| force(t));
+    plain.shows = false;
+    let plain = from_fn(2, move |t, y: &[f64], ydot: &mut [f64]| plain.rhs(t, y, ydot)).autonomous();
+    let plain = motion(plain, end, Method::Adams);
+    let (shown, plain) = (shown.statistics(), plain.statistics());
+    assert!(10 * shown.rhs_evaluations <= 11 * plain.rhs_evaluations, "{shown:?}\n{plain:?}");
+}
+
+/// Where only values are known, a pulse of a fiftieth of the time is found.
+#[test]
+fn a_function_of_a_program_is_sampled() {
+    for k in 0..40 {
+        let (at, width) = (0.5 + 0.23 * f64::from(k), 0.1);
+        let field = from_fn(2, move |t: f64, y: &[f64], ydot: &mut [f64]| {
+            ydot.copy_from_slice(&[y[1], (-((t - at) / width).powi(2)).exp() - y[0]]);
+            Ok(())
+        });
+        let found = motion(field, 10.0, Method::Adams).state(0)[0];
+        let expected = after_gauss(10.0, at, width);
+        assert!(near(found, expected, width), "{at}: {found}, not {expected}");
+    }
+}
+
+/// Table: how many of 200 pulses at places all over the span are found, and at what cost.
+///
+/// `cargo test -p pc-solve --test forcing -- --ignored --nocapture`
+#[test]
+#[ignore = "prints a table"]
+fn table_of_pulses() {
+    println!(
+        "width/span  shown: found  evaluations  values only: found  evaluations  blind: found  evaluations"
+    );
+    for width in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        let mut row = Vec::new();
+        for kind in 0..3 {
+            let (mut found, mut evaluations) = (0, 0);
+            for k in 0..200 {
+                // The golden section spreads them.
+                let at = 10.0 * (0.618_033_988_749_894_8 * f64::from(k + 1)).fract();
+                let w = 10.0 * width;
+                let mut spring = gauss(at, w);
+                spring.shows = kind == 0;
+                let motion = if kind == 2 {
+                    let blind = from_fn(2, move |t, y: &[f64], ydot: &mut [f64]| spring.rhs(t, y, ydot));
+                    motion(blind.autonomous(), 10.0, Method::Adams)
+                } else {
+                    motion(spring, 10.0, Method::Adams)
+                };
+                let mut exact = gauss(at, w);
+                exact.shows = false;
+                let short =
+                    solve(exact, 0.0, &[0.0, 0.0], &[10.0], &Options::default().max_step(w.min(0.1) * 2.0));
+                let exact = short.unwrap().state(0)[0];
+                found += i32::from((motion.state(0)[0] - exact).abs() < 1e-5 * w);
+                evaluations += motion.statistics().rhs_evaluations;
+            }
+            row.push(format!("{found:12} {:12}", evaluations / 200));
+        }
+        println!("{width:10e}  {}", row.join("  "));
+    }
+}
