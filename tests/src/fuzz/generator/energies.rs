@@ -70,7 +70,9 @@ impl Builder {
             let zero = self.hidden_zero(shown);
             terms.push(Expression::product(vec![zero, first, second]));
         }
-        if !shown.is_empty() && rates.len() > 2 && self.random.chance(4) {
+        // On constraints it may be degenerate.
+        let free = self.specimen.constraints.is_empty();
+        if !shown.is_empty() && rates.len() > 2 && self.random.chance(4) && free {
             self.indefinite(rates, shown, terms);
         }
     }
