@@ -205,7 +205,7 @@ impl<'g> Multipliers<'g> {
         };
         let (mass, right) = (self.equations().mass_matrix(), put(self.equations().right_hand_side()));
         let rests = dependent.iter().map(|&d| {
-            let row = put(&mass.row(d).to_vec());
+            let row = put(mass.row(d));
             graph.dot(row, (0..eta.len()).map(rate)) - right[d]
         });
         let rests: Vec<Expr<'g>> = rests.collect();

@@ -34,9 +34,9 @@ fn a_state_on_its_constraints_but_for_rounding_stays_there() {
     let graph = Graph::new();
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(11);
-    for radius in [1e-150, 3e-80, 1e-8, 1.0, 7e8, 1e80, 1e150] {
+    for radius in [1e-150f64, 3e-80, 1e-8, 1.0, 7e8, 1e80, 1e150] {
         // Moments of inertia are numbers, too.
-        let masses = [1e-100, 1e-3, 1.0, 1e100].into_iter();
+        let masses = [1e-100f64, 1e-3, 1.0, 1e100].into_iter();
         for mass in masses.filter(|mass| (mass * radius * radius / 9.0).is_normal()) {
             motion.parameters_mut().copy_from_slice(&[mass, radius]);
             for _ in 0..40 {
@@ -48,7 +48,7 @@ fn a_state_on_its_constraints_but_for_rounding_stays_there() {
                 let given = there.map(|y| y * (1.0 + 4.0 * f64::EPSILON * next()));
                 let mut state = given;
                 motion.project(0.0, &mut state).unwrap();
-                let sizes = [radius, radius, 1.0 + rate, speed, speed, rate];
+                let sizes = [radius, radius, 1.0 + rate, speed, speed, 3.0 * rate];
                 for i in 0..6 {
                     let moved = (state[i] - given[i]).abs();
                     // Moved by no more than it was off, some roundings of each component.
