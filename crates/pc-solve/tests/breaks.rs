@@ -119,3 +119,15 @@ fn a_field_is_changed_where_the_integration_stands() {
     assert_eq!(cvode.time(), 1.0);
     assert!((cvode.advance_to(3.0).unwrap()[0] + 4.0).abs() < 1e-12);
 }
+
+/// A step that may go beyond where it leads does not cross the break there, nor one behind.
+#[test]
+fn targets_at_and_before_breaks_are_reached_within_the_leg() {
+    let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-14);
+    let mut cvode = Cvode::new(Legs::new(), 0.0, &[1.0], &options).unwrap();
+    for t in [0.999, 1.0, 1.2, 1.25, 2.999, 3.0, 3.5] {
+        let y = cvode.advance_to(t).unwrap()[0];
+        let exact = cvode.field().exact(t);
+        assert!((y / exact - 1.0).abs() < 1e-7, "y({t}) = {y}, not {exact}");
+    }
+}

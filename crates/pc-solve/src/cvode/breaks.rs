@@ -13,7 +13,8 @@ impl<F: VectorField> Cvode<F> {
         if self.field().breaks().is_empty() {
             return Ok(None);
         }
-        let end = self.stop_time.unwrap_or(towards);
+        // Without a stop time a step may end beyond where it leads.
+        let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(towards - self.step_time));
         let mut t = self.step_time;
         let mut next = following(self.field().breaks(), t, end);
         // A break no farther than rounding, as after an event, is too close for a step of CVODES: it has been reached.
@@ -67,5 +68,5 @@ fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
         let before = breaks.partition_point(|&time| time < t).checked_sub(1);
         before.map(|i| breaks[i]).filter(|&time| time > end)
     };
-    next.filter(|&time| !are_close(time, end))
+    next.filter(|&time| end.is_infinite() || !are_close(time, end))
 }
