@@ -134,6 +134,10 @@ typedef enum {
    */
   PC_INVALID_CHECKPOINT = 13,
   /**
+   * Two derivations of one model give different motions: a defect of the library.
+   */
+  PC_DISAGREEMENT = 14,
+  /**
    * None.
    */
   PC_STATUS_LAST = 2147483647,
@@ -1479,6 +1483,19 @@ pc_status pc_system_emit_c(const pc_system *system,
                            double t_end,
                            char **header,
                            char **source,
+                           pc_error **error);
+
+/**
+ * Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
+ * random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,
+ * reactions, the energy and its rate, integrals and outputs. 0 states are 100. `text` says how closely they agree and what was
+ * not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are taken for 0.
+ * PC_DISAGREEMENT, with the quantity and both its values, if one of the two is wrong, which is a defect of the library;
+ * PC_UNSUPPORTED if the second cannot be made of this model. It takes as long as pc_system_new.
+ */
+pc_status pc_system_verify(const pc_system *system,
+                           size_t states,
+                           char **text,
                            pc_error **error);
 
 /**

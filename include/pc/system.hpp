@@ -236,6 +236,8 @@ public:
     }
 
     std::string print(pc_format format = PC_TEXT) const { return detail::text(pc_system_print, get(), format); }
+    /// How closely the equations agree with a second derivation, at so many random states; an error where they do not.
+    std::string verify(std::size_t states = 100) const { return detail::text(pc_system_verify, get(), states); }
     /// The equations as C source, which with -DNAME_MAIN is a program that integrates to t_end, if that is finite.
     c_source emit_c(const std::string &name, double t_end = std::numeric_limits<double>::infinity()) const
     {

@@ -7,6 +7,7 @@ use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParame
 use pc_expr::Failure;
 use pc_mech::MechError;
 use pc_solve::{CheckpointError, Code, EnsembleError, SolveError};
+use pc_verify::VerifyError;
 
 use crate::status::pc_status;
 use crate::strings::c_string;
@@ -86,6 +87,8 @@ pub(crate) enum Fault {
     #[error("{0}")]
     Ensemble(#[from] EnsembleError),
     #[error(transparent)]
+    Verify(VerifyError),
+    #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
     UnknownParameter(#[from] UnknownParameter),
@@ -124,7 +127,8 @@ impl Fault {
                 Category::Unsupported => pc_status::PC_UNSUPPORTED,
                 Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
             },
-            Fault::Unsupported { .. } => pc_status::PC_UNSUPPORTED,
+            Fault::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
+            Fault::Unsupported { .. } | Fault::Verify(_) => pc_status::PC_UNSUPPORTED,
             Fault::NoSuchModel { .. }
             | Fault::UnknownParameter(_)
             | Fault::UnknownIntegral(_)

@@ -45,6 +45,7 @@ mod status;
 mod strings;
 mod system;
 mod user;
+mod verify;
 pub mod version;
 
 pub use bodies::*;
@@ -72,4 +73,5 @@ pub use status::*;
 pub use strings::*;
 pub use system::*;
 pub use user::*;
+pub use verify::*;
 pub use version::*;

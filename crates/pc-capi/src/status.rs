@@ -38,6 +38,8 @@ pub enum pc_status {
     PC_EVENT = 12,
     /// The bytes are no checkpoint, or one of which a part is missing or changed.
     PC_INVALID_CHECKPOINT = 13,
+    /// Two derivations of one model give different motions: a defect of the library.
+    PC_DISAGREEMENT = 14,
     /// None.
     PC_STATUS_LAST = 0x7fff_ffff,
 }
@@ -60,6 +62,7 @@ pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
         11 => c"PC_INTERNAL",
         12 => c"PC_EVENT",
         13 => c"PC_INVALID_CHECKPOINT",
+        14 => c"PC_DISAGREEMENT",
         _ => c"unknown status",
     };
     name.as_ptr()

@@ -79,6 +79,22 @@ fn refuses(arguments: &[&str], exit_code: i32, mention: &str) {
 }
 
 #[test]
+fn a_run_is_compared_with_a_second_derivation_at_both_ends() {
+    let said = |arguments: &[&str]| {
+        let output = run(&[&["run", "chaplygin-sleigh", "--samples", "2"], arguments].concat());
+        assert_eq!(code(&output), 0);
+        stderr(&output)
+    };
+    for form in ["poincare", "canonical"] {
+        let summary = said(&["--form", form]);
+        let line = summary.lines().find(|line| line.contains("verified")).expect("a line");
+        assert!(line.starts_with("  verified by a second derivation, which agrees to "), "{line}");
+        assert!(line.ends_with(" at the start and at the end"), "{line}");
+    }
+    assert!(!said(&["--no-verify"]).contains("verified"));
+}
+
+#[test]
 fn the_table_has_its_header_and_all_digits() {
     let output = run(&["run", "heavy-top-lagrange", "--samples", "5", "--t-end", "2"]);
     assert_eq!(code(&output), 0);

@@ -9,7 +9,7 @@ use pc_model::{Assembly, Flow, Model, Variables};
 use crate::derivation::{Derivation, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::linear::pseudo_inverse;
-use crate::quantities::{Quantity, Sized};
+use crate::quantities::{Free, Quantity, Sized};
 use crate::rounding::{Random, Rounding};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
@@ -286,6 +286,13 @@ impl Second {
         column.or_else(|| constraint().then_some(Quantity::Zero))
     }
 
+    /// The quasi-velocity of this name.
+    fn free(&self, name: &str) -> Option<Free> {
+        let column = self.columns.iter().position(|column| column == name).map(Free::Column);
+        let constraints = &self.derivation.text.names.constraints;
+        column.or_else(|| constraints.iter().position(|c| c == name).map(Free::Constraint))
+    }
+
     /// The rate of a component of the state.
     fn rate(&self, name: &str) -> Option<Quantity> {
         let coordinates = &self.derivation.text.names.coordinates;
@@ -334,7 +341,7 @@ impl Second {
         for first in firsts {
             let (wanted, free) = (first.quantities(), first.free.as_deref());
             let mut seconds = self.derivation.quantities(&derived, &wanted, free, &exact)?;
-            let values = first.values(at, &columns);
+            let values = first.values(at, &columns)?;
             if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
                 if scattered.is_none() {
                     scattered = Some(self.derivation.scattered(&derived)?);
@@ -411,7 +418,7 @@ struct First<'g> {
     /// Places of these among the values of the first derivation.
     places: Vec<usize>,
     /// The columns that are free quasi-velocities, where momenta or energies of these are compared.
-    free: Option<Vec<usize>>,
+    free: Option<Vec<Free>>,
     compiled: Compiled<'g>,
 }
 
@@ -420,7 +427,7 @@ enum Compiled<'g> {
     Flow { flow: Box<Flow>, quasi_velocities: Vec<Quantity> },
     /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
     /// state.
-    Emitted { motion: Box<Motion>, free: Vec<usize>, energy_rate: EnergyRate<'g> },
+    Emitted { motion: Box<Motion>, free: Vec<Free>, energy_rate: EnergyRate<'g> },
 }
 
 /// dH/dt as a function of time, coordinates, quasi-velocities and parameters.
@@ -456,11 +463,8 @@ impl<'g> First<'g> {
         let n = flow.motion.coordinates();
         let state = flow.motion.names();
         let canonical = flow.has_momenta();
-        let columns = flow.free_quasi_velocities().iter().map(|&s| match second.velocity(&names[s]) {
-            Some(Quantity::Column(column)) => Some(column),
-            _ => None,
-        });
-        let free: Option<Vec<usize>> = if canonical { columns.collect() } else { None };
+        let columns = flow.free_quasi_velocities().iter().map(|&s| second.free(&names[s]));
+        let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
         let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
         for (i, name) in state.iter().enumerate() {
             let momentum = (canonical && i >= n && free.is_some()).then(|| Quantity::Momentum(i - n));
@@ -496,11 +500,11 @@ impl<'g> First<'g> {
             .map_err(|error| model.constraint_error(error).diagnostic().message.clone())?;
         let system = equations.system();
         let motion = equations.compile_for(Backend::Interpreter).map_err(|error| error.to_string())?;
-        let column = |eta: &Expr<'_>| match second.velocity(&eta.to_string()) {
-            Some(Quantity::Column(column)) => Ok(column),
-            _ => Err(format!("`{eta}` is not a column")),
+        let column = |eta: &Expr<'_>| {
+            let name = eta.to_string();
+            second.free(&name).ok_or_else(|| format!("`{name}` is not a column"))
         };
-        let free: Vec<usize> = system.quasi_velocities().iter().map(column).collect::<Result<_, _>>()?;
+        let free: Vec<Free> = system.quasi_velocities().iter().map(column).collect::<Result<_, _>>()?;
         let rates = motion.names().iter().map(|name| (format!("the rate of {name}"), second.rate(name)));
         let observables = motion.observable_names().iter().map(|name| match second.observable(name) {
             Some(Quantity::Energy) => (name.clone(), Some(Quantity::FreeEnergy)),
@@ -530,7 +534,7 @@ impl<'g> First<'g> {
         candidates: Vec<(String, Option<Quantity>)>,
         inputs: &[std::ops::Range<usize>],
         second: &Second,
-        free: Option<Vec<usize>>,
+        free: Option<Vec<Free>>,
         compiled: Compiled<'g>,
         agreement: &mut Agreement,
     ) -> First<'g> {
@@ -555,8 +559,10 @@ impl<'g> First<'g> {
         self.wanted.iter().map(|(_, quantity)| quantity.clone()).collect()
     }
 
-    /// What is compared at a place with these columns; NaN where it cannot be evaluated.
-    fn values(&mut self, at: &Place, columns: &[f64]) -> Vec<f64> {
+    /// What is compared at a place with these columns.
+    fn values(&mut self, at: &Place, columns: &[f64]) -> Result<Vec<f64>, Irregular> {
+        let form = &self.form;
+        let refused = |message: String| Irregular::Refused { form: form.clone(), message };
         let values = match &mut self.compiled {
             Compiled::Flow { flow, quasi_velocities } => {
                 let value = |quantity: &Quantity| match quantity {
@@ -565,30 +571,27 @@ impl<'g> First<'g> {
                 };
                 let mut all = at.x.clone();
                 all.extend(quasi_velocities.iter().map(value));
-                match flow.state_of(at.t, &all) {
-                    Ok(state) => {
-                        let mut rates = vec![f64::NAN; state.len()];
-                        if flow.motion.rhs(at.t, &state, &mut rates).is_err() {
-                            rates.fill(f64::NAN);
-                        }
-                        let row = flow.row(at.t, &state);
-                        [state, rates, row].concat()
-                    }
-                    Err(_) => Vec::new(),
-                }
+                let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
+                let mut rates = vec![f64::NAN; state.len()];
+                let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
+                evaluated.map_err(|failure| refused(failure.to_string()))?;
+                let row = flow.row(at.t, &state);
+                [state, rates, row].concat()
             }
             Compiled::Emitted { motion, free, energy_rate } => {
                 let mut state = at.x.clone();
-                state.extend(free.iter().map(|&f| columns[f]));
+                state.extend(free.iter().map(|&f| match f {
+                    Free::Column(column) => columns[column],
+                    Free::Constraint(_) => 0.0,
+                }));
                 let mut rates = vec![f64::NAN; state.len()];
-                if motion.rhs(at.t, &state, &mut rates).is_err() {
-                    rates.fill(f64::NAN);
-                }
+                let evaluated = motion.rhs(at.t, &state, &mut rates);
+                evaluated.map_err(|failure| refused(failure.to_string()))?;
                 let observed = motion.observe(at.t, &state);
                 let rate = energy_rate.at(at.t, &state);
                 [rates, observed, vec![rate]].concat()
             }
         };
-        self.places.iter().map(|&place| values.get(place).copied().unwrap_or(f64::NAN)).collect()
+        Ok(self.places.iter().map(|&place| values[place]).collect())
     }
 }

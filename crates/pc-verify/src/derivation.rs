@@ -293,7 +293,10 @@ impl Derivation {
 
     /// The place moved by rounding errors of a state, w by those of terms of these sizes.
     pub(crate) fn near(&self, place: &Place, sizes: &[f64], rounding: &Rounding) -> Place {
-        let by = |(&value, &size): (&f64, &f64)| value + (rounding.of(size) - size);
+        // Where constraints mix velocities each is as uncertain as the largest.
+        let largest = place.w.iter().fold(0.0f64, |largest, w| largest.max(w.abs()));
+        let least = if self.kept.is_empty() { 0.0 } else { largest };
+        let by = |(&value, &size): (&f64, &f64)| value + (rounding.of(size.max(least)) - size.max(least));
         Place {
             t: rounding.of(place.t),
             x: place.x.iter().map(|&x| rounding.of(x)).collect(),

@@ -39,7 +39,7 @@ pub struct Disagreement {
     pub form: String,
     /// The quantity.
     pub quantity: String,
-    /// Its value by the first derivation, compiled; NaN where it has none.
+    /// Its value by the first derivation, compiled.
     pub first: f64,
     /// Its value by the second.
     pub second: f64,
@@ -129,6 +129,14 @@ pub(crate) enum Irregular {
     /// The frame does not determine its brackets here.
     #[error("the frame is singular or not closed")]
     Frame,
+    /// The first derivation, compiled, says that it cannot be evaluated.
+    #[error("the form {form} refuses it: {message}")]
+    Refused {
+        /// The form.
+        form: String,
+        /// What it says.
+        message: String,
+    },
     /// Rounding errors are amplified until they hide errors of derivation.
     #[error("rounding errors are amplified too much")]
     IllConditioned,

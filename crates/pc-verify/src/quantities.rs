@@ -30,6 +30,15 @@ pub(crate) enum Quantity {
     Observed(usize),
 }
 
+/// A quasi-velocity that is free, or whose momentum is one of the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Free {
+    /// That of a column.
+    Column(usize),
+    /// What a constraint fixes at 0.
+    Constraint(usize),
+}
+
 /// A value, and how large the terms are that it is made up of.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sized {
@@ -72,7 +81,7 @@ impl Derivation {
         &self,
         derived: &Derived,
         wanted: &[Quantity],
-        free: Option<&[usize]>,
+        free: Option<&[Free]>,
         rounding: &Rounding,
     ) -> Result<Vec<Sized>, Irregular> {
         let at = &derived.place;
@@ -127,7 +136,7 @@ impl Derivation {
         quantities: &mut [Sized],
         scattered: &[(Rounding, Derived)],
         wanted: &[Quantity],
-        free: Option<&[usize]>,
+        free: Option<&[Free]>,
     ) -> Result<(), Irregular> {
         for (rounding, derived) in scattered {
             let moved = self.quantities(derived, wanted, free, rounding)?;
@@ -176,7 +185,7 @@ impl Derivation {
 
     /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
     /// satisfy the constraints unless all are free.
-    fn momenta(&self, derived: &Derived, free: &[usize], rounding: &Rounding) -> Result<Momenta, Irregular> {
+    fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
         let at = &derived.place;
         let k = at.w.len();
         let binding: &[usize] = if free.len() == k { &[] } else { &self.kept };
@@ -196,13 +205,30 @@ impl Derivation {
                 (rows[place][s], rates[place][s]) = (value.re.eps, value.eps.eps);
             }
             for (place, &f) in free.iter().enumerate() {
-                (rows[l + place][s], rates[l + place][s]) = (columns[f].re.eps, columns[f].eps.eps);
+                let value = match f {
+                    Free::Column(column) => columns[column],
+                    Free::Constraint(a) => point.velocity_constraint(a, self.on_positions[a])?,
+                };
+                (rows[l + place][s], rates[l + place][s]) = (value.re.eps, value.eps.eps);
             }
         }
         let nothing = vec![0.0; k];
         let solution = solve(&matrix(&rows, k), &nothing, &nothing)?;
         let virtual_velocities = solution.inverse.columns(l, free.len()).into_owned();
         let virtual_rates = -(&solution.inverse * (matrix(&rates, k) * &virtual_velocities));
+        // By how much w changes with time, and along the virtual displacements, while the free velocities stay.
+        let mut sizes = solution.inverse.abs() * (matrix(&rates, k).abs() * virtual_velocities.abs());
+        let frame = self.frame(at, &exact)?;
+        for f in 0..free.len() {
+            let along = |i: usize| (0..k).map(|s| frame[s][i] * virtual_velocities[(s, f)]).sum();
+            let displacement = at.along((0..at.x.len()).map(along).collect());
+            let turned = self.constraint_rates(binding, at, &displacement, &exact)?;
+            for (s, (place, rate)) in
+                (0..k).flat_map(|s| turned.iter().enumerate().map(move |turned| (s, turned)))
+            {
+                sizes[(s, f)] = f64::max(sizes[(s, f)], (solution.inverse[(s, place)] * rate).abs());
+            }
+        }
         let of = |f: usize| -> [Sized; 2] {
             let (w, rate) = (virtual_velocities.column(f), virtual_rates.column(f));
             let mut value = sum((0..k).map(|s| derived.momenta[s] * w[s]));
@@ -211,21 +237,30 @@ impl Derivation {
             let mut change =
                 sum((0..k).flat_map(|s| [derived.momentum_rates[s] * w[s], derived.momenta[s] * rate[s]]));
             let led = (0..k).map(|s| (derived.momentum_rate_sizes[s] * w[s]).abs());
-            change.size = led.fold(change.size, f64::max);
+            let turned = (0..k).map(|s| (derived.momentum_sizes[s] * sizes[(s, f)]).abs());
+            change.size = led.chain(turned).fold(change.size, f64::max);
             [value, change]
         };
         let (values, momentum_rates): (Vec<Sized>, Vec<Sized>) =
             (0..free.len()).map(|f| of(f)).map(|[value, rate]| (value, rate)).unzip();
         let columns = self.columns(&self.once(at, &motion, &exact))?;
-        let eta: Vec<_> = free.iter().map(|&f| columns[f]).collect();
-        let energy = sum((0..free.len()).map(|f| values[f].value * eta[f].re).chain([-derived.lagrangian]));
-        let rates =
-            (0..free.len()).flat_map(|f| [momentum_rates[f].value * eta[f].re, values[f].value * eta[f].eps]);
+        let sizes = self.column_sizes(derived)?;
+        // Those that constraints fix at 0 do not contribute.
+        let moving = free.iter().enumerate().filter_map(|(f, &free)| match free {
+            Free::Column(column) => Some((f, columns[column], sizes[column].1)),
+            Free::Constraint(_) => None,
+        });
+        let moving: Vec<_> = moving.collect();
+        let terms = moving.iter().map(|&(f, eta, _)| values[f].value * eta.re);
+        let energy = sum(terms.chain([-derived.lagrangian]));
+        let rates = moving
+            .iter()
+            .flat_map(|&(f, eta, _)| [momentum_rates[f].value * eta.re, values[f].value * eta.eps]);
         let mut energy_rate = sum(rates.chain([-derived.lagrangian_rate]));
-        let led = (0..free.len()).map(|f| (momentum_rates[f].size * eta[f].re).abs());
-        let eta_sizes = self.column_sizes(derived)?;
-        let also = (0..free.len()).map(|f| (values[f].value * eta_sizes[free[f]].1).abs());
-        energy_rate.size = led.chain(also).fold(energy_rate.size, f64::max);
+        let led = moving.iter().flat_map(|&(f, eta, size)| {
+            [(momentum_rates[f].size * eta.re).abs(), (values[f].value * size).abs()]
+        });
+        energy_rate.size = led.fold(energy_rate.size, f64::max);
         Ok(Momenta { values, rates: momentum_rates, energy, energy_rate, condition: solution.condition })
     }
 }

@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 26] = [
+const FILES: [&str; 27] = [
     "version.rs",
     "status.rs",
     "error.rs",
@@ -68,6 +68,7 @@ const FILES: [&str; 26] = [
     "bracket.rs",
     "legendre.rs",
     "source.rs",
+    "verify.rs",
     "kernel.rs",
     "solver.rs",
     "occurrences.rs",

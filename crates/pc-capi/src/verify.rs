@@ -1,0 +1,55 @@
+//! The equations against a second derivation.
+
+use std::ffi::c_char;
+
+use pc_verify::{Options, VerifyError, verify};
+
+use crate::error::{Fault, pc_error};
+use crate::pointer::{clear, write};
+use crate::status::pc_status;
+use crate::strings::give;
+use crate::system::{Inner, Inventory, inside, pc_system};
+
+/// Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
+/// random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,
+/// reactions, the energy and its rate, integrals and outputs. 0 states are 100. `text` says how closely they agree and what was
+/// not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are taken for 0.
+/// PC_DISAGREEMENT, with the quantity and both its values, if one of the two is wrong, which is a defect of the library;
+/// PC_UNSUPPORTED if the second cannot be made of this model. It takes as long as pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_verify(
+    system: *const pc_system,
+    states: usize,
+    text: *mut *mut c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compare = |inventory: &Inventory, inner: &mut Inner| {
+        if !text.is_null() {
+            // SAFETY: the pointers are as the preamble demands.
+            unsafe { clear(text, "text") }?;
+        }
+        let report = report(inventory, inner.field.parameters(), states)?;
+        // SAFETY: as above.
+        if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compare) }
+}
+
+fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, Fault> {
+    let mut model = inventory.model.clone();
+    let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    for (name, &value) in names.iter().zip(parameters) {
+        model.set(name, value)?;
+    }
+    // The start is only where states are looked for.
+    model.project_start(true);
+    let usual = Options::default();
+    let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };
+    let agreement = verify(&model, &options).map_err(|error| match error {
+        VerifyError::Model(error) => Fault::Model(error),
+        other => Fault::Verify(other),
+    })?;
+    let more = agreement.not_compared.iter().map(|what| format!("not compared: {what}\n"));
+    Ok(format!("{agreement}\n{}", more.collect::<String>()))
+}
