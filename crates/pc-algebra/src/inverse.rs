@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-13;
 ///
 /// Its entries are regular wherever the matrix is. Constant pivots that are not small against their row are eliminated
 /// first. What is left is solved block after block of its block triangular form, small blocks by cofactors over their
-/// determinant, larger ones by [orthogonalisation](orthogonal_inverse): no divisor vanishes where the matrix is regular,
+/// determinant, larger ones by orthogonalisation: no divisor vanishes where the matrix is regular,
 /// whatever the state. Constants that cancel but for rounding are zero; so is a divisor that is nothing but rounding at
 /// random points, though the graph does not know it.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {

@@ -187,11 +187,11 @@ fn operators_that_are_dependent_in_numbers_are_dependent() {
     let graph = Graph::new();
     let [t, x, y, u, w] = graph.symbols(["t", "x", "y", "u", "w"]);
     let zero = (x * y).log() - x.log() - y.log();
-    let with = |more: Expr<'_>| {
+    let [hidden, small, none] = [zero * y, 1e-6 * y, Expr::ZERO].map(|more| {
         let velocities = [u * x + w * x.square(), u * y + w * (x * y + more)];
         Frame::from_velocities(&graph, t, vec![x, y], &[u, w], &velocities).unwrap()
-    };
-    assert_eq!((with(zero * y).rank(), with(1e-6 * y).rank(), with(Expr::ZERO).rank()), (1, 2, 1));
-    let error = with(zero * y).definitions().unwrap_err();
+    });
+    assert_eq!([&hidden, &small, &none].map(Frame::rank), [1, 2, 1]);
+    let error = hidden.definitions().unwrap_err();
     assert!(matches!(error, AlgebraError::DependentOperators { rank: 1, operators: 2 }), "{error:?}");
 }

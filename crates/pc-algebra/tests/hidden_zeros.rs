@@ -10,7 +10,8 @@ use proptest::prelude::*;
 #[derive(Clone, Debug)]
 enum Function {
     Variable,
-    Number(f64),
+    /// x + c; irrational constants, which are rounded, do not arise
+    Shifted(f64),
     Sum(Box<Function>, Box<Function>),
     Product(Box<Function>, Box<Function>),
     /// √(f² + 1)
@@ -34,7 +35,7 @@ impl Function {
         let square = |f: &Function| f.of(x).square();
         match self {
             Function::Variable => x,
-            Function::Number(value) => (*value).into(),
+            Function::Shifted(c) => x + *c,
             Function::Sum(f, g) => f.of(x) + g.of(x),
             Function::Product(f, g) => f.of(x) * g.of(x),
             Function::Root(f) => (square(f) + 1.0).sqrt(),
@@ -49,8 +50,8 @@ impl Function {
 }
 
 fn functions() -> impl Strategy<Value = Function> {
-    let number = prop::sample::select(&[-1.5, -1.0, 0.5, 2.0][..]);
-    let leaf = prop_oneof![3 => Just(Function::Variable), 1 => number.prop_map(Function::Number)];
+    let shift = prop::sample::select(&[-1.5, -1.0, 0.5, 2.0][..]);
+    let leaf = prop_oneof![3 => Just(Function::Variable), 1 => shift.prop_map(Function::Shifted)];
     leaf.prop_recursive(4, 12, 2, |inner| {
         let one = || inner.clone().prop_map(Box::new);
         prop_oneof![

@@ -25,7 +25,6 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     }));
     identity.extend([
         entry("--project-start", model.projects_start().to_string()),
-        entry("--keep", model.held_start_names().join(",")),
         entry("--project", model.kept().join(", ")),
         entry("--t-end", plan.t_end.to_string()),
         entry("--rtol", format!("{:e}", plan.rtol)),
@@ -37,6 +36,8 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         entry("--form", format!("{form:?}").to_lowercase()),
         entry("text of the model", format!("{}\n", model.document().source.text())),
     ]);
+    let held = model.held_start_names();
+    identity.extend((!held.is_empty()).then(|| entry("--keep", held.join(","))));
     identity
 }
 

@@ -148,7 +148,7 @@ fn cofactors<'g>(
     for (i, j) in (0..size * size).map(|at| (at / size, at % size)) {
         let skip = |at: usize, place: usize| if at < place { at } else { at + 1 };
         let minor = Matrix::from_fn(size - 1, size - 1, |r, s| matrix[(skip(r, i), skip(s, j))]);
-        let sign = if (i + j) % 2 == 0 { 1 } else { -1 };
+        let sign = if (i + j).is_multiple_of(2) { 1 } else { -1 };
         entries.push(short(&minor)? * sign / whole);
     }
     Some(Matrix::from_fn(size, size, |i, j| entries[i * size + j]))

@@ -61,9 +61,8 @@ impl<'g> Assembler<'g, '_> {
             if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
         let declared = eta.len();
         eta.extend(&completing);
-        let of_states = given.states.clone();
-        let mut start = self.start_state(&frame, &eta, &constraints, &at, given)?;
-        start.extend(of_states);
+        let mut start = self.start_state(&frame, &eta, &constraints, &at, &given)?;
+        start.extend(given.states);
 
         let velocities = frame.velocities(&eta);
         let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self

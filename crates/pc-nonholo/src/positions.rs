@@ -14,6 +14,9 @@ const SATISFIED: f64 = 1e-11;
 /// The part of themselves by which coordinates are varied.
 const VARIED: f64 = 0.01;
 
+/// Coordinates smaller than this part of the largest are varied as if they were as large.
+const LEAST: f64 = 0.1;
+
 /// Conditions f(t, x) = 0 on the positions of a system, none of which need be independent of the others.
 pub(crate) struct Positions<'g> {
     graph: &'g Graph,
@@ -37,7 +40,7 @@ impl Place {
     pub(crate) fn varied(&self, index: u64) -> Place {
         let scale = self.scale();
         let mut random = Random(index.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
-        let mut vary = |x: f64| x + VARIED * x.abs().clamp(VARIED * scale, 1.0) * random.next();
+        let mut vary = |x: f64| x + VARIED * x.abs().clamp(LEAST * scale, 1.0) * random.next();
         Place { t: vary(self.t), x: self.x.iter().map(|&x| vary(x)).collect() }
     }
 
@@ -110,7 +113,7 @@ impl<'g> Positions<'g> {
                 let step = equations.damped(&f, mu);
                 let x = place.x.iter().zip(&step).map(|(x, step)| x - step).collect();
                 let next = Place { x, ..place };
-                mu = 10.0 * mu;
+                mu *= 10.0;
                 let (f, slopes) = self.at(&next, &sizes)?;
                 (norm(&f) < residual).then_some((next, f, slopes))
             });

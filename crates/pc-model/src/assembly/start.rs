@@ -97,7 +97,7 @@ impl<'g> Assembler<'g, '_> {
         eta: &[Expr<'g>],
         constraints: &[Written<'g>],
         at: &[(Expr<'g>, f64)],
-        given: Given,
+        given: &Given,
     ) -> Result<Vec<f64>, ModelError> {
         let (n, declared) = (frame.coordinates().len(), given.values.len() - frame.coordinates().len());
         let mut start = given.values.clone();

@@ -66,7 +66,10 @@ impl Surface {
                 Part::Position => (0..n, self.moved(part, t, y, p)),
                 Part::Velocity => (n..n + self.k, step),
             };
-            let still: &[usize] = if part == Part::Position { held.coordinates } else { &[] };
+            let still = match part {
+                Part::Position => held.coordinates,
+                Part::Velocity => held.quasi_velocities,
+            };
             for (i, (y, moved)) in y[range.clone()].iter_mut().zip(&moved).enumerate() {
                 *y += if still.contains(&i) { 0.0 } else { *moved };
             }
