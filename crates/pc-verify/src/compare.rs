@@ -10,7 +10,7 @@ use crate::derivation::{Derivation, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::linear::pseudo_inverse;
 use crate::quantities::{Free, Quantity, Sized};
-use crate::rounding::{Random, Rounding};
+use crate::rounding::{Random, Rounding, within};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
 
@@ -352,8 +352,7 @@ impl Second {
             for (place, (label, _)) in first.wanted.iter().enumerate() {
                 let (one, two) = (values[place], seconds[place]);
                 let error = error(one, two);
-                // Written so that NaN disagrees.
-                if !(error <= TOLERANCE) {
+                if !within(error, TOLERANCE) {
                     return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
                         form: first.form.clone(),
                         quantity: label.clone(),

@@ -15,7 +15,7 @@ use crate::error::Irregular;
 use crate::linear::{Solution, independent_rows, matrix, pseudo_inverse, solve};
 use crate::number::{D1, D2, Number};
 use crate::point::Point;
-use crate::rounding::Rounding;
+use crate::rounding::{Rounding, within};
 use crate::structure::Structure;
 use crate::text::{Forced, Text, Velocities};
 
@@ -104,8 +104,7 @@ struct Balance {
 impl Balance {
     fn add(&mut self, term: f64) {
         self.sum += term;
-        // Written so that NaN stays.
-        if !(term.abs() <= self.largest) {
+        if !within(term.abs(), self.largest) {
             self.largest = term.abs();
         }
     }
@@ -241,7 +240,7 @@ impl Derivation {
             let variation = &inverse * &difference;
             let rest = (&b * &variation - &difference).amax();
             let size = transported.iter().chain(&displaced).fold(0.0f64, |size, part| size.max(part.abs()));
-            if !(rest <= CLOSED * size.max(f64::MIN_POSITIVE)) {
+            if !within(rest, CLOSED * size.max(f64::MIN_POSITIVE)) {
                 return Err(Irregular::Frame);
             }
             let mut sum = weighed(variation.as_slice());
@@ -398,7 +397,7 @@ impl Derivation {
             let mut rate = Balance::default();
             rate.add(drift);
             row.iter().zip(accelerations).for_each(|(c, w)| rate.add(c * w));
-            if !(rate.sum.abs() <= FOLLOWED * rate.largest.max(1.0)) {
+            if !within(rate.sum.abs(), FOLLOWED * rate.largest.max(1.0)) {
                 return Err(Irregular::OffConstraints);
             }
         }

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Irregular;
+use crate::rounding::within;
 
 /// Singular values below this part of the largest count as zero.
 const RANK: f64 = 1e-9;
@@ -75,8 +76,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     let scaled = DMatrix::from_fn(size, size, |i, j| rows[i] * a[(i, j)] * columns[j]);
     let lu = scaled.clone().full_piv_lu();
     let pivots = lu.u().diagonal().abs();
-    // Written so that NaN is singular.
-    if !(pivots.min() > PIVOT * pivots.max()) {
+    if !within(PIVOT * pivots.max(), pivots.min()) {
         return Err(Irregular::Singular);
     }
     let inverse = lu.try_inverse().ok_or(Irregular::Singular)?;

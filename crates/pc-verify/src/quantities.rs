@@ -3,7 +3,7 @@
 use crate::derivation::{Derivation, Derived, Direction};
 use crate::error::Irregular;
 use crate::linear::{matrix, solve};
-use crate::rounding::{Rounding, UNIT};
+use crate::rounding::{Rounding, UNIT, within};
 
 /// A quantity that both derivations have.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,11 +85,11 @@ impl Derivation {
         rounding: &Rounding,
     ) -> Result<Vec<Sized>, Irregular> {
         let at = &derived.place;
-        if !(derived.condition <= WORST_CONDITION) {
+        if !within(derived.condition, WORST_CONDITION) {
             return Err(Irregular::IllConditioned);
         }
         let momenta = free.map(|free| self.momenta(derived, free, rounding)).transpose()?;
-        if momenta.as_ref().is_some_and(|momenta| !(momenta.condition <= WORST_CHOICE)) {
+        if momenta.as_ref().is_some_and(|momenta| !within(momenta.condition, WORST_CHOICE)) {
             return Err(Irregular::IllConditioned);
         }
         let along = motion(derived);
@@ -242,7 +242,7 @@ impl Derivation {
             [value, change]
         };
         let (values, momentum_rates): (Vec<Sized>, Vec<Sized>) =
-            (0..free.len()).map(|f| of(f)).map(|[value, rate]| (value, rate)).unzip();
+            (0..free.len()).map(of).map(|[value, rate]| (value, rate)).unzip();
         let columns = self.columns(&self.once(at, &motion, &exact))?;
         let sizes = self.column_sizes(derived)?;
         // Those that constraints fix at 0 do not contribute.

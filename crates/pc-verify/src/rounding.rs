@@ -2,6 +2,11 @@
 
 use std::cell::Cell;
 
+/// Whether a value is at most a bound; what is no number is not.
+pub(crate) fn within(value: f64, bound: f64) -> bool {
+    value <= bound
+}
+
 /// Half a unit in the last place of 1.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 

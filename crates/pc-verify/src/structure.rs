@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::derivation::{Derivation, Direction, Place};
 use crate::error::{Irregular, Unable};
 use crate::linear::pseudo_inverse;
-use crate::rounding::{Random, Rounding};
+use crate::rounding::{Random, Rounding, within};
 use crate::term::Term;
 use crate::text::{Brackets, Text};
 
@@ -240,7 +240,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let mut solved = &inverse * &right;
     solved -= &inverse * (&b * &solved - &right); // takes away what the pseudo-inverse is wrong by
     let rest = &b * &solved - &right;
-    if rank < k || !(rest.amax() <= 1e-8 * (1.0 + right.amax())) {
+    if rank < k || !within(rest.amax(), 1e-8 * (1.0 + right.amax())) {
         return Err(Unable::NoBrackets.into());
     }
     let mut constants = Constants::zero(k);

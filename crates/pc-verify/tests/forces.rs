@@ -1,0 +1,37 @@
+//! Forces of every kind, which built-in models have few of, derived twice.
+
+use pc_model::{Document, Model, Source};
+use pc_verify::{Options, verify};
+
+const MODEL: &str = r#"
+[parameters]
+m = 1.3
+[coordinates]
+x = 0.1
+"φ" = 0.4
+[quasi_velocities]
+u = { is = "x' + φ'*x", start = 0.3 }
+w = { is = "φ'*(1 + x^2)", start = -0.7 }
+[lagrangian]
+kinetic = "m*x'^2/2"
+potential = "x^2"
+dissipation = "0.2*u^2 + 0.1*w^4"
+[bodies.b]
+mass = 2.0
+position = ["x + 0.3*sin(φ)", "-0.3*cos(φ)", 0]
+rotation = ["cos(φ)", "-sin(φ)", 0, "sin(φ)", "cos(φ)", 0, 0, 0, 1]
+inertia = [1, 2, 0.4]
+force = ["sin(t)", -20, 0]
+torque = [0, 0, "0.7*φ"]
+[forces]
+x = "-0.3*x' + t"
+w = "x*u"
+"#;
+
+#[test]
+fn forces_of_every_kind_are_derived_alike_by_both_routes() {
+    let model = Model::new(Document::parse(Source::new("forces.toml", MODEL)).unwrap());
+    let agreement = verify(&model, &Options::default()).unwrap();
+    assert_eq!((agreement.states, agreement.forms.len()), (100, 3), "{agreement:?}");
+    assert!(agreement.error < 1e-13 && agreement.not_compared.is_empty(), "{agreement:?}");
+}
