@@ -10,7 +10,7 @@ use crate::error::{ErrorKind, ModelError};
 pub const MOST_SAMPLES: usize = 10_000_000;
 
 /// The most places in one step where events are looked for.
-pub(super) const MOST_SAMPLES_PER_STEP: u32 = 10_000;
+const MOST_SAMPLES_PER_STEP: u32 = 10_000;
 
 /// How the motion is computed; what is left out is left to the program.
 #[derive(Clone, Debug, Default, PartialEq)]
