@@ -1,7 +1,5 @@
 //! Random frames whose Gram matrices are full of zeros that are hard to see, against difference quotients.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_algebra::{Frame, Neighbourhood};
 use pc_expr::{Expr, Graph};
 use proptest::prelude::*;

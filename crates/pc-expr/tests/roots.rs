@@ -1,7 +1,5 @@
 //! What is seen of roots, absolute values, fractional powers and inverse functions, and what must not be.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_expr::{Expr, Graph, Number};
 
 fn power<'g>(x: Expr<'g>, num: i64, den: i64) -> Expr<'g> {
