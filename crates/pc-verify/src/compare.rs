@@ -206,7 +206,8 @@ impl Second {
         };
         let w = derivation.velocities_of(assembly.t_start, x, &eta[..columns.len()]);
         let w = w.map_err(|irregular| refused(stated(irregular)))?;
-        let start = Place { t: assembly.t_start, x: x.to_vec(), w };
+        let z = eta[eta.len() - derivation.text.state_rates.len()..].to_vec();
+        let start = Place { t: assembly.t_start, x: x.to_vec(), w, z };
         if let Velocities::Quasi(_) = derivation.text.velocities {
             derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
         }
@@ -243,7 +244,9 @@ impl Second {
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
         agreement.forms.push(form.to_owned());
         let (x, eta) = row.split_at(self.start.x.len());
-        let place = self.derivation.velocities_of(t, x, eta).map(|w| Place { t, x: x.to_vec(), w });
+        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
+        let place = self.derivation.velocities_of(t, x, eta);
+        let place = place.map(|w| Place { t, x: x.to_vec(), w, z: z.to_vec() });
         let compared = place.map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
@@ -297,7 +300,9 @@ impl Second {
     fn rate(&self, name: &str) -> Option<Quantity> {
         let coordinates = &self.derivation.text.names.coordinates;
         let coordinate = coordinates.iter().position(|x| x == name).map(Quantity::Velocity);
-        coordinate.or_else(|| {
+        let states = &self.derivation.text.names.states;
+        let state = || states.iter().position(|z| z == name).map(Quantity::StateRate);
+        coordinate.or_else(state).or_else(|| {
             self.velocity(name).map(|quantity| match quantity {
                 Quantity::Column(s) => Quantity::ColumnRate(s),
                 other => other,
@@ -381,7 +386,8 @@ impl Second {
 
     fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
         let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
-        let all = coordinates.chain(self.columns.iter().zip(columns));
+        let states = self.derivation.text.names.states.iter().zip(&at.z);
+        let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
         all.map(|(name, &value)| (name.clone(), value)).collect()
     }
 }
@@ -465,24 +471,35 @@ impl<'g> First<'g> {
         let columns = flow.free_quasi_velocities().iter().map(|&s| second.free(&names[s]));
         let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
         let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
+        let moving = n..state.len() - flow.motion.states();
         for (i, name) in state.iter().enumerate() {
-            let momentum = (canonical && i >= n && free.is_some()).then(|| Quantity::Momentum(i - n));
-            let is_input = !canonical || i < n;
-            candidates.push((name.clone(), if is_input { Some(Quantity::Zero) } else { momentum }));
+            let momentum = (canonical && moving.contains(&i)).then(|| {
+                let known = free.is_some();
+                known.then(|| Quantity::Momentum(i - n))
+            });
+            candidates.push((name.clone(), momentum.unwrap_or(Some(Quantity::Zero))));
         }
         for (i, name) in state.iter().enumerate() {
             let momentum = || free.is_some().then(|| Quantity::MomentumRate(i - n));
-            let rate = if canonical && i >= n { momentum() } else { second.rate(name) };
+            let rate = if canonical && moving.contains(&i) { momentum() } else { second.rate(name) };
             candidates.push((format!("the rate of {name}"), rate));
         }
+        let shown = flow.names.len() - flow.motion.states();
         for (i, name) in flow.names.iter().enumerate() {
-            let value = if i < n { Some(Quantity::Zero) } else { second.velocity(name) };
-            candidates.push((name.clone(), value));
+            let is_velocity = (n..shown).contains(&i);
+            candidates.push((name.clone(), if is_velocity { second.velocity(name) } else { Some(Quantity::Zero) }));
         }
         candidates.extend(
             flow.motion.observable_names().iter().map(|name| (name.clone(), second.observable(name))),
         );
-        let inputs = [0..if canonical { n } else { state.len() }, 2 * state.len()..2 * state.len() + n];
+        // What is given to it: coordinates, first-order states, and the quasi-velocities where these are its state.
+        let (dim, columns) = (state.len(), 2 * state.len());
+        let inputs = [
+            0..if canonical { n } else { dim },
+            moving.end..dim,
+            columns..columns + n,
+            columns + shown..columns + flow.names.len(),
+        ];
         let compiled = Compiled::Flow { flow: Box::new(flow), quasi_velocities };
         First::comparing(form, candidates, &inputs, second, free, compiled, agreement)
     }
@@ -516,11 +533,10 @@ impl<'g> First<'g> {
             return Err("its quasi-velocities are not those of the free system".to_owned());
         }
         let frame = system.frame();
-        let state = frame.coordinates().iter().chain(system.quasi_velocities());
         let energy_rate = EnergyRate {
             graph: system.graph(),
             rate: system.energy_rate(),
-            inputs: std::iter::once(frame.time()).chain(state.copied()).collect(),
+            inputs: std::iter::once(frame.time()).chain(system.state()).collect(),
             parameters: system.parameters().to_vec(),
         };
         let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate };
@@ -570,6 +586,7 @@ impl<'g> First<'g> {
                 };
                 let mut all = at.x.clone();
                 all.extend(quasi_velocities.iter().map(value));
+                all.extend(&at.z);
                 let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
                 let mut rates = vec![f64::NAN; state.len()];
                 let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
@@ -583,6 +600,7 @@ impl<'g> First<'g> {
                     Free::Column(column) => columns[column],
                     Free::Constraint(_) => 0.0,
                 }));
+                state.extend(&at.z);
                 let mut rates = vec![f64::NAN; state.len()];
                 let evaluated = motion.rhs(at.t, &state, &mut rates);
                 evaluated.map_err(|failure| refused(failure.to_string()))?;

@@ -19,12 +19,13 @@ use crate::rounding::{Rounding, within};
 use crate::structure::Structure;
 use crate::text::{Forced, Text, Velocities};
 
-/// A time, coordinates and velocities w.
+/// A time, coordinates, velocities w and first-order states.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
     pub(crate) w: Vec<f64>,
+    pub(crate) z: Vec<f64>,
 }
 
 /// A direction in which a place changes.
@@ -33,24 +34,25 @@ pub(crate) struct Direction {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
     pub(crate) w: Vec<f64>,
+    pub(crate) z: Vec<f64>,
 }
 
 impl Place {
     /// In the direction of w_s.
     pub(crate) fn along_velocity(&self, s: usize) -> Direction {
-        let mut w = vec![0.0; self.w.len()];
-        w[s] = 1.0;
-        Direction { t: 0.0, x: vec![0.0; self.x.len()], w }
+        let mut still = self.along(vec![0.0; self.x.len()]);
+        still.w[s] = 1.0;
+        still
     }
 
     /// In the direction of coordinates.
     pub(crate) fn along(&self, x: Vec<f64>) -> Direction {
-        Direction { t: 0.0, x, w: vec![0.0; self.w.len()] }
+        Direction { t: 0.0, x, w: vec![0.0; self.w.len()], z: vec![0.0; self.z.len()] }
     }
 
-    /// In that of time, coordinates moving with it.
+    /// In that of time, coordinates moving with it and first-order states at rest.
     pub(crate) fn in_time(&self, velocity: &[f64]) -> Direction {
-        Direction { t: 1.0, x: velocity.to_vec(), w: vec![0.0; self.w.len()] }
+        Direction { t: 1.0, ..self.along(velocity.to_vec()) }
     }
 }
 
@@ -74,6 +76,8 @@ pub(crate) struct Derived {
     pub(crate) place: Place,
     /// ẋ
     pub(crate) velocities: Vec<f64>,
+    /// ż
+    pub(crate) state_rates: Vec<f64>,
     /// ẇ, each with the size of its terms.
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
@@ -116,7 +120,8 @@ impl Derivation {
         let both = |values: &[f64], rates: &[f64]| -> Vec<D1> {
             values.iter().zip(rates).map(|(&value, &rate)| D1::new(value, rate)).collect()
         };
-        Point::new(&self.text, rounding, D1::new(at.t, along.t), both(&at.x, &along.x), both(&at.w, &along.w))
+        let all = [both(&at.x, &along.x), both(&at.w, &along.w), both(&at.z, &along.z)];
+        Point::new(&self.text, rounding, D1::new(at.t, along.t), all)
     }
 
     /// The point of a place as it changes in two directions.
@@ -133,12 +138,13 @@ impl Derivation {
         };
         let x = all(&at.x, &first.x, &second.x);
         let w = all(&at.w, &first.w, &second.w);
-        Point::new(&self.text, rounding, number(at.t, first.t, second.t), x, w)
+        let z = all(&at.z, &first.z, &second.z);
+        Point::new(&self.text, rounding, number(at.t, first.t, second.t), [x, w, z])
     }
 
     /// The point of a place.
     pub(crate) fn still<'a>(&'a self, at: &Place, rounding: &'a Rounding) -> Point<'a, f64> {
-        Point::new(&self.text, rounding, at.t, at.x.clone(), at.w.clone())
+        Point::new(&self.text, rounding, at.t, [at.x.clone(), at.w.clone(), at.z.clone()])
     }
 
     /// φ_α of these constraints.
@@ -278,8 +284,10 @@ impl Derivation {
                 sum.add(-varied.value(dissipation)?.eps);
             }
             for body in &text.bodies {
-                for (force, part) in still.all(&body.force)?.iter().zip(&body.position) {
-                    sum.add(force * displaced.value(part)?.eps);
+                for (i, force) in still.all(&body.force)?.iter().enumerate() {
+                    if body.force_functions[i] == 0.0 {
+                        sum.add(force * displaced.value(&body.position[i])?.eps);
+                    }
                 }
                 if !body.torque.is_empty() {
                     let turned = varied.angular_velocity(body)?;
@@ -299,6 +307,7 @@ impl Derivation {
         Place {
             t: rounding.of(place.t),
             x: place.x.iter().map(|&x| rounding.of(x)).collect(),
+            z: place.z.iter().map(|&z| rounding.of(z)).collect(),
             w: place.w.iter().zip(sizes).map(by).collect(),
         }
     }
@@ -306,8 +315,9 @@ impl Derivation {
     /// The equations at a place.
     pub(crate) fn at(&self, at: &Place, rounding: &Rounding) -> Result<Derived, Irregular> {
         let k = at.w.len();
-        let velocity = self.still(at, rounding).velocities()?.to_vec();
-        let in_time = at.in_time(&velocity);
+        let here = self.still(at, rounding);
+        let (velocity, state_rates) = (here.velocities()?.to_vec(), here.all(&self.text.state_rates)?);
+        let in_time = Direction { z: state_rates.clone(), ..at.in_time(&velocity) };
         let frame = self.frame(at, rounding)?;
 
         let mut mass = DMatrix::zeros(k, k);
@@ -364,6 +374,7 @@ impl Derivation {
         Ok(Derived {
             place: at.clone(),
             velocities: velocity,
+            state_rates,
             acceleration_sizes: sizes[..k].to_vec(),
             reactions: values[k..].to_vec(),
             reaction_sizes: sizes[k..].to_vec(),
@@ -444,7 +455,8 @@ impl Derivation {
         }
         let exact = Rounding::none();
         let all: Vec<usize> = (0..self.on_positions.len()).collect();
-        let mut at = Place { t, x: x.to_vec(), w: vec![0.0; x.len()] };
+        // First-order states stand in no definition and no constraint.
+        let mut at = Place { t, x: x.to_vec(), w: vec![0.0; x.len()], z: vec![0.0; self.text.state_rates.len()] };
         for _ in 0..NEWTON {
             let mut rows = self.quasi_velocity_matrix(&at, &exact)?;
             rows.extend(self.constraint_matrix(&all, &at, &exact)?);

@@ -15,6 +15,7 @@ pub(crate) struct Point<'a, T: Number> {
     t: T,
     x: Vec<T>,
     w: Vec<T>,
+    z: Vec<T>,
     /// Whether w is known here; it is not as a function of time where accelerations are unknown.
     knows_velocities: bool,
     /// ẇ, where it is known.
@@ -43,13 +44,20 @@ impl<T: Number> Moving<T> for Moved<'_, T> {
 }
 
 impl<'a, T: Number> Point<'a, T> {
-    pub(crate) fn new(text: &'a Text, rounding: &'a Rounding, t: T, x: Vec<T>, w: Vec<T>) -> Point<'a, T> {
+    /// The point of time, coordinates, velocities and first-order states.
+    pub(crate) fn new(
+        text: &'a Text,
+        rounding: &'a Rounding,
+        t: T,
+        [x, w, z]: [Vec<T>; 3],
+    ) -> Point<'a, T> {
         Point {
             text,
             rounding,
             t,
             x,
             w,
+            z,
             knows_velocities: true,
             accelerations: None,
             reactions: None,
@@ -117,7 +125,8 @@ impl<'a, T: Number> Point<'a, T> {
             let x = pairs(&self.x, self.velocities()?)?;
             let zero = vec![T::constant(0.0); self.w.len()];
             let w = pairs(&self.w, self.accelerations.as_ref().unwrap_or(&zero))?;
-            let moving = Point::new(self.text, self.rounding, t, x, w);
+            let z = pairs(&self.z, &self.all(&self.text.state_rates)?)?;
+            let moving = Point::new(self.text, self.rounding, t, [x, w, z]);
             let moving = if self.accelerations.is_some() { moving } else { moving.without_velocities() };
             let _ = self.moving.set(Box::new(Moved::<T>(moving))); // was empty
         }
@@ -141,7 +150,8 @@ impl<'a, T: Number> Point<'a, T> {
             Term::Coordinate(i) => self.x[*i],
             Term::Velocity(i) => self.velocities()?[*i],
             Term::QuasiVelocity(s) => self.quasi_velocity(*s)?,
-            Term::Parameter(j) => T::constant(self.text.parameters[*j]),
+            Term::Parameter(j) => T::constant(self.parameter(*j)),
+            Term::State(j) => self.z[*j],
             Term::Definition(j) => self.definition(*j)?,
             Term::Reaction(a) => {
                 let reaction = self.reactions.as_ref().and_then(|reactions| reactions.get(*a));
@@ -176,6 +186,14 @@ impl<'a, T: Number> Point<'a, T> {
             }
             Term::Call(function, arguments) => self.round(self.call(*function, arguments)?),
         })
+    }
+
+    /// The value of a parameter, or of an input at this time, which has no known rate.
+    fn parameter(&self, j: usize) -> f64 {
+        match self.text.tables.iter().find(|(place, _)| *place == j) {
+            Some((_, table)) => table.at(self.t.real()).unwrap_or(f64::NAN),
+            None => self.text.parameters[j],
+        }
     }
 
     fn definition(&self, j: usize) -> Result<T, Irregular> {
@@ -258,7 +276,7 @@ impl<'a, T: Number> Point<'a, T> {
         let text = self.text;
         let mut lagrangian = part(&text.lagrangian)? + part(&text.kinetic)? - part(&text.potential)?;
         for body in &text.bodies {
-            lagrangian += self.kinetic_energy(body)?;
+            lagrangian += self.kinetic_energy(body)? + self.force_function(body)?;
         }
         Ok(self.round(lagrangian))
     }
@@ -278,6 +296,23 @@ impl<'a, T: Number> Point<'a, T> {
             }
         }
         Ok(self.round(twice * 0.5))
+    }
+
+    /// m g·r, and that of the force where it has one.
+    fn force_function(&self, body: &Body) -> Result<T, Irregular> {
+        let mut function = T::constant(0.0);
+        if !self.text.gravity.is_empty() {
+            let mass = self.value(&body.mass)?;
+            for (g, r) in self.text.gravity.iter().zip(&body.position) {
+                function += mass * self.value(g)? * self.value(r)?;
+            }
+        }
+        for ((force, r), &factor) in body.force.iter().zip(&body.position).zip(&body.force_functions) {
+            if factor != 0.0 {
+                function += self.value(force)? * self.value(r)? * factor;
+            }
+        }
+        Ok(self.round(function))
     }
 
     /// ω: as given, or the vector of RᵀṘ.

@@ -10,6 +10,8 @@ use crate::rounding::{Rounding, UNIT, within};
 pub(crate) enum Quantity {
     /// ẋ_i
     Velocity(usize),
+    /// ż_j
+    StateRate(usize),
     /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
     Column(usize),
     /// η̇_s of the columns.
@@ -100,6 +102,7 @@ impl Derivation {
         let of_momenta = |pick: &dyn Fn(&Momenta) -> Sized| momenta.as_ref().map(pick).unwrap_or_default();
         let quantity = |(place, wanted): (usize, &Quantity)| match *wanted {
             Quantity::Velocity(i) => Sized { value: derived.velocities[i], size: 0.0 },
+            Quantity::StateRate(j) => Sized { value: derived.state_rates[j], size: 0.0 },
             Quantity::Column(s) => Sized { value: columns[s].re, size: column_sizes[s].0 },
             Quantity::ColumnRate(s) => Sized { value: columns[s].eps, size: column_sizes[s].1 },
             Quantity::Zero => Sized::default(),
@@ -285,7 +288,7 @@ const SHARED: f64 = 1e-3;
 /// The direction of the motion: time, ẋ and ẇ.
 fn motion(derived: &Derived) -> Direction {
     let w = derived.accelerations.clone();
-    Direction { w, ..derived.place.in_time(&derived.velocities) }
+    Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }
 }
 
 /// A sum, with the largest of its terms.

@@ -38,6 +38,9 @@ impl Derivation {
         for w in &mut at.w {
             *w += scale * (1.0 + fastest) * random.signed();
         }
+        for z in &mut at.z {
+            *z += scale * (1.0 + z.abs()) * random.signed();
+        }
         self.on_constraints(at)
     }
 
@@ -47,7 +50,7 @@ impl Derivation {
         if let Velocities::Ordinary(_) = self.text.velocities {
             let size = |x: &f64| 1.0 + x.abs();
             let x = from.x.iter().zip(xi).map(|(x, step)| x + size(x) * step).collect();
-            return Ok(Place { t: from.t + tau, x, w: from.w.clone() });
+            return Ok(Place { t: from.t + tau, x, ..from.clone() });
         }
         let (mut x, mut s, mut length) = (from.x.clone(), 0.0, 1.0f64);
         while s < 1.0 {
@@ -62,14 +65,14 @@ impl Derivation {
                 Err(irregular) => return Err(irregular),
             }
         }
-        Ok(Place { t: from.t + tau, x, w: from.w.clone() })
+        Ok(Place { t: from.t + tau, x, ..from.clone() })
     }
 
     /// b ξ + τ b_0
     fn leading(&self, t: f64, x: &[f64], tau: f64, xi: &[f64]) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
         let velocity = |w: Vec<f64>| -> Result<Vec<f64>, Irregular> {
-            let place = Place { t, x: x.to_vec(), w };
+            let place = Place { t, x: x.to_vec(), w, z: vec![0.0; self.text.state_rates.len()] };
             Ok(self.still(&place, &exact).velocities()?.to_vec())
         };
         let (moving, drift) = (velocity(xi.to_vec())?, velocity(vec![0.0; xi.len()])?);

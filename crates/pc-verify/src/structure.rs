@@ -214,7 +214,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let exact = Rounding::none();
     let mut random = Random::new(k as u64);
     let (mut fields, mut brackets): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-    let resting = |x: Vec<f64>| Place { t: at.t, x, w: vec![0.0; k] };
+    let resting = |x: Vec<f64>| Place { x, w: vec![0.0; k], ..at.clone() };
     let points = 4 + 2 * k;
     let mut found = 0;
     for attempt in 0..8 * points {

@@ -15,6 +15,8 @@ pub(crate) enum Term {
     /// η_s
     QuasiVelocity(usize),
     Parameter(usize),
+    /// z_j, a first-order state.
+    State(usize),
     Definition(usize),
     /// λ_α
     Reaction(usize),
@@ -96,9 +98,12 @@ impl Term {
         };
         match self {
             Term::Velocity(_) | Term::QuasiVelocity(_) | Term::Rate(_) => Some(true),
-            Term::Number(_) | Term::Time | Term::Coordinate(_) | Term::Parameter(_) | Term::Reaction(_) => {
-                Some(false)
-            }
+            Term::Number(_)
+            | Term::Time
+            | Term::Coordinate(_)
+            | Term::Parameter(_)
+            | Term::State(_)
+            | Term::Reaction(_) => Some(false),
             Term::Definition(j) => definitions.get(*j).copied(),
             Term::Sum(parts) | Term::Product(parts) => any(&mut parts.iter().map(|(_, part)| part)),
             Term::Negative(inner) => inner.has_velocities(definitions),
@@ -113,7 +118,9 @@ impl Term {
 pub(crate) struct Names {
     pub(crate) coordinates: Vec<String>,
     pub(crate) quasi_velocities: Vec<String>,
+    /// Parameters, then inputs.
     pub(crate) parameters: Vec<String>,
+    pub(crate) states: Vec<String>,
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
 }
@@ -155,6 +162,7 @@ impl Names {
             "pi" => Ok(Term::Number(std::f64::consts::PI)),
             _ => None
                 .or_else(|| place(&self.parameters, name).map(Term::Parameter))
+                .or_else(|| place(&self.states, name).map(Term::State))
                 .or_else(|| place(&self.coordinates, name).map(Term::Coordinate))
                 .or_else(|| place(&self.quasi_velocities, name).map(Term::QuasiVelocity))
                 .or_else(|| place(&self.definitions, name).map(Term::Definition))

@@ -1,5 +1,8 @@
 //! What a model says, as terms of time, coordinates and velocities.
 
+use std::sync::Arc;
+
+use pc_mech::Table;
 use pc_model::Model;
 use pc_model::document::{AlgebraDefinition, Document, Expression, Inertia, NamedExpression, Orientation};
 
@@ -10,8 +13,14 @@ use crate::term::{Names, Term};
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// Values of the parameters.
+    /// Values of the parameters and inputs, at the start where these are tables.
     pub(crate) parameters: Vec<f64>,
+    /// The tables among them, with their places.
+    pub(crate) tables: Vec<(usize, Arc<Table>)>,
+    /// ż of the first-order states.
+    pub(crate) state_rates: Vec<Term>,
+    /// The acceleration of gravity.
+    pub(crate) gravity: Vec<Term>,
     pub(crate) definitions: Vec<Term>,
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
@@ -52,6 +61,8 @@ pub(crate) struct Body {
     pub(crate) inertia: Option<Vec<Term>>,
     pub(crate) turning: Option<Turning>,
     pub(crate) force: Vec<Term>,
+    /// μ_i for each component of the force: where it is not 0 the force has the force function μ_i F_i r_i, which counts in L.
+    pub(crate) force_functions: Vec<f64>,
     pub(crate) torque: Vec<Term>,
 }
 
@@ -81,6 +92,7 @@ impl Text {
             coordinates: named(&document.coordinates),
             quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
             parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
+            states: document.states.iter().map(|state| state.name.text.clone()).collect(),
             definitions: named(&document.definitions),
             constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
         };
@@ -88,6 +100,7 @@ impl Text {
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
         let part = |part: Option<&Expression>| part.map(term).transpose();
+        let tables = model.parameter_values().tables();
         let observed = document.integrals.iter().chain(&document.outputs);
         let observed =
             observed.filter_map(|o| Some((o.name.text.clone(), term(&o.expression).ok()?))).collect();
@@ -102,11 +115,15 @@ impl Text {
                     None => None,
                 },
                 force: body.force.as_ref().map_or(Ok(Vec::new()), |force| terms(force))?,
+                force_functions: vec![0.0; body.force.as_ref().map_or(0, |force| force.len())],
                 torque: body.torque.as_ref().map_or(Ok(Vec::new()), |torque| terms(torque))?,
             })
         });
         Ok(Text {
             parameters: model.parameters().map(|(_, value)| value).collect(),
+            tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
+            state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
+            gravity: document.gravity.as_ref().map_or(Ok(Vec::new()), |g| terms(&g.acceleration))?,
             definitions: document
                 .definitions
                 .iter()
