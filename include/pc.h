@@ -977,6 +977,15 @@ pc_status pc_model_set_max_step(pc_model *model,
                                 pc_error **error);
 
 /**
+ * Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step` places of each step, from 1, and
+ * events whose distances shrink geometrically to less than `accumulation` of the first are taken for accumulated.
+ */
+pc_status pc_model_set_event_search(pc_model *model,
+                                    size_t samples_per_step,
+                                    double accumulation,
+                                    pc_error **error);
+
+/**
  * Sets the method by which the program `pc` runs the model: "adams", "bdf".
  */
 pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);

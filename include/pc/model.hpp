@@ -197,6 +197,10 @@ public:
         return say(pc_model_set_tolerances, relative, absolute);
     }
     model &max_step(double length) { return say(pc_model_set_max_step, length); }
+    model &event_search(std::size_t samples_per_step, double accumulation)
+    {
+        return say(pc_model_set_event_search, samples_per_step, accumulation);
+    }
     model &method(const std::string &method) { return say(pc_model_set_method, method.c_str()); }
     model &form(const std::string &form) { return say(pc_model_set_form, form.c_str()); }
 

@@ -43,7 +43,7 @@ impl Run {
         let trajectory = solve(&mut flow.motion, 0.0, &start, &times, &options).unwrap();
         let rows: Vec<Vec<f64>> = trajectory.iter().map(|(t, state)| flow.row(t, state)).collect();
         let energy =
-            flow.names.len() + flow.observed().observable_names().iter().position(|n| n == "energy").unwrap();
+            flow.names.len() + flow.motion.observable_names().iter().position(|n| n == "energy").unwrap();
         let change = rows.iter().fold(0.0f64, |worst, row| worst.max((row[energy] - rows[0][energy]).abs()));
         Run { energy: (rows[0][energy], change), names: flow.names.clone(), rows }
     }

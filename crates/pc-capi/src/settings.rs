@@ -153,6 +153,25 @@ pub unsafe extern "C" fn pc_model_set_max_step(
     unsafe { set_number(model, error, "pc_model_set_max_step", &[("max_step", length)]) }
 }
 
+/// Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step` places of each step, from 1, and
+/// events whose distances shrink geometrically to less than `accumulation` of the first are taken for accumulated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_event_search(
+    model: *mut pc_model,
+    samples_per_step: usize,
+    accumulation: f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        finite(accumulation, "accumulation")?;
+        draft.put(Section::Simulation, &["samples_per_step"], samples_per_step.to_string());
+        draft.put(Section::Simulation, &["accumulation"], number(accumulation));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_event_search", write) }
+}
+
 /// Sets the method by which the program `pc` runs the model: "adams", "bdf".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_method(

@@ -121,6 +121,7 @@ fn everything() -> Model {
     say!(model, pc_model_set_samples; 11).unwrap();
     say!(model, pc_model_set_tolerances; 1e-6, 1e-8).unwrap();
     say!(model, pc_model_set_max_step; 0.25).unwrap();
+    say!(model, pc_model_set_event_search; 8, 1e-6).unwrap();
     say!(model, pc_model_set_method, "bdf").unwrap();
     say!(model, pc_model_set_form, "canonical").unwrap();
     model
@@ -336,6 +337,7 @@ fn nulls_and_models_of_texts_are_refused() {
         pc_model_set_end_time(draft, f64::INFINITY) with "t_end is inf, but must be finite";
         pc_model_set_tolerances(draft, 1.0, f64::NAN) with "atol is NaN, but must be finite";
         pc_model_set_max_step(draft, f64::INFINITY) with "max_step is inf, but must be finite";
+        pc_model_set_event_search(draft, 4, f64::NAN) with "accumulation is NaN, but must be finite";
         pc_model_set_samples(read, 3) with
             "pc_model_set_samples needs a model begun with pc_model_new; this one was read from a text";
         pc_model_add_body(read, x, x, x, x, x) with

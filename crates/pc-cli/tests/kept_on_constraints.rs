@@ -56,8 +56,8 @@ fn a_bicycle_rides_at_every_speed() {
     for row in text.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
         assert_eq!(row[status], "completed", "{row:?}");
         let number = |j: usize| row[j].parse::<f64>().expect("a number");
-        // The error of the integration with rtol 1e-9, some hundred steps.
-        assert!(number(drift) < 1e-9 * number(energy).abs(), "{row:?}");
+        // The error of the integration with rtol 1e-9, at most some ten times that in some hundred steps.
+        assert!(number(drift) < 1e-8 * number(energy).abs(), "{row:?}");
     }
 }
 

@@ -3,6 +3,8 @@
 //! Nothing here needs to be trusted: a form that is built is adopted only where its fingerprint says that it is the
 //! same function, and only where it is cheaper. With [`Folding::Structural`] expressions stay as they are.
 
+use std::collections::HashSet;
+
 use rustc_hash::FxHashMap;
 
 use crate::cone::Cone;
@@ -185,8 +187,10 @@ impl Graph {
     /// assert_eq!(written, [a * b, a + z]); // z is needed
     /// ```
     pub fn written_in<'g>(&'g self, outputs: &[Expr<'g>], known: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let known: HashSet<String> = known.iter().filter_map(|symbol| symbol.symbol_name()).collect();
+        let is_foreign = |symbol: &Expr<'g>| symbol.symbol_name().is_none_or(|name| !known.contains(&name));
         let foreign = |list: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            self.symbols_of(list).into_iter().filter(|symbol| !known.contains(symbol)).collect()
+            self.symbols_of(list).into_iter().filter(is_foreign).collect()
         };
         if foreign(outputs).is_empty() {
             return outputs.to_vec();

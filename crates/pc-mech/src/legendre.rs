@@ -94,8 +94,20 @@ pub struct LegendreTransform {
 enum QuasiVelocities {
     Closed(Evaluator),
     Linear(Box<Linear>),
-    /// With the number of unknowns.
-    Implicit(Box<(Newton, Solver)>, usize),
+    Implicit(Box<Implicit>),
+}
+
+/// p(w) = r with w = (η, μ), by Newton's method.
+#[derive(Clone, Debug)]
+struct Implicit {
+    newton: Newton,
+    solver: Solver,
+    /// Number of unknowns.
+    size: usize,
+    /// Equations of η alone, whose solution is where the method begins.
+    nearby: Option<Linear>,
+    /// Where it begins if these have none.
+    guess: Vec<f64>,
 }
 
 /// M w = r with w = (η, μ), in numbers.
@@ -122,30 +134,56 @@ impl Canonical<'_> {
                 let program = Program::new(equations.graph, &equations.inputs(&[]), self.quasi_velocities())?;
                 QuasiVelocities::Closed(Evaluator::new(program, Backend::Interpreter))
             }
-            Some(_) => QuasiVelocities::solved(&equations)?,
+            Some(_) => QuasiVelocities::solved(&equations, None)?,
         };
         LegendreTransform::new(self.system(), self.momenta(), self.momenta_of_velocities(), quasi_velocities)
     }
 }
 
 impl QuasiVelocities {
-    /// η, the first unknowns of these equations, in numbers.
-    fn solved(equations: &FirstOrder<'_>) -> Result<QuasiVelocities, ExprError> {
-        let (size, backend) = (equations.unknowns.len(), Backend::Interpreter);
-        let solver = Solver::new(size, equations.multipliers);
-        if let Some(implicit) = &equations.implicit {
-            let newton = Newton::new(equations, implicit, backend)?;
-            return Ok(QuasiVelocities::Implicit(Box::new((newton, solver)), size));
-        }
-        let (lower, mut entries) = equations.lower_triangle();
-        entries.extend(&equations.right);
-        let program = Program::new(equations.graph, &equations.inputs(&[]), &entries)?;
-        let (equations, values) = (Evaluator::new(program, backend), vec![0.0; entries.len()]);
-        Ok(QuasiVelocities::Linear(Box::new(Linear { equations, lower, values, solver })))
+    /// η, the first unknowns of these equations, in numbers; where they are not linear, from the solution of those `nearby`.
+    fn solved(
+        equations: &FirstOrder<'_>,
+        nearby: Option<&FirstOrder<'_>>,
+    ) -> Result<QuasiVelocities, ExprError> {
+        let Some(implicit) = &equations.implicit else {
+            return Ok(QuasiVelocities::Linear(Box::new(Linear::new(equations)?)));
+        };
+        let size = equations.unknowns.len();
+        Ok(QuasiVelocities::Implicit(Box::new(Implicit {
+            newton: Newton::new(equations, implicit, Backend::Interpreter)?,
+            solver: Solver::new(size, equations.multipliers),
+            size,
+            nearby: nearby.map(Linear::new).transpose()?,
+            guess: implicit.guess.clone(),
+        })))
+    }
+}
+
+impl Implicit {
+    /// Writes η.
+    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), Fault> {
+        let nearby = self.nearby.as_mut().and_then(|nearby| nearby.solve(at).ok());
+        let mut guess = nearby.unwrap_or_else(|| self.guess.clone());
+        guess.resize(self.size, 0.0);
+        self.newton.begin_at(&guess);
+        let mut known = [state, &vec![0.0; self.size]].concat();
+        let outcome = self.newton.solve(t, &mut known, p, &mut self.solver);
+        eta.copy_from_slice(&known[state.len()..state.len() + eta.len()]);
+        outcome
     }
 }
 
 impl Linear {
+    fn new(equations: &FirstOrder<'_>) -> Result<Linear, ExprError> {
+        let (lower, mut entries) = equations.lower_triangle();
+        entries.extend(&equations.right);
+        let program = Program::new(equations.graph, &equations.inputs(&[]), &entries)?;
+        let solver = Solver::new(equations.unknowns.len(), equations.multipliers);
+        let (equations, values) = (Evaluator::new(program, Backend::Interpreter), vec![0.0; entries.len()]);
+        Ok(Linear { equations, lower, values, solver })
+    }
+
     /// w, and M factorised.
     fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, Fault> {
         self.equations.eval(t, state, p, &mut self.values);
@@ -160,7 +198,7 @@ impl Linear {
 
 impl LegendreTransform {
     /// The change of the states of `system`, whose momenta are called `momenta`; η are the first unknowns of `equations`,
-    /// which are in (t, x, y).
+    /// which are in (t, x, y), and where these are not linear the solution next to that of linear ones `nearby`.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`].
@@ -168,8 +206,9 @@ impl LegendreTransform {
         system: &System<'g>,
         momenta: &[Expr<'g>],
         equations: &FirstOrder<'g>,
+        nearby: Option<&FirstOrder<'g>>,
     ) -> Result<LegendreTransform, MechError> {
-        let solved = QuasiVelocities::solved(equations)?;
+        let solved = QuasiVelocities::solved(equations, nearby)?;
         LegendreTransform::new(system, momenta, &system.momenta(), solved)
     }
 
@@ -202,7 +241,7 @@ impl LegendreTransform {
         match &mut self.quasi_velocities {
             QuasiVelocities::Closed(_) => columns.fill(f64::NAN),
             QuasiVelocities::Linear(linear) => linear.solver.solve(columns),
-            QuasiVelocities::Implicit(solver, _) => solver.1.solve(columns),
+            QuasiVelocities::Implicit(implicit) => implicit.solver.solve(columns),
         }
     }
 
@@ -238,13 +277,7 @@ impl LegendreTransform {
             QuasiVelocities::Linear(linear) => linear.solve((t, state, &self.parameters)).map(|solution| {
                 moving.copy_from_slice(&solution[..moving.len()]);
             }),
-            QuasiVelocities::Implicit(solver, size) => {
-                let (newton, factors) = &mut **solver;
-                let mut known = [state, &vec![0.0; *size]].concat();
-                let outcome = newton.solve(t, &mut known, &self.parameters, factors);
-                moving.copy_from_slice(&known[state.len()..state.len() + moving.len()]);
-                outcome
-            }
+            QuasiVelocities::Implicit(implicit) => implicit.solve((t, state, &self.parameters), moving),
         };
         outcome.map_err(|fault| self.error(fault, t, state))?;
         Ok(result)

@@ -388,7 +388,28 @@ impl<'g> Multipliers<'g> {
         let system = &self.equations.system;
         check_length("the guess of the quasi-velocities", guess, system.quasi_velocities.len())?;
         let momenta = system.momentum_symbols();
-        LegendreTransform::solving(system, &momenta, &self.legendre_equations(&momenta, guess)?)
+        let nearby = self.free_legendre_equations(&momenta);
+        let equations = self.legendre_equations(&momenta, guess)?;
+        LegendreTransform::solving(system, &momenta, &equations, nearby.as_ref())
+    }
+
+    /// M η = y − p_0 of a quadratic L: what the equations with multipliers say of momenta of which the constraints hold.
+    fn free_legendre_equations(&self, momenta: &[Expr<'g>]) -> Option<FirstOrder<'g>> {
+        let (system, eta) = (&self.equations.system, self.quasi_velocities());
+        let Quadratic { matrix: mass, linear: at_rest, .. } = quadratic(self.graph(), system.lagrangian, eta)?;
+        Some(FirstOrder {
+            state: system.state_with(momenta),
+            parameters: system.parameters.clone(),
+            unknowns: eta.to_vec(),
+            multipliers: 0,
+            mass,
+            implicit: None,
+            right: momenta.iter().zip(&at_rest).map(|(&y, &p)| y - p).collect(),
+            rates: Vec::new(),
+            observables: Vec::new(),
+            conserved: 0,
+            ..self.first_order()
+        })
     }
 
     /// The equations with w = (η, μ); nothing changes by them.

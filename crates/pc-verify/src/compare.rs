@@ -1,8 +1,9 @@
 //! The comparison of the two derivations.
 
 use std::fmt;
+use std::sync::Arc;
 
-use pc_mech::{Backend, Expr, Graph, Motion, VectorField};
+use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
 use pc_model::document::ConstraintKind;
 use pc_model::{Assembly, Flow, Model, Variables};
 
@@ -212,16 +213,24 @@ impl Second {
             derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
         }
         if !derivation.on_positions.is_empty() {
-            let mut kept = derivation.independent(&start).unwrap_or_default();
+            // Of constraints that follow from each other any may be dropped: the first derivation says which. That they do
+            // is looked at here, and that the motion follows them.
+            let dropped = |a: &usize| {
+                let name = &derivation.text.names.constraints[*a];
+                assembly.bound.redundant().iter().any(|redundant| redundant.constraint == *name)
+            };
+            let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
+            let mut kept = derivation.independent(&start, &last).unwrap_or_default();
             for number in 0..RANK_POINTS {
                 let place = derivation.random(&start, number);
-                let found = place.and_then(|place| derivation.independent(&place)).unwrap_or_default();
+                let found = place.and_then(|place| derivation.independent(&place, &last)).unwrap_or_default();
                 if found.len() > kept.len() {
                     kept = found;
                 }
             }
             derivation.kept = kept;
         }
+        derivation.find_force_functions(&start);
         Ok(Second { derivation, columns, start, external: model.external_forces() })
     }
 
@@ -432,7 +441,13 @@ enum Compiled<'g> {
     Flow { flow: Box<Flow>, quasi_velocities: Vec<Quantity> },
     /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
     /// state.
-    Emitted { motion: Box<Motion>, free: Vec<Free>, energy_rate: EnergyRate<'g> },
+    Emitted {
+        motion: Box<Motion>,
+        free: Vec<Free>,
+        energy_rate: EnergyRate<'g>,
+        /// The inputs that are read from tables, with their places among the parameters.
+        tables: Vec<(usize, Arc<Table>)>,
+    },
 }
 
 /// dH/dt as a function of time, coordinates, quasi-velocities and parameters.
@@ -527,7 +542,11 @@ impl<'g> First<'g> {
             other => (name.clone(), other),
         });
         let mut candidates: Vec<(String, Option<Quantity>)> = rates.chain(observables).collect();
-        candidates.push(("the rate of energy".to_owned(), Some(Quantity::FreeEnergyRate)));
+        if second.derivation.text.tables.is_empty() {
+            candidates.push(("the rate of energy".to_owned(), Some(Quantity::FreeEnergyRate)));
+        } else {
+            agreement.leave_out("the rate of energy", "that of an input is not known");
+        }
         let system = assembly.free_system().map_err(|error| error.to_string())?;
         if !system.quasi_velocities().iter().map(column).eq(free.iter().map(|&f| Ok(f))) {
             return Err("its quasi-velocities are not those of the free system".to_owned());
@@ -539,7 +558,8 @@ impl<'g> First<'g> {
             inputs: std::iter::once(frame.time()).chain(system.state()).collect(),
             parameters: system.parameters().to_vec(),
         };
-        let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate };
+        let tables = second.derivation.text.tables.clone();
+        let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };
         Ok(First::comparing("emit", candidates, &[], second, Some(free), compiled, agreement))
     }
 
@@ -594,7 +614,10 @@ impl<'g> First<'g> {
                 let row = flow.row(at.t, &state);
                 [state, rates, row].concat()
             }
-            Compiled::Emitted { motion, free, energy_rate } => {
+            Compiled::Emitted { motion, free, energy_rate, tables } => {
+                for (place, table) in tables {
+                    motion.parameters_mut()[*place] = table.at(at.t).unwrap_or(f64::NAN);
+                }
                 let mut state = at.x.clone();
                 state.extend(free.iter().map(|&f| match f {
                     Free::Column(column) => columns[column],

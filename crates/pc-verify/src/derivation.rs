@@ -195,10 +195,14 @@ impl Derivation {
         (0..at.w.len()).map(field).collect()
     }
 
-    /// The constraints that do not follow from those before, at a place.
-    pub(crate) fn independent(&self, at: &Place) -> Result<Vec<usize>, Irregular> {
-        let all: Vec<usize> = (0..self.on_positions.len()).collect();
-        Ok(independent_rows(&self.constraint_matrix(&all, at, &Rounding::none())?))
+    /// The constraints that do not follow at a place from those before, in an order in which some come last; in that of the text.
+    pub(crate) fn independent(&self, at: &Place, last: &[usize]) -> Result<Vec<usize>, Irregular> {
+        let first = (0..self.on_positions.len()).filter(|a| !last.contains(a));
+        let order: Vec<usize> = first.chain(last.iter().copied()).collect();
+        let rows = independent_rows(&self.constraint_matrix(&order, at, &Rounding::none())?);
+        let mut kept: Vec<usize> = rows.into_iter().map(|row| order[row]).collect();
+        kept.sort_unstable();
+        Ok(kept)
     }
 
     /// p·δw_s for all s, each with the size of its terms.

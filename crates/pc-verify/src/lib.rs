@@ -23,6 +23,7 @@
 mod compare;
 mod derivation;
 mod error;
+mod force_function;
 mod linear;
 mod number;
 mod point;

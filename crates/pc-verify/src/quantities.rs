@@ -128,7 +128,7 @@ impl Derivation {
         };
         let mut quantities =
             wanted.iter().enumerate().map(sized).collect::<Result<Vec<Sized>, Irregular>>()?;
-        raise(&mut quantities, wanted);
+        raise(&mut quantities, wanted, |quantity| natural_size(derived, quantity));
         Ok(quantities)
     }
 
@@ -268,8 +268,30 @@ impl Derivation {
     }
 }
 
-/// Quantities that one elimination gives are as uncertain as some roundings of the largest of them.
-fn raise(quantities: &mut [Sized], wanted: &[Quantity]) {
+/// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
+/// known to roundings of this.
+fn natural_size(derived: &Derived, quantity: &Quantity) -> f64 {
+    let largest = |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+    let velocity = largest(&[&derived.place.w, &derived.velocities]);
+    let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
+    match quantity {
+        Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
+        Quantity::ColumnRate(_) => (velocity * velocity).max(largest(&[&derived.accelerations])),
+        Quantity::Momentum(_) => momentum,
+        Quantity::MomentumRate(_)
+        | Quantity::Reaction(_)
+        | Quantity::Energy
+        | Quantity::FreeEnergy
+        | Quantity::FreeEnergyRate => (momentum * velocity).max(largest(&[&derived.momentum_rates])),
+        Quantity::StateRate(_) | Quantity::Observed(_) => 0.0,
+    }
+}
+
+/// Quantities that one elimination gives are as uncertain as some roundings of the largest of them, or of their natural size.
+fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
+    for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
+        quantity.size = quantity.size.max(SHARED * natural_size(wanted));
+    }
     for kind in wanted.iter().map(std::mem::discriminant) {
         if kind == std::mem::discriminant(&Quantity::Observed(0)) {
             continue;

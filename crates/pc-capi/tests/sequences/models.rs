@@ -119,7 +119,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 56 {
+        match function % 57 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -169,6 +169,7 @@ unsafe fn say(
             52 => pc_model_add_input_file(model, a, z, b, ptr::null(), a, error),
             53 => pc_model_set_gravity(model, b, z, b, error),
             54 => pc_model_add_parameter_expression(model, a, b, error),
+            55 => pc_model_set_event_search(model, count, x, error),
             _ => pc_model_set(model, a, x, error),
         }
     }

@@ -135,7 +135,7 @@ impl Handles {
             let (y, y_length, v, v_length) = (y.data(), y.len(), v.data(), v.len());
             let (out, length) = (result.data(), result.len());
             let mut number = 0.0;
-            self.call(|error| match function % 7 {
+            self.call(|error| match function % 8 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -143,6 +143,7 @@ impl Handles {
                 4 => pc_system_jvp(system, t, y, y_length, v, v_length, out, length, error),
                 // In the place of its own input, which is refused.
                 5 => pc_system_jvp(system, t, y, y_length, v, v_length, v, v_length, error),
+                6 => pc_system_verify(system, 1 + index, ptr::null_mut(), error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
             })
         }

@@ -81,6 +81,11 @@ impl Newton {
         })
     }
 
+    /// Says where solutions begin.
+    pub(crate) fn begin_at(&mut self, guess: &[f64]) {
+        self.guess.copy_from_slice(guess);
+    }
+
     /// The program of M, p and r.
     pub(crate) fn program(&self) -> &Program {
         self.equations.program()
