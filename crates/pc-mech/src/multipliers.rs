@@ -396,7 +396,8 @@ impl<'g> Multipliers<'g> {
     /// M η = y − p_0 of a quadratic L: what the equations with multipliers say of momenta of which the constraints hold.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>]) -> Option<FirstOrder<'g>> {
         let (system, eta) = (&self.equations.system, self.quasi_velocities());
-        let Quadratic { matrix: mass, linear: at_rest, .. } = quadratic(self.graph(), system.lagrangian, eta)?;
+        let Quadratic { matrix: mass, linear: at_rest, .. } =
+            quadratic(self.graph(), system.lagrangian, eta)?;
         Some(FirstOrder {
             state: system.state_with(momenta),
             parameters: system.parameters.clone(),

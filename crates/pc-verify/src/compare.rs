@@ -502,7 +502,8 @@ impl<'g> First<'g> {
         let shown = flow.names.len() - flow.motion.states();
         for (i, name) in flow.names.iter().enumerate() {
             let is_velocity = (n..shown).contains(&i);
-            candidates.push((name.clone(), if is_velocity { second.velocity(name) } else { Some(Quantity::Zero) }));
+            candidates
+                .push((name.clone(), if is_velocity { second.velocity(name) } else { Some(Quantity::Zero) }));
         }
         candidates.extend(
             flow.motion.observable_names().iter().map(|name| (name.clone(), second.observable(name))),
@@ -559,7 +560,8 @@ impl<'g> First<'g> {
             parameters: system.parameters().to_vec(),
         };
         let tables = second.derivation.text.tables.clone();
-        let compiled = Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };
+        let compiled =
+            Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };
         Ok(First::comparing("emit", candidates, &[], second, Some(free), compiled, agreement))
     }
 

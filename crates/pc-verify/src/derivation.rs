@@ -460,7 +460,8 @@ impl Derivation {
         let exact = Rounding::none();
         let all: Vec<usize> = (0..self.on_positions.len()).collect();
         // First-order states stand in no definition and no constraint.
-        let mut at = Place { t, x: x.to_vec(), w: vec![0.0; x.len()], z: vec![0.0; self.text.state_rates.len()] };
+        let mut at =
+            Place { t, x: x.to_vec(), w: vec![0.0; x.len()], z: vec![0.0; self.text.state_rates.len()] };
         for _ in 0..NEWTON {
             let mut rows = self.quasi_velocity_matrix(&at, &exact)?;
             rows.extend(self.constraint_matrix(&all, &at, &exact)?);

@@ -45,12 +45,7 @@ impl<T: Number> Moving<T> for Moved<'_, T> {
 
 impl<'a, T: Number> Point<'a, T> {
     /// The point of time, coordinates, velocities and first-order states.
-    pub(crate) fn new(
-        text: &'a Text,
-        rounding: &'a Rounding,
-        t: T,
-        [x, w, z]: [Vec<T>; 3],
-    ) -> Point<'a, T> {
+    pub(crate) fn new(text: &'a Text, rounding: &'a Rounding, t: T, [x, w, z]: [Vec<T>; 3]) -> Point<'a, T> {
         Point {
             text,
             rounding,

@@ -271,7 +271,8 @@ impl Derivation {
 /// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
 /// known to roundings of this.
 fn natural_size(derived: &Derived, quantity: &Quantity) -> f64 {
-    let largest = |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+    let largest =
+        |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
     let velocity = largest(&[&derived.place.w, &derived.velocities]);
     let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
     match quantity {

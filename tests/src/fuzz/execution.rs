@@ -210,7 +210,8 @@ fn projected(mut model: Model) -> Result<Motion, Refusal> {
 fn conserved(equations: &Equations<'_>) -> Vec<String> {
     let rates = equations.rates();
     let integrals = equations.system().integrals().iter();
-    let kept = integrals.filter(|(_, value)| rates.verdict(*value).is_ok_and(|verdict| verdict.is_conserved()));
+    let kept =
+        integrals.filter(|(_, value)| rates.verdict(*value).is_ok_and(|verdict| verdict.is_conserved()));
     kept.map(|(name, _)| name.clone()).collect()
 }
 

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField};
+use pc_expr::{
+    Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField,
+};
 
 use crate::compiled::columns::derivative;
 use crate::compiled::fault::check_finite;
