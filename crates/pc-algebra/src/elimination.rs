@@ -14,7 +14,7 @@ use crate::structure::StructureCoefficients;
 ///   X'_I = X_I + A_DI X_D,   X'_0 = X_0 + A_D0 X_D.
 #[derive(Clone, Debug)]
 pub struct Elimination<'g> {
-    frame: Frame<'g>,
+    whole: Frame<'g>,
     /// D, then I, numbered from 0.
     dependent: Vec<usize>,
     free: Vec<usize>,
@@ -22,7 +22,7 @@ pub struct Elimination<'g> {
     matrix: Matrix<Expr<'g>>,
     /// A_D0
     drift: Vec<Expr<'g>>,
-    left: Frame<'g>,
+    frame: Frame<'g>,
 }
 
 impl<'g> Frame<'g> {
@@ -50,14 +50,21 @@ impl<'g> Frame<'g> {
             Matrix::from_fn(b.rows(), free.len(), |i, s| b[(i, free[s])] + carried(i, &mut matrix.column(s)));
         let b0 = (0..b.rows()).map(|i| self.b0()[i] + carried(i, &mut drift.iter().copied())).collect();
         let left = Frame::new(graph, self.time(), self.coordinates().to_vec(), left, b0)?;
-        Ok(Elimination { frame: self.clone(), dependent: dependent.to_vec(), free, matrix, drift, left })
+        Ok(Elimination {
+            whole: self.clone(),
+            dependent: dependent.to_vec(),
+            free,
+            matrix,
+            drift,
+            frame: left,
+        })
     }
 }
 
 impl<'g> Elimination<'g> {
     /// The frame of the operators that are left.
     pub fn frame(&self) -> &Frame<'g> {
-        &self.left
+        &self.frame
     }
 
     /// The structure coefficients of the operators that are left from those of the whole frame, whatever its rank: with
@@ -89,12 +96,12 @@ impl<'g> Elimination<'g> {
         c: &StructureCoefficients<'g>,
         near: &Neighbourhood<'g>,
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
-        let (graph, k, l) = (self.frame.graph(), self.frame.operators(), self.free.len());
+        let (graph, k, l) = (self.whole.graph(), self.whole.operators(), self.free.len());
         shape("the list of operators of the structure coefficients", c.operators(), k)?;
         let components: Vec<Vec<Expr<'g>>> = (0..=l).map(|s| self.components(s)).collect();
         let bracket = |r: usize, s: usize| -> Vec<Vec<Expr<'g>>> {
             let (u, v) = (&components[r], &components[s]);
-            let (forth, back) = (self.left.apply(r, v), self.left.apply(s, u));
+            let (forth, back) = (self.frame.apply(r, v), self.frame.apply(s, u));
             let mut terms: Vec<Vec<Expr<'g>>> = (1..=k).map(|m| vec![forth[m], -back[m]]).collect();
             for (p, q, m, c) in c.nonzero() {
                 terms[m - 1].extend([c * u[p] * v[q], -(c * u[q] * v[p])]);
@@ -127,7 +134,7 @@ impl<'g> Elimination<'g> {
 
     /// B_ps for p = 0..k.
     fn components(&self, s: usize) -> Vec<Expr<'g>> {
-        let mut components = vec![Expr::ZERO; self.frame.operators() + 1];
+        let mut components = vec![Expr::ZERO; self.whole.operators() + 1];
         components[s.checked_sub(1).map_or(0, |s| self.free[s] + 1)] = Expr::ONE;
         for (d, &place) in self.dependent.iter().enumerate() {
             components[place + 1] = s.checked_sub(1).map_or(self.drift[d], |s| self.matrix[(d, s)]);

@@ -7,11 +7,11 @@ use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
 use pc_model::document::ConstraintKind;
 use pc_model::{Assembly, Flow, Model, Variables};
 
-use crate::derivation::{Derivation, Place};
+use crate::derivation::{Derivation, Derived, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::linear::pseudo_inverse;
-use crate::quantities::{Free, Quantity, Sized};
-use crate::rounding::{Random, Rounding, within};
+use crate::quantities::{Free, Quantity, REPETITIONS, Sized};
+use crate::rounding::{Random, Rounding, UNIT, within};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
 
@@ -362,6 +362,9 @@ impl Second {
                 }
                 let scattered = scattered.as_deref().unwrap_or_default();
                 self.derivation.scatter(&mut seconds, scattered, &wanted, first.free.as_deref())?;
+                if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
+                    self.scatter_first(first, &derived, &values, &mut seconds);
+                }
             }
             for (place, (label, _)) in first.wanted.iter().enumerate() {
                 let (one, two) = (values[place], seconds[place]);
@@ -386,6 +389,25 @@ impl Second {
             }
         }
         Ok(())
+    }
+
+    /// Raises sizes to how far the values of the first derivation scatter, in units of rounding, at states that differ by
+    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly.
+    fn scatter_first(&self, first: &mut First<'_>, derived: &Derived, values: &[f64], seconds: &mut [Sized]) {
+        for seed in 1..=REPETITIONS {
+            let rounding = Rounding::made(seed);
+            let near = self.derivation.near(&derived.place, &derived.velocity_sizes, &rounding);
+            // Where it has no values there it says nothing of rounding.
+            let Ok(moved) = self.columns_at(&near).and_then(|columns| first.values(&near, &columns)) else {
+                continue;
+            };
+            for ((second, value), moved) in seconds.iter_mut().zip(values).zip(moved) {
+                let scatter = (moved - value).abs() / UNIT;
+                if scatter.is_finite() {
+                    second.size = second.size.max(scatter);
+                }
+            }
+        }
     }
 
     fn columns_at(&self, at: &Place) -> Result<Vec<f64>, Irregular> {

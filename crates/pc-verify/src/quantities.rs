@@ -58,7 +58,7 @@ struct Momenta {
 }
 
 /// Evaluations with rounding errors made at will.
-const REPETITIONS: u64 = 3;
+pub(crate) const REPETITIONS: u64 = 3;
 
 /// Condition past which equations say little.
 const WORST_CONDITION: f64 = 1e10;
