@@ -34,7 +34,7 @@ pub enum Command {
     /// Print the equations of motion
     Derive(DeriveArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
-    Run(RunArguments),
+    Run(Box<RunArguments>),
     /// Integrate many motions, of other parameters and starts, over all cores; what is finished survives interruptions
     Sweep(Box<SweepArguments>),
     /// Write the equations as C or Rust source that needs nothing of this program

@@ -40,8 +40,11 @@ fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
+/// Names, state and rates at the start.
+type Tried = (Vec<String>, Vec<f64>, Vec<f64>);
+
 /// Assembled and evaluated at its start: names and values of the state, and its rates.
-fn tried(model: &Model) -> Result<(Vec<String>, Vec<f64>, Vec<f64>), ModelError> {
+fn tried(model: &Model) -> Result<Tried, ModelError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
     let (mut motion, start) = model.compile(&assembly)?;

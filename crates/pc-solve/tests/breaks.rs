@@ -1,7 +1,5 @@
 //! Fields that are not smooth at known times: no step crosses one of them.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::ops::ControlFlow;
 
 use pc_expr::{Failure, VectorField};

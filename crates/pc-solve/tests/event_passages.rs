@@ -1,5 +1,7 @@
 //! Which zeros of a function are passages, however they are met, and when too many accumulate.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
@@ -97,7 +99,7 @@ fn a_step_shows_as_much_as_is_asked_for() {
     let found = passages(wave, 0.0, 9.9, &options(1000));
     assert!(is_near(&found, &expected, 1e-12), "{}", found.len());
     let few = passages(wave, 0.0, 9.9, &options(1));
-    assert!(few.len() < expected.len() && (expected.len() - few.len()) % 2 == 0, "{}", few.len());
+    assert!(few.len() < expected.len() && (expected.len() - few.len()).is_multiple_of(2), "{}", few.len());
     assert!(solve_with_events(clock(), 0.0, &[0.0], &[1.0], &options(0), FnEvents::new()).is_err());
 }
 

@@ -1,5 +1,7 @@
 //! Forces that act for a short while on a body at rest: none is stepped over.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -98,7 +100,7 @@ fn pulses_of_many_forms_are_not_stepped_over() {
         ("between", w, Box::new(move |t, _| ((t - at) * (at + w - t)).step(1.0, 0.0))),
     ];
     for (name, speed, force) in forces {
-        let motion = motion(Spring::new(|t, x| force(t, x)), 10.0, Method::Adams);
+        let motion = motion(Spring::new(force), 10.0, Method::Adams);
         // To the first order in w/period: the place of the pulse is known to w.
         let expected = speed * (10.0 - at).sin();
         let found = motion.state(0)[0];

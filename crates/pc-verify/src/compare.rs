@@ -4,10 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
-use pc_model::document::ConstraintKind;
 use pc_model::{Assembly, Flow, Model, Variables};
 
-use crate::derivation::{Derivation, Derived, Place};
+use crate::derivation::{Completing, Derivation, Derived, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::linear::pseudo_inverse;
 use crate::quantities::{Free, Quantity, REPETITIONS, Sized};
@@ -187,16 +186,17 @@ impl Second {
             [] => text.names.coordinates.iter().map(|x| format!("{x}'")).collect(),
             declared => declared.to_vec(),
         };
-        let nonlinear = |c: &pc_model::document::Constraint| {
-            c.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
-        };
         let mut derivation = Derivation {
             on_positions: text.on_positions()?,
-            nonlinear: model.document().constraints.iter().map(nonlinear).collect(),
             kept: Vec::new(),
+            completing: Vec::new(),
             structure: Structure::Frame,
             text,
         };
+        // Which velocities the energy is one of is the first derivation's choice.
+        let all = assembly.system.quasi_velocities().iter().skip(columns.len());
+        derivation.completing =
+            all.filter_map(|eta| completing(&derivation.text, &eta.to_string())).collect();
         let (x, eta) = assembly.start.split_at(n);
         let stated = Passed::from;
         let refused = |passed: Passed| match passed {
@@ -421,6 +421,14 @@ impl Second {
         let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
         all.map(|(name, &value)| (name.clone(), value)).collect()
     }
+}
+
+/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, made longer where it is that of something else.
+fn completing(text: &Text, name: &str) -> Option<Completing> {
+    let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
+    let velocity = name.strip_suffix('\'').and_then(|x| place(&text.names.coordinates, x));
+    let constraint = || place(&text.names.constraints, name.trim_end_matches('_'));
+    velocity.map(Completing::Velocity).or_else(|| constraint().map(Completing::Constraint))
 }
 
 /// The difference of two values relative to the size of their terms.

@@ -56,16 +56,35 @@ impl Place {
     }
 }
 
+/// A quasi-velocity that is not declared, but completes those that are defined by `is` to as many as coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Completing {
+    /// ẋ_i
+    Velocity(usize),
+    /// What a constraint fixes at 0.
+    Constraint(usize),
+}
+
+impl Completing {
+    fn velocity(&self) -> Option<usize> {
+        if let Completing::Velocity(i) = self { Some(*i) } else { None }
+    }
+
+    fn constraint(&self) -> Option<usize> {
+        if let Completing::Constraint(a) = self { Some(*a) } else { None }
+    }
+}
+
 /// The second derivation of a model.
 #[derive(Clone, Debug)]
 pub(crate) struct Derivation {
     pub(crate) text: Text,
     /// Of each constraint, whether it contains no velocities.
     pub(crate) on_positions: Vec<bool>,
-    /// Of each constraint, whether it is not affine in the velocities.
-    pub(crate) nonlinear: Vec<bool>,
     /// The constraints that do not follow from those before.
     pub(crate) kept: Vec<usize>,
+    /// What completes the quasi-velocities.
+    pub(crate) completing: Vec<Completing>,
     pub(crate) structure: Structure,
 }
 
@@ -479,7 +498,7 @@ impl Derivation {
         Err(Irregular::OffConstraints)
     }
 
-    /// ẋ where all quasi-velocities vanish, those that affine constraints fix at 0 among them, and its rate along the motion:
+    /// ẋ where all quasi-velocities vanish, those that complete the ones defined among them, and its rate along the motion:
     /// what b_0 is where quasi-velocities are defined by ẋ. Zero otherwise: in the velocities w = η there is nothing to add.
     pub(crate) fn drift(
         &self,
@@ -493,11 +512,15 @@ impl Derivation {
             _ => return Ok([zero.clone(), zero]),
         }
         let resting = Place { w: zero.clone(), ..at.clone() };
-        let affine: Vec<usize> = (0..self.on_positions.len()).filter(|&a| !self.nonlinear[a]).collect();
+        let constraints: Vec<usize> = self.completing.iter().filter_map(Completing::constraint).collect();
         let mut rest = self.columns(&self.still(&resting, rounding))?;
-        rest.extend(self.constraints(&affine, &resting, rounding)?);
+        rest.extend(self.constraints(&constraints, &resting, rounding)?);
         let mut rows = self.quasi_velocity_matrix(&resting, rounding)?;
-        rows.extend(self.constraint_matrix(&affine, &resting, rounding)?);
+        rows.extend(self.constraint_matrix(&constraints, &resting, rounding)?);
+        for velocity in self.completing.iter().filter_map(Completing::velocity) {
+            rows.push((0..zero.len()).map(|i| f64::from(u8::from(i == velocity))).collect());
+            rest.push(0.0);
+        }
         let (inverse, _) = pseudo_inverse(&matrix(&rows, zero.len())).ok_or(Irregular::Singular)?;
         let against = |rest: &[f64]| -> Vec<f64> {
             (-(&inverse * DMatrix::from_column_slice(rest.len(), 1, rest))).iter().copied().collect()
@@ -506,7 +529,8 @@ impl Derivation {
         let in_time = at.in_time(velocity);
         let moving = self.once(&drifting, &in_time, rounding);
         let mut rates: Vec<f64> = self.columns(&moving)?.iter().map(|eta| eta.eps).collect();
-        rates.extend(self.constraint_rates(&affine, &drifting, &in_time, rounding)?);
+        rates.extend(self.constraint_rates(&constraints, &drifting, &in_time, rounding)?);
+        rates.resize(rest.len(), 0.0);
         Ok([drifting.w, against(&rates)])
     }
 }

@@ -7,12 +7,12 @@
 
 use crate::derivation::{Derivation, Direction, Place};
 use crate::error::Irregular;
-use crate::rounding::{Random, Rounding};
+use crate::rounding::{Random, Rounding, within};
 
 /// Places at which the quotient is looked at, for the parameters as they are and for others.
 const PLACES: usize = 6;
 
-/// How far parameters are moved.
+/// How far parameters and places are moved.
 const MOVED: f64 = 0.3;
 
 /// What rounding may leave, relative to the larger of both sides.
@@ -43,21 +43,29 @@ impl Derivation {
 
     /// μ of the vector that has these components of the force on a body and no others.
     fn factor(&self, body: usize, components: &[usize], near: &Place) -> Option<f64> {
+        let mut random = Random::new(2);
         let mut factor = None;
         let mut looked = 0;
         for number in 0..PLACES {
-            let Ok(place) = self.random(near, number) else { continue };
+            // Anywhere, also off the surface on which a frame or constraints keep the coordinates.
+            let scale = if number == 0 { 0.0 } else { MOVED };
+            let mut moved = |values: &[f64]| -> Vec<f64> {
+                values.iter().map(|value| value + scale * (1.0 + value.abs()) * random.signed()).collect()
+            };
+            let place = Place { x: moved(&near.x), w: moved(&near.w), ..near.clone() };
             let Ok(sides) = self.sides(body, components, &place) else { continue };
-            looked += 1;
             let sides = sides?;
+            if !sides.iter().flatten().all(|side| side.is_finite()) {
+                continue;
+            }
+            looked += 1;
             let size = sides.iter().flatten().fold(0.0f64, |size, side| size.max(side.abs()));
             for [work, slope] in sides {
                 if work.abs() <= ALIKE * size && slope.abs() <= ALIKE * size {
                     continue;
                 }
                 let factor = *factor.get_or_insert(work / slope);
-                // Written so that NaN differs.
-                if !((work - factor * slope).abs() <= ALIKE * size) {
+                if !within((work - factor * slope).abs(), ALIKE * size) {
                     return None;
                 }
             }

@@ -106,7 +106,10 @@ pub fn between(specimen: &Specimen, start: &Start, model: &Execution, twin: &Exe
     let eta = specimen.quasi_velocities();
     let carried: Vec<&str> = specimen.carried.iter().map(|carried| carried.name.as_str()).collect();
     // y·η − L and p·ẋ − L are the same where ẋ is linear in η. A constraint beside definitions is one more of these.
+    // Nor is it the same where a force has a force function only on the surface that carried coordinates keep.
+    let is_forced = specimen.bodies.iter().any(|body| body.force.is_some());
     let drifts = specimen.has_drift()
+        || is_forced && !specimen.carried.is_empty()
         || is_defined(specimen)
             && specimen.constraints.iter().any(|constraint| {
                 constraint.restricts == Restricts::Velocities && !is_homogeneous(specimen, constraint)

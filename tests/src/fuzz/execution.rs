@@ -211,7 +211,7 @@ fn conserved(equations: &Equations<'_>) -> Vec<String> {
     let rates = equations.rates();
     let integrals = equations.system().integrals().iter();
     let kept =
-        integrals.filter(|(_, value)| rates.verdict(*value).is_ok_and(|verdict| verdict.is_conserved()));
+        integrals.filter(|(_, value)| rates.verdict(*value).is_ok_and(pc_mech::Conservation::is_conserved));
     kept.map(|(name, _)| name.clone()).collect()
 }
 

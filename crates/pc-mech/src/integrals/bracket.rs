@@ -79,7 +79,7 @@ impl<'g> System<'g> {
     fn constants(&self, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let closed = pc_algebra::quadratic(self.graph(), self.lagrangian, &self.quasi_velocities).is_some();
         let mut constants = self.symbols();
-        constants.retain(|z| !variables.contains(z) && !(closed && self.quasi_velocities.contains(z)));
+        constants.retain(|z| !(variables.contains(z) || closed && self.quasi_velocities.contains(z)));
         constants
     }
 
