@@ -9,7 +9,7 @@
 //! A [`Specimen`](specimen::Specimen) is known apart from the product: it has the fields of its frame, what its
 //! quasi-velocities are in velocities, and start values that were computed here. Its twin describes the same motion in the
 //! coordinates of the chart and their velocities, without frame, quasi-velocities, brackets or carried coordinates, which
-//! are [definitions] there: Lagrange's equations, so that an error in what the twin has not is seen. A finding is shrunk to a
+//! are `[definitions]` there: Lagrange's equations, so that an error in what the twin has not is seen. A finding is shrunk to a
 //! short text that still has it.
 
 pub mod campaign;
