@@ -21,57 +21,44 @@
 //! assert_eq!(out, [3.0, 2.0]);
 //! # Ok::<(), pc_expr::ExprError>(())
 //! ```
+//!
+//! # Rooms, in the order of the flow
+//!
+//! `parse` text → syntax tree · `graph` expressions · `identity` what is equal, decided by fingerprints · `calculus`
+//! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` what runs a
+//! tape · `codegen` tapes as source text · `ode` what integrators take · `time_profile` how a field depends on time
+//! explicitly.
 
-mod angles;
-mod collect;
-mod colouring;
-mod cone;
-mod dag;
-mod derivative;
-mod emit;
+mod calculus;
+mod codegen;
 mod error;
-mod evaluate;
-mod evaluator;
-mod events;
-mod expr;
-mod field;
-mod fingerprint;
-mod function;
-mod fuse;
 mod graph;
-#[cfg(feature = "jit")]
-mod jit;
+mod identity;
 mod kernel;
-mod lower;
-mod number;
+mod ode;
 pub mod parse;
-mod pattern;
 mod print;
-mod profile;
 mod program;
-mod rank;
-mod relations;
-mod sharing;
-mod vector_field;
+mod time_profile;
 
-pub use collect::Polynomial;
-pub use colouring::Colouring;
-pub use dag::Folding;
-pub use emit::{Body, Calls, Language, Layout, Place, Slot};
+pub use calculus::collect::Polynomial;
+pub use codegen::codegen::{Body, Calls, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
-pub use evaluate::Scalar;
-pub use evaluator::{Backend, Evaluator};
-pub use events::{Direction, Event, Events};
-pub use expr::Expr;
-pub use function::Function;
-pub use fuse::Cost;
-pub use graph::Graph;
+pub use graph::dag::Folding;
+pub use graph::evaluate::Scalar;
+pub use graph::expr::Expr;
+pub use graph::function::Function;
+pub use graph::graph::Graph;
+pub use graph::number::Number;
+pub use kernel::evaluator::{Backend, Evaluator};
 #[cfg(feature = "jit")]
-pub use jit::{Jit, JitError, JitOptions};
-pub use kernel::{Entry, Interpreter, Kernel, compile};
-pub use number::Number;
-pub use pattern::Pattern;
-pub use print::Style;
-pub use profile::{Surprises, TimeDependence, TimeProfile};
-pub use program::{Inputs, Instruction, Program, Register};
-pub use vector_field::{Failure, VectorField};
+pub use kernel::jit::{Jit, JitError, JitOptions};
+pub use kernel::kernel::{Entry, Interpreter, Kernel, compile};
+pub use ode::colouring::Colouring;
+pub use ode::events::{Direction, Event, Events};
+pub use ode::pattern::Pattern;
+pub use ode::vector_field::{Failure, VectorField};
+pub use print::text::Style;
+pub use program::fuse::Cost;
+pub use program::program::{Inputs, Instruction, Program, Register};
+pub use time_profile::profile::{Surprises, TimeDependence, TimeProfile};

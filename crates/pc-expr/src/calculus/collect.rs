@@ -7,12 +7,12 @@ use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Folding, Node, NodeId};
-use crate::expr::Expr;
-use crate::function::Function;
-use crate::graph::Graph;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Dag, Folding, Node, NodeId};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
 
 /// Greatest degree in one variable that is looked for.
 const MAX_DEGREE: usize = 4;

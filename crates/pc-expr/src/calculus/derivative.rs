@@ -6,10 +6,10 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::cone::{Assignment, Cone};
-use crate::dag::{Atom, Dag, Node, NodeId};
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::graph::subgraph::{Assignment, Cone};
 
 /// A node that is the first of the branches where the condition is not negative, and the second elsewhere.
 struct Choice {

@@ -1,8 +1,8 @@
 //! C99 that is also C++11.
 
-use super::Calls;
 use super::identifier::is_hidden;
-use crate::function::Function;
+use crate::codegen::codegen::Calls;
+use crate::graph::function::Function;
 
 /// Words of C and C++, and macros that `<math.h>`, `<stdio.h>` or the compiler may define.
 const RESERVED: &[&str] = &[
@@ -138,7 +138,7 @@ const RESERVED: &[&str] = &[
     "unix",
 ];
 
-pub(super) fn is_reserved(name: &str) -> bool {
+pub(crate) fn is_reserved(name: &str) -> bool {
     let prefixes = ["M_", "FP_", "MATH_", "SEEK_"];
     RESERVED.contains(&name)
         || name == "fma"
@@ -155,14 +155,14 @@ fn library_name(function: Function) -> Option<&'static str> {
     }
 }
 
-pub(super) fn call(function: Function, args: &str, prefix: &str) -> String {
+pub(crate) fn call(function: Function, args: &str, prefix: &str) -> String {
     match library_name(function) {
         Some(name) => format!("{name}({args})"),
         None => format!("{prefix}{}({args})", function.name()),
     }
 }
 
-pub(super) fn constant(value: f64) -> String {
+pub(crate) fn constant(value: f64) -> String {
     if value.is_nan() {
         "NAN".to_owned()
     } else if value.is_infinite() {
@@ -172,7 +172,7 @@ pub(super) fn constant(value: f64) -> String {
     }
 }
 
-pub(super) fn string(text: &str) -> String {
+pub(crate) fn string(text: &str) -> String {
     let mut literal = String::from("\"");
     for c in text.chars() {
         match c {
@@ -188,7 +188,7 @@ pub(super) fn string(text: &str) -> String {
 }
 
 /// The functions that `<math.h>` lacks, with the values of [`Function::eval`].
-pub(super) fn helpers(calls: &Calls, prefix: &str) -> String {
+pub(crate) fn helpers(calls: &Calls, prefix: &str) -> String {
     let mut text = String::new();
     for &function in &calls.functions {
         let (purpose, arguments, value) = match function {

@@ -4,13 +4,8 @@
 //! once is written where it is used, with brackets wherever the order of operations needs them, any other becomes a
 //! local constant.
 
-mod body;
-mod c;
-mod identifier;
-mod rust;
-
-use crate::function::Function;
-use crate::program::Program;
+use crate::graph::function::Function;
+use crate::program::program::Program;
 
 /// A language that programs are printed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -71,9 +66,9 @@ pub struct Body {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Calls {
     /// The elementary functions, in the order of [`Function::ALL`].
-    functions: Vec<Function>,
+    pub(super) functions: Vec<Function>,
     /// Whether a fused multiply-add is called.
-    multiply_add: bool,
+    pub(super) multiply_add: bool,
 }
 
 impl Calls {
@@ -85,7 +80,7 @@ impl Calls {
         self
     }
 
-    fn add(&mut self, function: Function) {
+    pub(super) fn add(&mut self, function: Function) {
         if let Err(place) = self.functions.binary_search_by_key(&(function as u8), |&known| known as u8) {
             self.functions.insert(place, function);
         }
@@ -104,36 +99,36 @@ impl Language {
     /// assert_eq!(identifiers, ["gamma1", "x_dot", "delta_theta", "class_", "y_", "gamma_1"]);
     /// ```
     pub fn identifiers<S: AsRef<str>>(self, names: &[S], reserved: &[&str]) -> Vec<String> {
-        identifier::distinct(self, names, reserved)
+        crate::codegen::identifier::distinct(self, names, reserved)
     }
 
     /// A literal of the constant that reads back to the same bits.
     pub fn constant(self, value: f64) -> String {
         match self {
-            Language::C => c::constant(value),
-            Language::Rust => rust::constant(value),
+            Language::C => crate::codegen::c::constant(value),
+            Language::Rust => crate::codegen::rust::constant(value),
         }
     }
 
     /// A string literal.
     pub fn string(self, text: &str) -> String {
         match self {
-            Language::C => c::string(text),
-            Language::Rust => rust::string(text),
+            Language::C => crate::codegen::c::string(text),
+            Language::Rust => crate::codegen::rust::string(text),
         }
     }
 
     /// `text` on one line and without what would end or break a comment.
     pub fn comment(self, text: &str) -> String {
-        identifier::comment(text)
+        crate::codegen::identifier::comment(text)
     }
 
     /// Definitions that the code which makes these calls needs: in C the functions that `<math.h>` lacks, their names
     /// beginning with `prefix`; in Rust the module `math`.
     pub fn helpers(self, calls: &Calls, prefix: &str) -> String {
         match self {
-            Language::C => c::helpers(calls, prefix),
-            Language::Rust => rust::helpers(calls),
+            Language::C => crate::codegen::c::helpers(calls, prefix),
+            Language::Rust => crate::codegen::rust::helpers(calls),
         }
     }
 }
@@ -170,6 +165,6 @@ impl Program {
     pub fn emit(&self, language: Language, layout: &Layout) -> Body {
         assert_eq!(layout.inputs.len(), self.state_len() + self.parameters_len(), "identifiers of inputs");
         assert_eq!(layout.slots.len(), self.outputs_len(), "slots of outputs");
-        body::Printer::new(self, language, layout).print()
+        crate::codegen::function_body::Printer::new(self, language, layout).print()
     }
 }

@@ -2,9 +2,10 @@
 
 use rustc_hash::FxHashSet;
 
-use super::{Body, Calls, Language, Layout, Place, c, rust};
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
+use super::{c, rust};
+use crate::codegen::codegen::{Body, Calls, Language, Layout, Place};
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Program, Register};
 
 /// Text longer than this is not put into another expression, but given a name.
 const LONG: usize = 80;
@@ -87,7 +88,7 @@ impl Piece {
     }
 }
 
-pub(super) struct Printer<'a> {
+pub(crate) struct Printer<'a> {
     program: &'a Program,
     language: Language,
     layout: &'a Layout,
@@ -131,7 +132,7 @@ impl Lines {
 }
 
 impl<'a> Printer<'a> {
-    pub(super) fn new(program: &'a Program, language: Language, layout: &'a Layout) -> Printer<'a> {
+    pub(crate) fn new(program: &'a Program, language: Language, layout: &'a Layout) -> Printer<'a> {
         let constants = program.constants().iter().map(|&c| {
             let text = language.constant(c);
             let binding = if text.starts_with('-') { Binding::Product } else { Binding::Atom };
@@ -150,7 +151,7 @@ impl<'a> Printer<'a> {
         Printer { program, language, layout, uses, pieces, names, locals: 0, hints, statements, calls }
     }
 
-    pub(super) fn print(mut self) -> Body {
+    pub(crate) fn print(mut self) -> Body {
         let first = self.program.first_result();
         let mut done = 0;
         self.write_outputs(&mut done, first);

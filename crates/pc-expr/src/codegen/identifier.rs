@@ -1,6 +1,7 @@
 //! Names as identifiers of C and Rust.
 
-use super::{Language, c, rust};
+use super::{c, rust};
+use crate::codegen::codegen::Language;
 
 /// Lower-case names of α to ω.
 const GREEK: [&str; 25] = [
@@ -61,7 +62,7 @@ fn spelt(name: &str) -> String {
     text
 }
 
-pub(super) fn distinct<S: AsRef<str>>(language: Language, names: &[S], reserved: &[&str]) -> Vec<String> {
+pub(crate) fn distinct<S: AsRef<str>>(language: Language, names: &[S], reserved: &[&str]) -> Vec<String> {
     let mut taken: Vec<String> = Vec::with_capacity(names.len());
     for name in names {
         let mut text = spelt(name.as_ref());
@@ -91,7 +92,7 @@ fn is_reserved(language: Language, name: &str) -> bool {
         }
 }
 
-pub(super) fn comment(text: &str) -> String {
+pub(crate) fn comment(text: &str) -> String {
     let visible = |c: char| if c.is_whitespace() || is_hidden(c) { ' ' } else { c };
     let mut text: String = text.chars().map(visible).collect();
     // The ends of a comment, and the trigraphs of C.
@@ -105,7 +106,7 @@ pub(super) fn comment(text: &str) -> String {
 }
 
 /// Control characters and those that change the direction of writing.
-pub(super) fn is_hidden(c: char) -> bool {
+pub(crate) fn is_hidden(c: char) -> bool {
     !matches!(c, '\'' | '"' | '\\') && c.escape_debug().len() > 1
 }
 

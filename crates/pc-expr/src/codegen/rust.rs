@@ -1,7 +1,7 @@
 //! Rust that needs no `std`.
 
-use super::Calls;
-use crate::function::Function;
+use crate::codegen::codegen::Calls;
+use crate::graph::function::Function;
 
 /// Words of the language, names that cannot be bound, and those that the printed code uses.
 const RESERVED: &[&str] = &[
@@ -13,16 +13,16 @@ const RESERVED: &[&str] = &[
     "virtual", "where", "while", "yield",
 ];
 
-pub(super) fn is_reserved(name: &str) -> bool {
+pub(crate) fn is_reserved(name: &str) -> bool {
     RESERVED.contains(&name)
 }
 
-pub(super) fn call(function: Function, args: &str) -> String {
+pub(crate) fn call(function: Function, args: &str) -> String {
     let module = if library_function(function).is_some() { "math::" } else { "" };
     format!("{module}{}({args})", function.name())
 }
 
-pub(super) fn constant(value: f64) -> String {
+pub(crate) fn constant(value: f64) -> String {
     if value.is_nan() {
         "f64::NAN".to_owned()
     } else if value.is_infinite() {
@@ -32,7 +32,7 @@ pub(super) fn constant(value: f64) -> String {
     }
 }
 
-pub(super) fn string(text: &str) -> String {
+pub(crate) fn string(text: &str) -> String {
     format!("{text:?}")
 }
 
@@ -66,7 +66,7 @@ fn library_function(function: Function) -> Option<Library> {
 }
 
 /// The functions that neither `std` nor `libm` has, with the values of [`Function::eval`], and the module `math`.
-pub(super) fn helpers(calls: &Calls) -> String {
+pub(crate) fn helpers(calls: &Calls) -> String {
     let mut text = String::new();
     let mut library = Vec::new();
     for &function in &calls.functions {

@@ -1,9 +1,9 @@
 //! How calls of functions are normalised: constants folded, signs taken out, powers written as products and roots.
 
-use super::{Atom, Candidate, Dag, MAX_EXPONENT, NodeId};
-use crate::fingerprint::Fingerprint;
-use crate::function::{Function, Parity};
-use crate::number::Number;
+use crate::graph::dag::{Atom, Candidate, Dag, MAX_EXPONENT, NodeId};
+use crate::graph::function::{Function, Parity};
+use crate::graph::number::Number;
+use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
     /// f(x…)
@@ -58,7 +58,7 @@ impl Dag {
         self.call_unfolded(Function::Pow, &[x, Atom::Constant(y)])
     }
 
-    pub(super) fn call_unfolded(&mut self, function: Function, args: &[Atom]) -> Atom {
+    pub(crate) fn call_unfolded(&mut self, function: Function, args: &[Atom]) -> Atom {
         let mut ids = [NodeId::NONE; 3];
         for (id, &arg) in ids.iter_mut().zip(args) {
             *id = self.argument(arg);

@@ -9,15 +9,11 @@ use std::hash::{Hash, Hasher};
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
 
-use crate::fingerprint::{Fingerprint, Roots, Terms, Value};
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::identity::fingerprint::{Fingerprint, Roots, Terms, Value};
 
-mod calls;
-mod divisors;
-mod signs;
-
-use divisors::{DivisorSets, Divisors};
+use crate::graph::divisors::{DivisorSets, Divisors};
 
 /// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
 /// `s = s + x` of n terms from costing n² memory.
@@ -27,14 +23,14 @@ const MERGED_FACTORS: usize = 64;
 /// Collecting the terms of one operand opens sums inside sums up to so many terms, factors likewise.
 const GATHERED: usize = 1024;
 /// Larger integer powers stay calls of `pow`.
-const MAX_EXPONENT: u32 = 1 << 16;
+pub(super) const MAX_EXPONENT: u32 = 1 << 16;
 
 /// Index of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct NodeId(pub(crate) u32);
 
 impl NodeId {
-    const NONE: NodeId = NodeId(u32::MAX);
+    pub(super) const NONE: NodeId = NodeId(u32::MAX);
 
     pub(crate) fn index(self) -> usize {
         self.0 as usize
@@ -111,35 +107,35 @@ pub enum Folding {
 
 #[derive(Debug, Default)]
 pub(crate) struct Dag {
-    folding: Folding,
+    pub(super) folding: Folding,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
     /// The values of nodes with roots, as sums of products of these.
     expansions: FxHashMap<NodeId, Terms>,
     roots: Roots,
     /// Whether the node is known not to be negative where it has a value.
-    nonnegative: Vec<bool>,
+    pub(super) nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
     /// A bit for each symbol that the node is written with, the same bit for every sixty-fourth.
     symbols: Vec<u64>,
     /// What the node divides by.
-    divisors: Vec<Divisors>,
+    pub(super) divisors: Vec<Divisors>,
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
-    limits: Vec<Divisors>,
-    divisor_sets: DivisorSets,
+    pub(super) limits: Vec<Divisors>,
+    pub(super) divisor_sets: DivisorSets,
     /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
     successor: Vec<Option<(NodeId, Number)>>,
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
     names: Vec<String>,
     by_structure: HashTable<NodeId>,
-    by_value: HashTable<NodeId>,
+    pub(super) by_value: HashTable<NodeId>,
     /// Numerators of the quotients by zero met so far.
     zero_divisions: Vec<Atom>,
 }
 
-fn hash_of(value: &impl Hash) -> u64 {
+pub(super) fn hash_of(value: &impl Hash) -> u64 {
     let mut hasher = FxHasher::default();
     value.hash(&mut hasher);
     hasher.finish()
@@ -510,7 +506,7 @@ impl Dag {
     }
 
     /// The best node known to have this node's value up to the sign that is returned with it.
-    fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
+    pub(super) fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
         let mut sign = Number::ONE;
         while let Some((next, s)) = self.successor[node.index()] {
             (node, sign) = (next, sign * s);
@@ -524,7 +520,7 @@ impl Dag {
     /// Of two forms of one function the better is the one that divides by less, as (x² − 1)/(x − 1) has no value at
     /// x = 1 and x + 1 has, and takes fewer roots, as (√x − 1)² + 2√x has none below 0; where neither is worse, the shorter.
     /// A form that divides by what the other does not, and conversely, stays a node of its own.
-    fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
+    pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         if self.folding == Folding::Structural {
             return self.intern(candidate);
         }
@@ -570,7 +566,7 @@ impl Dag {
     }
 
     /// ±n; a negative is interned as it is, without asking for its value again.
-    fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
+    pub(super) fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
         if sign.is_one() {
             return Atom::Node(node);
         }
@@ -589,7 +585,7 @@ impl Dag {
         Atom::Node(id)
     }
 
-    fn find(&self, candidate: &Candidate<'_>) -> Option<NodeId> {
+    pub(super) fn find(&self, candidate: &Candidate<'_>) -> Option<NodeId> {
         self.by_structure.find(candidate.hash(), |&id| self.is(id, candidate)).copied()
     }
 
@@ -606,7 +602,7 @@ impl Dag {
         }
     }
 
-    fn push(&mut self, candidate: &Candidate<'_>, value: Value) -> NodeId {
+    pub(super) fn push(&mut self, candidate: &Candidate<'_>, value: Value) -> NodeId {
         let (cost, symbols) = (self.cost_of(candidate), self.symbols_of(candidate));
         let (divisors, limits) = (self.divisors_of(candidate), self.limits_of(candidate));
         let nonnegative = self.is_candidate_nonnegative(candidate);

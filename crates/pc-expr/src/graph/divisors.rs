@@ -2,27 +2,27 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{Atom, Candidate, Dag, Folding, Node, NodeId, hash_of};
-use crate::fingerprint::Fingerprint;
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Candidate, Dag, Folding, Node, NodeId, hash_of};
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::identity::fingerprint::Fingerprint;
 
 /// Sets of more divisors than this are not kept apart.
 const MOST: usize = 64;
 
 /// A set of divisors, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Divisors(u32);
+pub(crate) struct Divisors(u32);
 
 impl Divisors {
-    pub(super) const NONE: Divisors = Divisors(0);
+    pub(crate) const NONE: Divisors = Divisors(0);
     /// A set too large to be kept, taken to hold every divisor.
     const ALL: Divisors = Divisors(u32::MAX);
 }
 
 /// The sets that occur, each kept once.
 #[derive(Debug)]
-pub(super) struct DivisorSets {
+pub(crate) struct DivisorSets {
     sets: Vec<Vec<NodeId>>,
     known: FxHashMap<Vec<NodeId>, Divisors>,
     unions: FxHashMap<(Divisors, Divisors), Divisors>,
@@ -70,7 +70,7 @@ impl DivisorSets {
 
 impl Dag {
     /// What a candidate divides by, in itself or below. Where nodes are merged by structure alone nobody asks.
-    pub(super) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
+    pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
         }
@@ -99,7 +99,7 @@ impl Dag {
 
     /// The arguments that bound where a candidate has a value, in itself or below. Where nodes are merged by structure alone
     /// nobody asks.
-    pub(super) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
+    pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
         }
@@ -129,7 +129,7 @@ impl Dag {
     }
 
     /// Whether each limit of the first set is one of the second.
-    pub(super) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
+    pub(crate) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
         if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;
         }
@@ -153,7 +153,7 @@ impl Dag {
 
     /// Whether each divisor of the first set vanishes only where one of the second does, as far as is seen from
     /// their factors.
-    pub(super) fn are_within(&self, some: Divisors, others: Divisors) -> bool {
+    pub(crate) fn are_within(&self, some: Divisors, others: Divisors) -> bool {
         if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;
         }

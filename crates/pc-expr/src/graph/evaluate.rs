@@ -4,12 +4,12 @@ use std::ops::{Add, Mul, Neg};
 
 use rustc_hash::FxHashMap;
 
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::error::ExprError;
-use crate::expr::Expr;
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
 
 /// A number that expressions can be evaluated over: `f64`, or a dual number.
 pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {

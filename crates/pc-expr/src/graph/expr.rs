@@ -4,11 +4,11 @@ use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::dag::{Atom, Dag, Folding, Node, NodeId};
-use crate::function::Function;
-use crate::graph::Graph;
-use crate::number::Number;
-use crate::print::Style;
+use crate::graph::dag::{Atom, Dag, Folding, Node, NodeId};
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::number::Number;
+use crate::print::text::Style;
 
 /// A constant, or a node of a [`Graph`]: `Copy`, with the arithmetic operators and elementary functions.
 ///
@@ -94,7 +94,7 @@ impl<'g> Expr<'g> {
 
     /// The text in another style than [`Display`](fmt::Display)'s.
     pub fn display(self, style: Style) -> String {
-        crate::print::print(self, style)
+        crate::print::text::print(self, style)
     }
 
     pub(crate) fn graph(self) -> Option<&'g Graph> {

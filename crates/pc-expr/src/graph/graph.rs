@@ -5,13 +5,13 @@ use std::fmt;
 
 use rustc_hash::FxHashSet;
 
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Folding, Node, NodeId};
 use crate::error::ExprError;
-use crate::evaluate::{Scalar, evaluate};
-use crate::expr::Expr;
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Dag, Folding, Node, NodeId};
+use crate::graph::evaluate::{Scalar, evaluate};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
 
 /// An arena of interned expressions.
 ///

@@ -1,8 +1,8 @@
 //! What is known not to be negative wherever it has a value, as it is written.
 
-use super::{Candidate, Dag, Node, NodeId};
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::dag::{Candidate, Dag, Node, NodeId};
+use crate::graph::function::Function;
+use crate::graph::number::Number;
 
 impl Dag {
     /// Whether a node is known not to be negative where it has a value.
@@ -16,7 +16,7 @@ impl Dag {
         self.is_sum_nonnegative(-constant, self.terms(terms).iter().map(|&(node, q)| (node, -q)))
     }
 
-    pub(super) fn is_candidate_nonnegative(&self, candidate: &Candidate<'_>) -> bool {
+    pub(crate) fn is_candidate_nonnegative(&self, candidate: &Candidate<'_>) -> bool {
         match *candidate {
             Candidate::Constant(c) => !c.is_negative(),
             Candidate::Symbol(_) => false,

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::dag::{Atom, Dag, NodeId};
+use crate::graph::dag::{Atom, Dag, NodeId};
 
 /// The sub-graph below some roots: children before parents.
 pub(crate) struct Cone {

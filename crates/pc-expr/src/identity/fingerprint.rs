@@ -8,14 +8,12 @@
 //! Logarithms and inverse functions of angles keep the laws that hold wherever both sides have values. Every other function
 //! is an unknown keyed by its arguments. A fingerprint depends on names and structure only, so two graphs agree on it.
 
-mod roots;
+pub(crate) use crate::identity::roots::{Roots, Terms, Value};
 
-pub(crate) use roots::{Roots, Terms, Value};
-
-use crate::dag::{Candidate, Dag, Node, NodeId};
-use crate::field::{Element, mix};
-use crate::function::{Function, Parity};
-use crate::number::Number;
+use crate::graph::dag::{Candidate, Dag, Node, NodeId};
+use crate::graph::function::{Function, Parity};
+use crate::graph::number::Number;
+use crate::identity::prime_field::{Element, mix};
 
 /// sin, cos and exp of q·z are composed from those of z/FRACTION where that is an integer multiple.
 const FRACTION: i32 = 12;
@@ -32,8 +30,8 @@ type Second = Element<45>;
 pub(crate) struct Fingerprint(First, Second);
 
 impl Fingerprint {
-    const ZERO: Fingerprint = Fingerprint(First::ZERO, Second::ZERO);
-    const ONE: Fingerprint = Fingerprint(First::ONE, Second::ONE);
+    pub(super) const ZERO: Fingerprint = Fingerprint(First::ZERO, Second::ZERO);
+    pub(super) const ONE: Fingerprint = Fingerprint(First::ONE, Second::ONE);
 
     pub(crate) fn constant(c: Number) -> Fingerprint {
         match c {
@@ -82,7 +80,7 @@ impl Fingerprint {
         if self.has_canonical_sign() { self } else { self.negated() }
     }
 
-    fn plus(self, other: Fingerprint) -> Fingerprint {
+    pub(super) fn plus(self, other: Fingerprint) -> Fingerprint {
         Fingerprint(self.0 + other.0, self.1 + other.1)
     }
 
@@ -94,7 +92,7 @@ impl Fingerprint {
         Fingerprint(self.0 * other.0, self.1 * other.1)
     }
 
-    fn negated(self) -> Fingerprint {
+    pub(super) fn negated(self) -> Fingerprint {
         Fingerprint(-self.0, -self.1)
     }
 

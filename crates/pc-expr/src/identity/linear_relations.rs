@@ -6,12 +6,12 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::cone::Cone;
-use crate::dag::{Atom, Folding, Node, NodeId};
-use crate::expr::Expr;
-use crate::fingerprint::{Fingerprint, First};
-use crate::graph::Graph;
-use crate::number::Number;
+use crate::graph::dag::{Atom, Folding, Node, NodeId};
+use crate::graph::expr::Expr;
+use crate::graph::graph::Graph;
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+use crate::identity::fingerprint::{Fingerprint, First};
 
 /// Points that must say nothing new before no more are tried.
 const IDLE_POINTS: usize = 2;

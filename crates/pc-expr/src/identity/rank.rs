@@ -1,9 +1,9 @@
 //! Linear algebra over fingerprints: what holds for almost all values of the symbols.
 
-use crate::dag::Atom;
-use crate::expr::Expr;
-use crate::fingerprint::{Fingerprint, Value};
-use crate::graph::Graph;
+use crate::graph::dag::Atom;
+use crate::graph::expr::Expr;
+use crate::graph::graph::Graph;
+use crate::identity::fingerprint::{Fingerprint, Value};
 
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.

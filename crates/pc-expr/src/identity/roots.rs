@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::Fingerprint;
+use crate::identity::fingerprint::Fingerprint;
 
 /// A value of more terms is no longer kept as a sum.
 const MOST_TERMS: usize = 48;

@@ -4,8 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::ExprError;
-use crate::kernel::{Entry, Interpreter, Kernel, compile};
-use crate::program::Program;
+use crate::kernel::kernel::{Entry, Interpreter, Kernel, compile};
+use crate::program::program::Program;
 
 /// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,27 +1,28 @@
 //! The compiling kernel: a program as machine code of the host, made by Cranelift at run time.
 //!
 //! A program becomes machine code in three steps, one file each: `plan` decides what is computed when and what waits
-//! in memory, `emit` writes that down as Cranelift's intermediate code with `circle` writing sines and cosines in
+//! in memory, `emit` writes that down as Cranelift's intermediate code with `sincos` writing sines and cosines in
 //! line, and `host` knows the processor and owns the code that results.
+
 #![expect(
     unsafe_code,
     reason = "compiled code is entered through a function pointer, and its memory is freed by hand"
 )]
 
-mod circle;
 mod emit;
 mod host;
 mod memory;
 mod plan;
 mod shim;
+mod sincos;
 
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::kernel::{Entry, Kernel};
-use crate::program::Program;
+use crate::kernel::kernel::{Entry, Kernel};
+use crate::program::program::Program;
 use host::{Code, Host};
 use plan::Plan;
 

@@ -1,13 +1,11 @@
 //! What runs a program.
 
-mod tape;
-
 use std::sync::Arc;
 
 use crate::error::ExprError;
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
-use tape::Tape;
+use crate::graph::function::Function;
+use crate::kernel::tape::Tape;
+use crate::program::program::{Instruction, Program, Register};
 
 /// What compiled code is called through: t, the state, the parameters, where the outputs go, scratch memory.
 ///
@@ -43,7 +41,7 @@ pub trait Kernel: Send {
 /// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.
 pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
-    if let Ok(jit) = crate::jit::Jit::new(&program) {
+    if let Ok(jit) = crate::kernel::jit::Jit::new(&program) {
         return Box::new(jit);
     }
     Box::new(Interpreter::new(program))

@@ -4,8 +4,8 @@
 //! and sums of products are one step, term after term in the order of the program; every operation is rounded as if
 //! it stood alone. Registers are an array of constant size, in which a 16-bit index masked to that size always falls.
 
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Program, Register};
 
 /// The sizes of register files.
 const SMALL: usize = 1 << 8;
@@ -49,7 +49,7 @@ struct Step {
 
 /// Steps, and the pairs of factors of those that have many.
 #[derive(Debug)]
-pub(super) struct Tape {
+pub(crate) struct Tape {
     constants: Vec<f64>,
     registers: usize,
     steps: Vec<Step>,
@@ -59,7 +59,7 @@ pub(super) struct Tape {
 
 impl Tape {
     /// The tape of a program that rounds every operation and has few enough registers.
-    pub(super) fn new(program: &Program) -> Option<Tape> {
+    pub(crate) fn new(program: &Program) -> Option<Tape> {
         if program.code().iter().any(rounds_once) {
             return None;
         }
@@ -79,7 +79,7 @@ impl Tape {
     }
 
     /// Registers as this tape wants them.
-    pub(super) fn registers(&self) -> Vec<f64> {
+    pub(crate) fn registers(&self) -> Vec<f64> {
         let mut registers = vec![0.0; self.registers];
         registers[..self.constants.len()].copy_from_slice(&self.constants);
         registers[self.registers - 1] = -0.0;
@@ -87,7 +87,7 @@ impl Tape {
     }
 
     /// Runs the tape on [`registers`](Tape::registers).
-    pub(super) fn run(
+    pub(crate) fn run(
         &self,
         registers: &mut [f64],
         t: f64,
@@ -258,7 +258,7 @@ fn short(register: Register) -> u16 {
 mod tests {
     use std::sync::Arc;
 
-    use crate::kernel::{Interpreter, Kernel, walk};
+    use crate::kernel::kernel::{Interpreter, Kernel, walk};
     use crate::{Expr, Folding, Graph, Inputs, Program};
 
     /// Sums, products and calls of what was made before, `count` of them.

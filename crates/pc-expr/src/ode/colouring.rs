@@ -1,6 +1,6 @@
 //! Columns that can be told apart in one product.
 
-use crate::pattern::Pattern;
+use crate::ode::pattern::Pattern;
 
 /// A colour for each column of a [`Pattern`], such that columns of one colour share no row.
 ///

@@ -1,6 +1,6 @@
 //! What may happen to a motion on its way: zeros of functions g(t, y), and resets of the state there.
 
-use crate::vector_field::Failure;
+use crate::ode::vector_field::Failure;
 
 /// In which direction a function passes through zero as the integration goes: against time where it goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

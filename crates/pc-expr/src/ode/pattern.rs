@@ -1,6 +1,6 @@
 //! Where a matrix may be other than zero.
 
-use crate::colouring::Colouring;
+use crate::ode::colouring::Colouring;
 
 /// The zero pattern of a matrix in compressed columns: the rows of the entries that may be other than zero,
 /// column after column, ascending in each.

@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
-use crate::pattern::Pattern;
-use crate::profile::TimeDependence;
+use crate::ode::pattern::Pattern;
+use crate::time_profile::profile::TimeDependence;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///

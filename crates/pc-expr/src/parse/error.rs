@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::{FUNCTIONS, Function, MAX_DEPTH, Span};
+use crate::parse::grammar::{MAX_DEPTH, Span};
+use crate::parse::vocabulary::{FUNCTIONS, Function};
 
 /// What is wrong with the text of an expression, and where.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -1,22 +1,4 @@
-//! Text of an expression → syntax tree with spans.
-//!
-//! ```text
-//! sum     = product { ("+" | "-") product }
-//! product = unary { ("*" | "/") unary }
-//! unary   = "-" unary | power
-//! power   = atom [ "^" unary ]                       right-associative, tighter than a minus on its left
-//! atom    = number | name | name "'" | function "(" sum { "," sum } ")" | "(" sum ")"
-//! ```
-//! Sums and products are flat lists, so that their length costs no stack; everything that nests is bounded by
-//! [`MAX_DEPTH`]. Names are not resolved here: `pi` and `t` are names like any other.
-//!
-//! ```
-//! use pc_expr::parse::{AstKind, parse};
-//! let tree = parse("m/2*x'^2")?;
-//! assert!(matches!(tree.kind, AstKind::Product(factors) if factors.len() == 3));
-//! assert_eq!(parse("2 x").unwrap_err().to_string(), "expected an operator before `x`");
-//! # Ok::<(), pc_expr::parse::ParseError>(())
-//! ```
+//! The grammar: recursive descent over flat lists.
 
 use winnow::LocatingSlice;
 use winnow::Parser as _;
@@ -25,12 +7,8 @@ use winnow::combinator::{alt, eof, opt};
 use winnow::error::EmptyError;
 use winnow::token::{any, one_of, take_while};
 
-mod error;
-mod vocabulary;
-
-pub use error::{ParseError, ParseErrorKind};
-pub use vocabulary::{FUNCTIONS, Function, is_name, nearest};
-use vocabulary::{OTHER_NAMES, continues_name, starts_name};
+use crate::parse::error::{ParseError, ParseErrorKind};
+use crate::parse::vocabulary::{FUNCTIONS, Function, OTHER_NAMES, continues_name, nearest, starts_name};
 
 /// Greatest nesting of parentheses, calls, exponents and unary minuses in one expression.
 pub const MAX_DEPTH: usize = 200;

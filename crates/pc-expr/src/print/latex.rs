@@ -1,8 +1,8 @@
 //! The words of LaTeX for the pieces of an expression.
 
-use super::{Binding, Piece};
-use crate::function::Function;
-use crate::number::Number;
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::print::text::{Binding, Piece};
 
 /// Greek letters by the names that LaTeX has for them.
 const GREEK: &[(char, &str)] = &[

@@ -1,12 +1,9 @@
 //! Expressions as text.
 
-use crate::dag::{Atom, Dag, Node, NodeId};
-use crate::expr::Expr;
-use crate::function::Function;
-use crate::number::Number;
-
-mod book;
-mod latex;
+use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::number::Number;
 
 /// How an expression is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,15 +56,15 @@ impl Style {
     fn number(self, c: Number) -> Piece {
         match self {
             Style::Text => number(c),
-            Style::Book => book::number(c),
-            Style::Latex => latex::number(c),
+            Style::Book => crate::print::book::number(c),
+            Style::Latex => crate::print::latex::number(c),
         }
     }
 
     fn symbol(self, name: &str) -> Piece {
         Piece::atom(match self {
             Style::Text | Style::Book => name.to_owned(),
-            Style::Latex => latex::symbol(name),
+            Style::Latex => crate::print::latex::symbol(name),
         })
     }
 
@@ -77,15 +74,15 @@ impl Style {
                 let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
                 Piece::atom(format!("{}({})", function.name(), args.join(", ")))
             }
-            Style::Latex => latex::call(function, args),
+            Style::Latex => crate::print::latex::call(function, args),
         }
     }
 
     fn power(self, base: Piece, exponent: Piece) -> Piece {
         let text = match self {
             Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
-            Style::Book => book::power(base, exponent),
-            Style::Latex => latex::power(&base, &exponent.text),
+            Style::Book => crate::print::book::power(base, exponent),
+            Style::Latex => crate::print::latex::power(&base, &exponent.text),
         };
         Piece { text, binding: Binding::Power }
     }
@@ -95,13 +92,17 @@ impl Style {
         match self {
             Style::Text => factors.join("*"),
             Style::Book => factors.join(" "),
-            Style::Latex => latex::juxtaposed(&factors),
+            Style::Latex => crate::print::latex::juxtaposed(&factors),
         }
     }
 
     fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
         match self {
-            Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
+            Style::Latex => format!(
+                "\\frac{{{}}}{{{}}}",
+                crate::print::latex::alone(above),
+                crate::print::latex::alone(below)
+            ),
             _ if below.len() == 1 => {
                 format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
             }

@@ -8,9 +8,9 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::cone::Cone;
-use crate::dag::{Dag, Node, NodeId};
-use crate::function::Function;
+use crate::graph::dag::{Dag, Node, NodeId};
+use crate::graph::function::Function;
+use crate::graph::subgraph::Cone;
 
 /// An angle with a sign.
 pub(crate) type SignedAngle = (NodeId, bool);

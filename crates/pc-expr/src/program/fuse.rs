@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::program::{Instruction, Program, Register};
+use crate::program::program::{Instruction, Program, Register};
 
 /// How many operations of each kind one evaluation takes; fused multiply-adds count as one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -2,14 +2,14 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::angles::{Compositions, SignedAngle, compositions};
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Node, NodeId};
 use crate::error::ExprError;
-use crate::function::Function;
-use crate::number::Number;
-use crate::program::{Instruction, Program, Register};
-use crate::sharing::{Factor, FactorId, SharedProduct, SharedProducts};
+use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+use crate::program::angle_addition::{Compositions, SignedAngle, compositions};
+use crate::program::program::{Instruction, Program, Register};
+use crate::program::sharing::{Factor, FactorId, SharedProduct, SharedProducts};
 
 /// Turns n-ary nodes into binary operations, each computed once.
 pub(crate) struct Lowering<'a> {

@@ -1,12 +1,12 @@
 //! Straight-line programs: chosen outputs of a graph as a tape that needs the graph no more.
 
-use crate::dag::{Atom, NodeId};
 use crate::error::ExprError;
-use crate::expr::Expr;
-use crate::function::Function;
-use crate::graph::Graph;
-use crate::lower::Lowering;
-use crate::print::{Binding, Piece, number};
+use crate::graph::dag::{Atom, NodeId};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::print::text::{Binding, Piece, number};
+use crate::program::lower::Lowering;
 
 /// A register of the tape: constants first, then inputs, then one for each instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

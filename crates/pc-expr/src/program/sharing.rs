@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::cone::Cone;
-use crate::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::subgraph::Cone;
 
 /// Products of more factors than this are not searched for pairs.
 const LONG: usize = 32;

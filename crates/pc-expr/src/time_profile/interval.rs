@@ -8,44 +8,44 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// All x with lo ≤ x ≤ hi.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Interval {
-    pub(super) lo: f64,
-    pub(super) hi: f64,
+pub(crate) struct Interval {
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
 }
 
 impl Interval {
-    pub(super) const ALL: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
-    pub(super) const ZERO: Interval = Interval::point(0.0);
-    pub(super) const ONE: Interval = Interval::point(1.0);
+    pub(crate) const ALL: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+    pub(crate) const ZERO: Interval = Interval::point(0.0);
+    pub(crate) const ONE: Interval = Interval::point(1.0);
 
-    pub(super) const fn point(x: f64) -> Interval {
+    pub(crate) const fn point(x: f64) -> Interval {
         Interval { lo: x, hi: x }
     }
 
     /// The interval between two numbers; everything if one of them is none.
-    pub(super) fn between(a: f64, b: f64) -> Interval {
+    pub(crate) fn between(a: f64, b: f64) -> Interval {
         if a.is_nan() || b.is_nan() { Interval::ALL } else { Interval { lo: a.min(b), hi: a.max(b) } }
     }
 
-    pub(super) fn is_point(self) -> bool {
+    pub(crate) fn is_point(self) -> bool {
         self.lo == self.hi
     }
 
-    pub(super) fn width(self) -> f64 {
+    pub(crate) fn width(self) -> f64 {
         self.hi - self.lo
     }
 
     /// The largest |x|.
-    pub(super) fn size(self) -> f64 {
+    pub(crate) fn size(self) -> f64 {
         self.lo.abs().max(self.hi.abs())
     }
 
-    pub(super) fn hull(self, other: Interval) -> Interval {
+    pub(crate) fn hull(self, other: Interval) -> Interval {
         Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
     /// 1, −1 or 0 where all of it has that sign, ends at zero aside.
-    pub(super) fn sign(self) -> Option<i8> {
+    pub(crate) fn sign(self) -> Option<i8> {
         match (self.lo >= 0.0, self.hi <= 0.0) {
             (true, true) => Some(0),
             (true, false) => Some(1),
@@ -58,17 +58,17 @@ impl Interval {
         Interval::between(f(self.lo), f(self.hi))
     }
 
-    pub(super) fn scale(self, factor: f64) -> Interval {
+    pub(crate) fn scale(self, factor: f64) -> Interval {
         self * Interval::point(factor)
     }
 
-    pub(super) fn square(self) -> Interval {
+    pub(crate) fn square(self) -> Interval {
         let (a, b) = (self.lo * self.lo, self.hi * self.hi);
         let least = if self.lo <= 0.0 && self.hi >= 0.0 { 0.0 } else { a.min(b) };
         Interval { lo: least, hi: a.max(b) }
     }
 
-    pub(super) fn recip(self) -> Interval {
+    pub(crate) fn recip(self) -> Interval {
         if self.lo > 0.0 || self.hi < 0.0 {
             return self.monotone(f64::recip);
         }
@@ -80,49 +80,49 @@ impl Interval {
     }
 
     /// The part that is not below `least`, at least a point.
-    pub(super) fn from(self, least: f64) -> Interval {
+    pub(crate) fn from(self, least: f64) -> Interval {
         Interval { lo: self.lo.max(least), hi: self.hi.max(least) }
     }
 
     /// The part between two numbers, at least a point.
-    pub(super) fn within(self, least: f64, most: f64) -> Interval {
+    pub(crate) fn within(self, least: f64, most: f64) -> Interval {
         Interval { lo: self.lo.clamp(least, most), hi: self.hi.clamp(least, most) }
     }
 
-    pub(super) fn exp(self) -> Interval {
+    pub(crate) fn exp(self) -> Interval {
         self.monotone(f64::exp)
     }
 
-    pub(super) fn ln(self) -> Interval {
+    pub(crate) fn ln(self) -> Interval {
         self.from(0.0).monotone(f64::ln)
     }
 
-    pub(super) fn sqrt(self) -> Interval {
+    pub(crate) fn sqrt(self) -> Interval {
         self.from(0.0).monotone(f64::sqrt)
     }
 
-    pub(super) fn asin(self) -> Interval {
+    pub(crate) fn asin(self) -> Interval {
         self.within(-1.0, 1.0).monotone(f64::asin)
     }
 
-    pub(super) fn atan(self) -> Interval {
+    pub(crate) fn atan(self) -> Interval {
         self.monotone(f64::atan)
     }
 
-    pub(super) fn tanh(self) -> Interval {
+    pub(crate) fn tanh(self) -> Interval {
         self.monotone(f64::tanh)
     }
 
-    pub(super) fn sinh(self) -> Interval {
+    pub(crate) fn sinh(self) -> Interval {
         self.monotone(f64::sinh)
     }
 
-    pub(super) fn cosh(self) -> Interval {
+    pub(crate) fn cosh(self) -> Interval {
         let ends = self.monotone(f64::cosh);
         if self.lo <= 0.0 && self.hi >= 0.0 { Interval { lo: 1.0, hi: ends.hi } } else { ends }
     }
 
-    pub(super) fn cos(self) -> Interval {
+    pub(crate) fn cos(self) -> Interval {
         if !self.width().is_finite() || self.width() >= 2.0 * PI {
             return Interval { lo: -1.0, hi: 1.0 };
         }
@@ -137,12 +137,12 @@ impl Interval {
         values
     }
 
-    pub(super) fn sin(self) -> Interval {
+    pub(crate) fn sin(self) -> Interval {
         (self - Interval::point(FRAC_PI_2)).cos()
     }
 
     /// xᶜ for x ≥ 0.
-    pub(super) fn powf(self, c: f64) -> Interval {
+    pub(crate) fn powf(self, c: f64) -> Interval {
         self.from(0.0).monotone(|x| x.powf(c))
     }
 }

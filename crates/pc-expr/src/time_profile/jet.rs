@@ -1,24 +1,24 @@
 //! A function of time with its first two derivatives, enclosed over an interval.
 
 use super::interval::Interval;
-use crate::function::Function;
-use crate::program::{Instruction, Register};
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Register};
 
 /// Enclosures of v, v̇ and v̈ over an interval of time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Jet {
-    pub(super) value: Interval,
-    pub(super) rate: Interval,
-    pub(super) bend: Interval,
+pub(crate) struct Jet {
+    pub(crate) value: Interval,
+    pub(crate) rate: Interval,
+    pub(crate) bend: Interval,
 }
 
 impl Jet {
-    pub(super) fn constant(x: f64) -> Jet {
+    pub(crate) fn constant(x: f64) -> Jet {
         Jet::line(Interval::point(x), 0.0)
     }
 
     /// What goes through `value` at this rate.
-    pub(super) fn line(value: Interval, rate: f64) -> Jet {
+    pub(crate) fn line(value: Interval, rate: f64) -> Jet {
         Jet { value, rate: Interval::point(rate), bend: Interval::ZERO }
     }
 
@@ -198,7 +198,7 @@ impl Jet {
     }
 
     /// What an instruction makes of the jets of its operands.
-    pub(super) fn of(instruction: &Instruction, jet: impl Fn(Register) -> Jet) -> Jet {
+    pub(crate) fn of(instruction: &Instruction, jet: impl Fn(Register) -> Jet) -> Jet {
         match *instruction {
             Instruction::Add(a, b) => jet(a).add(jet(b)),
             Instruction::Subtract(a, b) => jet(a).add(jet(b).negate()),

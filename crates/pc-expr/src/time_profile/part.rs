@@ -2,8 +2,8 @@
 
 use super::interval::Interval;
 use super::jet::Jet;
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Program, Register};
 
 /// How the value of a register moves with time.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -33,8 +33,8 @@ impl Motion {
 
 /// The registers that are watched, and the instructions that lead to them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Part {
-    pub(super) watched: Vec<usize>,
+pub(crate) struct Part {
+    pub(crate) watched: Vec<usize>,
     code: Vec<(usize, Instruction)>,
     /// Jets of constants, time, state and parameters, and room for the results.
     registers: Vec<Jet>,
@@ -44,17 +44,17 @@ pub(super) struct Part {
 }
 
 /// What a program does with time.
-pub(super) struct Analysis {
+pub(crate) struct Analysis {
     /// Whether an output contains t.
-    pub(super) explicit: bool,
+    pub(crate) explicit: bool,
     /// Functions of t alone.
-    pub(super) forcing: Part,
+    pub(crate) forcing: Part,
     /// Functions of t and the state that may rise and fall faster than either.
-    pub(super) mixed: Part,
+    pub(crate) mixed: Part,
 }
 
 impl Analysis {
-    pub(super) fn of(program: &Program, parameters: &[f64]) -> Analysis {
+    pub(crate) fn of(program: &Program, parameters: &[f64]) -> Analysis {
         let motions = motions(program);
         let used = |register: &Register| motions[register.index()].time;
         let first = program.first_result();
@@ -155,17 +155,17 @@ impl Part {
         Part { watched, code, registers, time, dim: program.state_len() }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.watched.is_empty()
     }
 
     /// Number of instructions.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.code.len()
     }
 
     /// What is watched between the times `a` and `b`, along the line through (t, y) at the rate ẏ.
-    pub(super) fn over(&mut self, (a, b): (f64, f64), line: Line<'_>) -> impl Iterator<Item = Jet> + '_ {
+    pub(crate) fn over(&mut self, (a, b): (f64, f64), line: Line<'_>) -> impl Iterator<Item = Jet> + '_ {
         let span = Interval::between(a, b);
         self.registers[self.time] = Jet::line(span, 1.0);
         let state = &mut self.registers[self.time + 1..][..self.dim];
@@ -182,8 +182,8 @@ impl Part {
 
 /// A motion as far as its direction tells: y + (· − t) ẏ. Empty for what does not contain the state.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Line<'a> {
-    pub(super) t: f64,
-    pub(super) state: &'a [f64],
-    pub(super) rates: &'a [f64],
+pub(crate) struct Line<'a> {
+    pub(crate) t: f64,
+    pub(crate) state: &'a [f64],
+    pub(crate) rates: &'a [f64],
 }

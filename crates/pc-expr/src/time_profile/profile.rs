@@ -6,14 +6,9 @@
 //! [Moore 1966]. Where the enclosures say that a part rises, or falls, and bends one way, nothing is hidden; else the
 //! interval is halved. So no pulse is missed for being short.
 
-mod interval;
-mod jet;
-mod part;
-mod scan;
-
-use self::part::{Analysis, Line, Part};
-use self::scan::{Feature, Kind, Scan};
-use crate::program::Program;
+use crate::program::program::Program;
+use crate::time_profile::part::{Analysis, Line, Part};
+use crate::time_profile::scan::{Feature, Kind, Scan};
 
 /// How f(t, y) depends on t explicitly.
 #[derive(Clone, Debug, Default)]
@@ -227,6 +222,3 @@ impl Seen {
         self.sharp > 0 || self.turns > 1 || self.bends > 1 || self.turns == 1 && self.bends + self.unsure > 0
     }
 }
-
-#[cfg(test)]
-mod tests;

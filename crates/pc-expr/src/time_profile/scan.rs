@@ -24,16 +24,16 @@ const MOST: u32 = 20_000;
 
 /// A place where a function of time does not go on as before.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Feature {
-    pub(super) t: f64,
+pub(crate) struct Feature {
+    pub(crate) t: f64,
     /// Number of the function among those watched.
-    pub(super) function: usize,
-    pub(super) kind: Kind,
+    pub(crate) function: usize,
+    pub(crate) kind: Kind,
 }
 
 /// What a function does at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     /// It has a jump or a corner, as far as can be seen.
     Sharp,
     /// It begins to fall, or to rise.
@@ -81,7 +81,7 @@ impl Sign {
 
 /// The features of what is watched along a window, found as far as asked for.
 #[derive(Clone, Debug)]
-pub(super) struct Scan {
+pub(crate) struct Scan {
     /// From where the features are kept.
     from: f64,
     end: f64,
@@ -93,7 +93,7 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    pub(super) fn new(part: &mut Part, start: f64, end: f64, line: Line<'_>) -> Scan {
+    pub(crate) fn new(part: &mut Part, start: f64, end: f64, line: Line<'_>) -> Scan {
         let at = |i: u32| start + (end - start) * (f64::from(i) / f64::from(PIECES));
         let mut pieces: Vec<(f64, f64)> = (0..PIECES).map(|i| (at(i), at(i + 1))).collect();
         let mut ranges = vec![None::<Interval>; part.watched.len()];
@@ -126,7 +126,7 @@ impl Scan {
     }
 
     /// Whether what is asked for lies ahead in the window.
-    pub(super) fn covers(&self, t: f64, to: f64) -> bool {
+    pub(crate) fn covers(&self, t: f64, to: f64) -> bool {
         let direction = if self.end < self.from { -1.0 } else { 1.0 };
         (t - self.from) * direction >= 0.0
             && (to - t) * direction >= 0.0
@@ -135,7 +135,7 @@ impl Scan {
 
     /// Forgets the features up to `t` and finds those up to `to`, or as far as so many evaluations show them; beyond, pieces
     /// are taken as they are if that is `enough`. Returns up to where they are known.
-    pub(super) fn between(
+    pub(crate) fn between(
         &mut self,
         part: &mut Part,
         (t, to): (f64, f64),

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::*;
+use crate::time_profile::profile::*;
 use crate::{Expr, Graph, Inputs, Interpreter, Kernel};
 
 /// A function of (t, y).

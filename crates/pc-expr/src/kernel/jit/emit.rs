@@ -1,5 +1,6 @@
 //! A plan as Cranelift's intermediate code.
 
+use crate::kernel::jit::sincos;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
@@ -10,9 +11,9 @@ use super::JitError;
 use super::host::{Assembly, Code, Host};
 use super::memory::{Area, Memory};
 use super::plan::{Plan, Stay, Step};
-use super::{circle, shim};
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
+use super::shim;
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Program, Register};
 
 /// Compiles a program; answers how many numbers of scratch memory it needs, too.
 pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Code, usize), JitError> {
@@ -201,7 +202,7 @@ impl Emitter<'_> {
                 let circles = [Some(first), second];
                 let circles = || circles.iter().flatten();
                 let arguments: Vec<Value> = circles().map(|circle| self.value(circle.argument)).collect();
-                let results = circle::emit(&mut self.b, self.host, &arguments);
+                let results = sincos::emit(&mut self.b, self.host, &arguments);
                 self.free(now);
                 for (circle, (sin, cos)) in circles().zip(results) {
                     for (register, value) in [(circle.sin, sin), (circle.cos, cos)] {

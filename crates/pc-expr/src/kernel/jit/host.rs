@@ -1,5 +1,6 @@
 //! The processor that code is made for, and the memory that code lives in.
 
+use crate::kernel::jit::sincos;
 use std::error::Error;
 use std::mem::ManuallyDrop;
 use std::sync::{Mutex, OnceLock};
@@ -11,7 +12,6 @@ use cranelift_codegen::settings::{self, Configurable};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, ModuleError};
 
-use super::circle;
 use super::{Entry, JitError};
 
 /// The processor of this machine.
@@ -48,7 +48,7 @@ impl Host {
             || flags.iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
         let mut host = Host { isa, fma, far_circle: None };
         if fma {
-            host.far_circle = Some(circle::compile_far(&host)?);
+            host.far_circle = Some(sincos::compile_far(&host)?);
         }
         Ok(host)
     }
@@ -57,7 +57,7 @@ impl Host {
         self.fma
     }
 
-    /// The address of what [`circle::compile_far`] made, where there is fused multiply-add.
+    /// The address of what [`sincos::compile_far`] made, where there is fused multiply-add.
     pub(super) fn far_circle(&self) -> usize {
         self.far_circle.as_ref().map_or(0, Code::address)
     }

@@ -5,8 +5,8 @@
 //! so are the values that wait in memory instead of holding a register: whenever there are too many, the one whose next
 //! use is furthest away (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code loads least often.
 
-use crate::function::Function;
-use crate::program::{Instruction, Program, Register};
+use crate::graph::function::Function;
+use crate::program::program::{Instruction, Program, Register};
 
 use super::JitOptions;
 

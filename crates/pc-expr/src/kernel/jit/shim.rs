@@ -1,6 +1,6 @@
 //! The elementary functions as compiled code calls them: the values of [`Function::eval`] under the C calling convention.
 
-use crate::function::Function;
+use crate::graph::function::Function;
 
 macro_rules! shims {
     ($($variant:ident $name:ident ($($arg:ident),+);)+) => {

@@ -1,0 +1,11 @@
+//! What runs a program: an interpreter, and machine code.
+//!
+//! In goes a [`Program`](crate::Program), out come numbers, the same ones from every [`Kernel`](kernel::Kernel). Read
+//! `kernel` (the interface), `tape` and `interpreter` (which works everywhere), `jit` (machine code by Cranelift), then
+//! `evaluator`, a program with the kernel that is made when it is first needed.
+
+pub(crate) mod evaluator;
+#[cfg(feature = "jit")]
+pub(crate) mod jit;
+pub(crate) mod kernel;
+pub(crate) mod tape;

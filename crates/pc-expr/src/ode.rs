@@ -1,0 +1,10 @@
+//! What integrators take: ẏ = f(t, y), its derivatives, its events.
+//!
+//! `vector_field` is the interface between those who derive equations and those who integrate them; `events` are zeros
+//! of functions along a motion and resets there. `pattern` says where a Jacobian may be other than zero, `colouring`
+//! which of its columns can be told apart in one product.
+
+pub(crate) mod colouring;
+pub(crate) mod events;
+pub(crate) mod pattern;
+pub(crate) mod vector_field;

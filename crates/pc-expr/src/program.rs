@@ -1,0 +1,11 @@
+//! Chosen expressions as a tape of operations that needs the graph no more.
+//!
+//! In go expressions and the order of their inputs, out comes a [`Program`](program::Program). Read `program` first. A
+//! tape is made by `sharing` (which factors products have in common), `angle_addition` (sines of sums from those of the
+//! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and counts.
+
+pub(crate) mod angle_addition;
+pub(crate) mod fuse;
+pub(crate) mod lower;
+pub(crate) mod program;
+pub(crate) mod sharing;
