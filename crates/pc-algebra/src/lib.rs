@@ -80,56 +80,30 @@
 //! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
 //! [`LieGroup::compose`], [`LieGroup::project`].
 
-mod affine;
-mod bianchi;
-mod block_triangular;
-mod catalogue;
-mod closure;
-mod constant;
-mod echelon;
-mod elimination;
 mod error;
-mod exact;
-mod families;
 mod frame;
-mod frame_change;
 mod group;
-mod holonomy;
 mod identity;
-mod integrability;
-mod invariant;
-mod inverse;
-mod killing;
 mod lie_algebra;
-mod matrix;
-mod matrix_algebra;
-mod product;
-mod rank;
-mod representation;
-mod residue;
-mod sample;
-mod series;
-mod structure;
-mod subspace;
-mod weighed;
+mod linear_algebra;
 
-pub use affine::{Quadratic, affine, quadratic};
-pub use catalogue::{CATALOGUE, Entry};
-pub use elimination::Elimination;
 pub use error::{AlgebraError, acts_as_zero};
-pub use frame::Frame;
-pub use frame_change::FrameChange;
-pub use group::{
+pub use frame::change::FrameChange;
+pub use frame::elimination::Elimination;
+pub use frame::frame::Frame;
+pub use frame::holonomy::Holonomy;
+pub use frame::integrability::Integrability;
+pub use frame::structure::StructureCoefficients;
+pub use group::group::{
     DirectProduct, EulerAngles, HeisenbergGroup, LieGroup, PlaneMotions, PlaneRotations, RigidMotions,
     RotationMatrices, Side, UnitQuaternions,
 };
-pub use holonomy::Holonomy;
-pub use identity::Identity;
-pub use integrability::Integrability;
-pub use inverse::{determinant, inverse};
-pub use lie_algebra::LieAlgebra;
-pub use matrix::Matrix;
-pub use representation::Representation;
-pub use sample::Neighbourhood;
-pub use structure::StructureCoefficients;
-pub use subspace::Subspace;
+pub use identity::identity::Identity;
+pub use identity::sample::Neighbourhood;
+pub use lie_algebra::catalogue::{CATALOGUE, Entry};
+pub use lie_algebra::lie_algebra::LieAlgebra;
+pub use lie_algebra::representation::Representation;
+pub use lie_algebra::subspace::Subspace;
+pub use linear_algebra::affine::{Quadratic, affine, quadratic};
+pub use linear_algebra::inverse::{determinant, inverse};
+pub use linear_algebra::matrix::Matrix;

@@ -1,28 +1,19 @@
 //! From expressions to a compiled motion.
 //!
-//! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Its mass
-//! matrix is eliminated in expressions ([`unrolled`], by [`ldl`]) or in numbers ([`staged`], by [`dense_ldl`]), as
-//! [`elimination`] finds cheaper. Where the equations of w are not linear, they are solved in numbers by Newton's
-//! method ([`implicit`]). Under constraints w has multipliers, the matrix is [`saddle`]-shaped, and the states lie on a
-//! [`surface`]; first integrals may be [`kept`]. Momenta of such states are [changed](in_momenta) into their
-//! quasi-velocities and back.
+//! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Read that
+//! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the vector
+//! field that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals may be
+//! kept: `projection`. `in_momenta` changes momenta of such states into quasi-velocities and back, `running_error` bounds
+//! rounding, and `failure` says why there are no rates.
 
-pub(crate) mod columns;
-pub(crate) mod dense_ldl;
 pub(crate) mod elimination;
-pub(crate) mod fault;
+pub(crate) mod failure;
+pub(crate) mod projection;
+pub(crate) mod running_error;
+
 pub(crate) mod first_order;
 pub(crate) mod implicit;
 pub(crate) mod in_momenta;
-pub(crate) mod kept;
-pub(crate) mod ldl;
 pub(crate) mod machine_code;
 pub(crate) mod motion;
 pub(crate) mod options;
-pub(crate) mod pivots;
-pub(crate) mod rounding;
-pub(crate) mod saddle;
-pub(crate) mod solver;
-pub(crate) mod staged;
-pub(crate) mod surface;
-pub(crate) mod unrolled;

@@ -5,8 +5,8 @@ mod roots;
 use pc_algebra::{Matrix, Neighbourhood};
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
-use crate::canonical::Canonical;
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::failure::{Fault, check_finite};
+use crate::equations::canonical::Canonical;
 use crate::error::MechError;
 use crate::numeric::newton;
 use crate::stability::steady::check_length;

@@ -319,53 +319,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod bodies;
-mod book;
-mod builder;
-mod canonical;
-mod change;
-mod chetaev;
 mod compiled;
+mod constraints;
 mod emit;
+mod equations;
 mod error;
-mod external;
-mod forces;
 mod hamilton_jacobi;
-mod independent;
 mod integrals;
-mod lagrange;
-mod legendre;
-mod multipliers;
 mod numeric;
-mod orthonormal;
-mod poincare;
-mod reduction;
-mod restriction;
-mod resultants;
-mod signals;
 mod stability;
 mod system;
-mod velocities;
+mod transform;
 
-pub use bodies::particle::Particle;
-pub use bodies::rigid_body::{Inertia, RigidBody};
-pub use bodies::velocity::BodyVelocity;
-pub use builder::SystemBuilder;
-pub use canonical::Canonical;
-pub use compiled::kept::KeptIntegrals;
 pub use compiled::machine_code::MachineCode;
 pub use compiled::motion::Motion;
 pub use compiled::options::CompileOptions;
-pub use emit::{EmitOptions, EmittedFile};
+pub use compiled::projection::integrals::KeptIntegrals;
+pub use constraints::body_reactions::BodyReaction;
+pub use constraints::multipliers::{Constraint, Multipliers};
+pub use emit::emit::{EmitOptions, EmittedFile};
+pub use equations::canonical::Canonical;
+pub use equations::legendre::LegendreTransform;
+pub use equations::poincare::Equations;
 pub use error::MechError;
-pub use external::{ExternalForce, ForcedMotion};
 pub use hamilton_jacobi::CompleteIntegral;
 pub use integrals::ansatz::Ansatz;
 pub use integrals::bracket::PoissonBracket;
 pub use integrals::conserved::{Conservation, Rates};
 pub use integrals::cyclic::CyclicDisplacement;
-pub use legendre::LegendreTransform;
-pub use multipliers::{Constraint, Multipliers};
 pub use numeric::least_squares::LeastSquares;
 pub use pc_algebra::{
     AlgebraError, Elimination, EulerAngles, Frame, Identity, LieAlgebra, LieGroup, Matrix, Neighbourhood,
@@ -375,12 +356,15 @@ pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,
     VectorField,
 };
-pub use poincare::Equations;
-pub use resultants::BodyReaction;
-pub use signals::{Interpolation, OutsideTable, Signals, Table, TableError};
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady::{SteadyMotion, SteadyOptions};
 pub use stability::variation::Variation;
-pub use system::System;
-pub use velocities::VelocityTransform;
+pub use system::bodies::particle::Particle;
+pub use system::bodies::rigid_body::{Inertia, RigidBody};
+pub use system::bodies::velocity::BodyVelocity;
+pub use system::builder::SystemBuilder;
+pub use system::external_force::{ExternalForce, ForcedMotion};
+pub use system::signals::{Interpolation, OutsideTable, Signals, Table, TableError};
+pub use system::system::System;
+pub use transform::velocities::VelocityTransform;

@@ -171,25 +171,17 @@
 //! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, have none but those of the constraints, nonholonomic ones
 //! included, and observe the λ: they are what a long motion is integrated in.
 
-mod adapted;
-mod almost_poisson;
-mod binding;
-mod chaplygin;
-mod constrained;
+mod classification;
 mod error;
-mod involutive;
-mod measure;
 mod n_trailer;
-mod positions;
-mod sorted;
-mod voronets;
+mod reduction;
 
-pub use adapted::Adapted;
-pub use binding::{Binding, Redundant};
-pub use chaplygin::ReducingMultiplier;
-pub use constrained::Constrained;
+pub use classification::binding::{Binding, Redundant};
+pub use classification::classification::{Kind, Sorted};
 pub use error::NonholoError;
-pub use measure::{InvariantMeasure, invariant_measure};
 pub use n_trailer::{NTrailer, Wagon};
-pub use sorted::{Kind, Sorted};
-pub use voronets::Voronets;
+pub use reduction::adapted::Adapted;
+pub use reduction::chaplygin::ReducingMultiplier;
+pub use reduction::constrained::Constrained;
+pub use reduction::invariant_measure::{InvariantMeasure, invariant_measure};
+pub use reduction::voronets::Voronets;

@@ -2,8 +2,8 @@
 
 use pc_mech::{Expr, Graph, System, SystemBuilder};
 
-use crate::constrained::Constrained;
 use crate::error::NonholoError;
+use crate::reduction::constrained::Constrained;
 
 /// A body on one axle, which does not slip sideways.
 #[derive(Clone, Copy, Debug)]

@@ -3,11 +3,11 @@
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
-use crate::frame::{Frame, shape};
-use crate::inverse::inverse;
-use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
-use crate::structure::StructureCoefficients;
+use crate::frame::frame::{Frame, shape};
+use crate::frame::structure::StructureCoefficients;
+use crate::identity::sample::Neighbourhood;
+use crate::linear_algebra::inverse::inverse;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The change η' = A η + A_0 of quasi-velocities from a frame X_s to a frame X'_s that allows the same
 /// velocities.

@@ -3,12 +3,12 @@
 use pc_expr::{Expr, Number};
 
 use crate::error::AlgebraError;
-use crate::frame::Frame;
-use crate::inverse::inverse;
-use crate::lie_algebra::check_jacobi;
-use crate::matrix::Matrix;
-use crate::sample::{HIDDEN, Neighbourhood};
-use crate::structure::StructureCoefficients;
+use crate::frame::frame::Frame;
+use crate::frame::structure::StructureCoefficients;
+use crate::identity::sample::{HIDDEN, Neighbourhood};
+use crate::lie_algebra::lie_algebra::check_jacobi;
+use crate::linear_algebra::inverse::inverse;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Points at which an identity that the graph cannot decide is tried numerically.
 pub(crate) const TRIALS: usize = 8;

@@ -8,13 +8,13 @@
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};
 
-use crate::closure::pairs;
 use crate::error::AlgebraError;
-use crate::frame::Frame;
-use crate::inverse::inverse;
-use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
-use crate::structure::StructureCoefficients;
+use crate::frame::closure::pairs;
+use crate::frame::frame::Frame;
+use crate::frame::structure::StructureCoefficients;
+use crate::identity::sample::Neighbourhood;
+use crate::linear_algebra::inverse::inverse;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Operators whose singular values spread more than this are not seen to be independent in numbers.
 const DEPENDENT: f64 = 1e-9;

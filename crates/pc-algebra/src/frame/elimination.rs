@@ -2,12 +2,12 @@
 
 use pc_expr::Expr;
 
-use crate::closure::pairs;
 use crate::error::AlgebraError;
-use crate::frame::{Frame, shape};
-use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
-use crate::structure::StructureCoefficients;
+use crate::frame::closure::pairs;
+use crate::frame::frame::{Frame, shape};
+use crate::frame::structure::StructureCoefficients;
+use crate::identity::sample::Neighbourhood;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Quasi-velocities of a frame solved for the others, η_D = A_DI η_I + A_D0: what is left are the operators
 ///

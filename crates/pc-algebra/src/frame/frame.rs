@@ -2,11 +2,11 @@
 
 use pc_expr::{Expr, Graph};
 
-use crate::affine::affine;
 use crate::error::AlgebraError;
-use crate::inverse::inverse;
-use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
+use crate::identity::sample::Neighbourhood;
+use crate::linear_algebra::affine::affine;
+use crate::linear_algebra::inverse::inverse;
+use crate::linear_algebra::matrix::Matrix;
 
 /// A frame of k operators on a space of n coordinates and time.
 ///

@@ -2,8 +2,8 @@
 
 use pc_expr::Expr;
 
-use crate::frame::Frame;
-use crate::structure::StructureCoefficients;
+use crate::frame::frame::Frame;
+use crate::frame::structure::StructureCoefficients;
 
 /// Whether a quasi-velocity η_m is the velocity of a coordinate.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use pc_expr::Expr;
 
-use crate::closure::{TRIALS, pairs};
-use crate::frame::Frame;
-use crate::sample::Neighbourhood;
-use crate::weighed::Weighed;
+use crate::frame::closure::{TRIALS, pairs};
+use crate::frame::frame::Frame;
+use crate::identity::running_error::Weighed;
+use crate::identity::sample::Neighbourhood;
 
 /// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]

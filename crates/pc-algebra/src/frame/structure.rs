@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use pc_expr::{Expr, Graph, Number};
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::{LieAlgebra, check_jacobi};
+use crate::lie_algebra::lie_algebra::{LieAlgebra, check_jacobi};
 
 /// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 =
 /// 0.

@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
-use crate::group::{LieGroup, Side};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::group::group::{LieGroup, Side};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The direct product G × H: the coordinates of G, then those of H, everything part by part.
 ///

@@ -4,10 +4,11 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite};
 use crate::group::rotation::{dynamic, hat, matrix_exp, matrix_log, vector};
-use crate::group::{LieGroup, Side, exponential, finite};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of space by three angles (α, β, γ), R = R_i(α) R_j(β) R_k(γ) from body axes to axes in
 /// space: the body is turned about its own axis i, then about its own axis j, then about its own axis k.

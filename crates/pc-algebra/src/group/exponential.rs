@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::group::Side;
+use crate::group::group::Side;
 use crate::group::stumpff::stumpff;
 
 /// Σ (±A)^i/(i + 1)!, minus on the left, for A = `ad` with A(A² + θ²)² = 0:

@@ -1,33 +1,21 @@
 //! Lie groups in coordinates: numbers for integrators, expressions for frames.
 
-mod direct_product;
-mod euler_angles;
-mod exponential;
-mod heisenberg;
-mod plane_motions;
-mod plane_rotations;
-mod rigid_motions;
-mod rotation;
-mod rotation_matrices;
-mod stumpff;
-mod unit_quaternions;
-
 use nalgebra::DMatrix;
 use pc_expr::{Expr, Graph};
 
-pub use direct_product::DirectProduct;
-pub use euler_angles::EulerAngles;
-pub use heisenberg::HeisenbergGroup;
-pub use plane_motions::PlaneMotions;
-pub use plane_rotations::PlaneRotations;
-pub use rigid_motions::RigidMotions;
-pub use rotation_matrices::RotationMatrices;
-pub use unit_quaternions::UnitQuaternions;
+pub use crate::group::direct_product::DirectProduct;
+pub use crate::group::euler_angles::EulerAngles;
+pub use crate::group::heisenberg::HeisenbergGroup;
+pub use crate::group::plane_motions::PlaneMotions;
+pub use crate::group::plane_rotations::PlaneRotations;
+pub use crate::group::rigid_motions::RigidMotions;
+pub use crate::group::rotation_matrices::RotationMatrices;
+pub use crate::group::unit_quaternions::UnitQuaternions;
 
 use crate::error::AlgebraError;
-use crate::frame::{Frame, shape};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::frame::frame::{Frame, shape};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// How a velocity of a group is brought to the algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,18 +157,18 @@ fn frame<'g, G: LieGroup + ?Sized>(
 }
 
 /// Largest |g_i − h_i|.
-fn largest_difference(g: &[f64], h: &[f64]) -> f64 {
+pub(super) fn largest_difference(g: &[f64], h: &[f64]) -> f64 {
     g.iter().zip(h).fold(0.0, |largest, (g, h)| largest.max((g - h).abs()))
 }
 
 /// The angle in (−π, π] that differs from `angle` by whole turns.
-fn principal(angle: f64) -> f64 {
+pub(super) fn principal(angle: f64) -> f64 {
     let (sin, cos) = angle.sin_cos();
     if angle.abs() <= std::f64::consts::PI { angle } else { sin.atan2(cos) }
 }
 
 /// `g`, if all its coordinates are numbers.
-fn finite(g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
+pub(super) fn finite(g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
     if g.iter().all(|x| x.is_finite()) {
         return Ok(g.to_vec());
     }

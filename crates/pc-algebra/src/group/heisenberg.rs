@@ -4,9 +4,10 @@ use nalgebra::DMatrix;
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
-use crate::group::{LieGroup, Side, exponential, finite, largest_difference};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite, largest_difference};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The Heisenberg group of dimension 2n + 1: coordinates (x_1..x_n, y_1..y_n, z) and
 /// (x, y, z)(x', y', z') = (x + x', y + y', z + z' + ½(x·y' − y·x')).

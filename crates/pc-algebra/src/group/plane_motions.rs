@@ -4,10 +4,11 @@ use nalgebra::{DMatrix, Vector2};
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite, principal};
 use crate::group::stumpff::stumpff;
-use crate::group::{LieGroup, Side, exponential, finite, principal};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The motions of the plane, SE(2): coordinates (φ, x, y), the motion that turns by φ and then shifts by (x,
 /// y).

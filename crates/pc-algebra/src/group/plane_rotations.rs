@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
-use crate::group::{LieGroup, Side, finite, principal};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::group::group::{LieGroup, Side, finite, principal};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of the plane, SO(2): one coordinate, the angle φ, with φ̇ = η on either side.
 ///

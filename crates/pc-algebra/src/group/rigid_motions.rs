@@ -4,14 +4,15 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite, largest_difference};
 use crate::group::rotation::{
     components, hat, matrix_of, quaternion, quaternion_exp, quaternion_log, rotation_of, vector,
 };
 use crate::group::stumpff::stumpff;
 use crate::group::unit_quaternions::{quaternion_operators, unit};
-use crate::group::{LieGroup, Side, exponential, finite, largest_difference};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The motions of space, SE(3) (twice, as the unit quaternions are SO(3) twice): coordinates (q_0..q_3, x, y,
 /// z), the motion that turns by q and then shifts by r = (x, y, z).

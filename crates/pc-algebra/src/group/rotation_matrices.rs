@@ -4,10 +4,11 @@ use nalgebra::{DMatrix, Matrix3};
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite, largest_difference};
 use crate::group::rotation::{dynamic, hat, matrix_exp, matrix_log, vector};
-use crate::group::{LieGroup, Side, exponential, finite, largest_difference};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of space, SO(3), by the nine entries of R, row after row: R takes components along body axes
 /// to components along axes in space. Ṙ = R ω̂ with body velocities ω (left), Ṙ = ω̂ R with spatial ones

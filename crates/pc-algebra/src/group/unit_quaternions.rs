@@ -4,12 +4,13 @@ use nalgebra::{DMatrix, Vector3};
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
+use crate::group::exponential;
+use crate::group::group::{LieGroup, Side, finite, largest_difference};
 use crate::group::rotation::{
     components, dynamic, hat, matrix_of, quaternion, quaternion_exp, quaternion_log, rotation_of, vector,
 };
-use crate::group::{LieGroup, Side, exponential, finite, largest_difference};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The unit quaternions q = (q_0, q_1, q_2, q_3), scalar first, with Hamilton's product ij = k. q and −q are
 /// two elements that stand for one rotation x ↦ q x q* from body axes to axes in space.

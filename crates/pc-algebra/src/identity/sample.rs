@@ -2,8 +2,8 @@
 
 use pc_expr::{Expr, Function, Graph, Scalar};
 
-use crate::closure::TRIALS;
-use crate::weighed::Weighed;
+use crate::frame::closure::TRIALS;
+use crate::identity::running_error::Weighed;
 
 /// What is left of the terms of a sum that vanishes identically, after some thousand roundings.
 pub(crate) const HIDDEN: f64 = 1e-12;

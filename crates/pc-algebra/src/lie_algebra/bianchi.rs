@@ -3,7 +3,7 @@
 use pc_expr::Number;
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::LieAlgebra;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 impl LieAlgebra {
     /// Bianchi's type VI_h, h ≤ 0: \[X_1, X_2\] = −aX_2 − X_3, \[X_2, X_3\] = 0, \[X_3, X_1\] = X_2 + aX_3

@@ -2,10 +2,10 @@
 
 use pc_expr::Number;
 
-use crate::bianchi::behr;
 use crate::error::AlgebraError;
-use crate::families::{matrices, rotations};
-use crate::lie_algebra::LieAlgebra;
+use crate::lie_algebra::bianchi::behr;
+use crate::lie_algebra::families::{matrices, rotations};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 /// An algebra of the catalogue.
 pub struct Entry {

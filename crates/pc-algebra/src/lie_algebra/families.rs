@@ -3,7 +3,7 @@
 use pc_expr::Number;
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::LieAlgebra;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 impl LieAlgebra {
     /// The rotations of space with c_12^3 = c_23^1 = c_31^2 = 1 (22): the signs of the body angular velocity.

@@ -4,11 +4,11 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use pc_expr::Number;
 
-use crate::echelon::Echelon;
 use crate::error::AlgebraError;
-use crate::exact::{primitive, rounded};
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::{primitive, rounded};
+use crate::linear_algebra::echelon::Echelon;
+use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
     /// A basis of the linear forms ξ with ξ([x, y]) = 0: the solutions of c_rs^m ξ_m = 0, the annihilator of

@@ -4,11 +4,11 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use pc_expr::Number;
 
-use crate::echelon::Echelon;
 use crate::error::AlgebraError;
-use crate::exact::rounded;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::rounded;
+use crate::linear_algebra::echelon::Echelon;
+use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
     /// The Killing form K_rs = tr(ad X_r ad X_s) = c_rp^q c_sq^p, k × k and symmetric.

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use pc_expr::{Number, Scalar};
 
 use crate::error::AlgebraError;
-use crate::matrix::Matrix;
-use crate::weighed::Weighed;
+use crate::identity::running_error::Weighed;
+use crate::linear_algebra::matrix::Matrix;
 
 /// A Lie algebra with basis X_1..X_k and exact structure constants: [X_r, X_s] = c_rs^m X_m (5).
 #[derive(Clone, Debug, PartialEq)]

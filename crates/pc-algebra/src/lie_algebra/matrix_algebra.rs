@@ -4,11 +4,11 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use pc_expr::Number;
 
-use crate::echelon::Echelon;
 use crate::error::AlgebraError;
-use crate::exact::exact_matrix;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::exact_matrix;
+use crate::linear_algebra::echelon::Echelon;
+use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
     /// The algebra with a basis of n × n matrices X_s and the commutator X_r X_s − X_s X_r as bracket.

@@ -4,12 +4,12 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use pc_expr::Number;
 
-use crate::echelon::inverse;
 use crate::error::AlgebraError;
-use crate::exact::exact_matrix;
-use crate::frame::shape;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::frame::frame::shape;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::exact_matrix;
+use crate::linear_algebra::echelon::inverse;
+use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
     /// The direct product g × h: the basis of g, then that of h, and every \[x, y\] with x in g and y in h is

@@ -1,9 +1,9 @@
 //! Rank and index: what holds for almost all elements of an algebra and of its dual.
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
-use crate::residue::{Residue, point, rank};
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
+use crate::linear_algebra::prime_field::{Residue, point, rank};
 
 /// Random points at which a rank is taken; the largest counts.
 const POINTS: u64 = 2;

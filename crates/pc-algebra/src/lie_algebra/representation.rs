@@ -5,10 +5,10 @@ use num_traits::Zero;
 use pc_expr::Number;
 
 use crate::error::AlgebraError;
-use crate::exact::exact_matrix;
-use crate::frame::shape;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::frame::frame::shape;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::exact_matrix;
+use crate::linear_algebra::matrix::Matrix;
 
 /// A representation ρ: g → gl(V), given by the n × n matrices ρ(X_1)..ρ(X_k):
 /// ρ([x, y]) = ρ(x)ρ(y) − ρ(y)ρ(x).

@@ -3,12 +3,12 @@
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use crate::echelon::Echelon;
 use crate::error::AlgebraError;
-use crate::exact::ExactConstants;
-use crate::frame::shape;
-use crate::lie_algebra::LieAlgebra;
-use crate::subspace::Subspace;
+use crate::frame::frame::shape;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::lie_algebra::structure_constants::ExactConstants;
+use crate::lie_algebra::subspace::Subspace;
+use crate::linear_algebra::echelon::Echelon;
 
 impl LieAlgebra {
     /// Whether all brackets are 0.

@@ -9,8 +9,8 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use pc_expr::Number;
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::LieAlgebra;
-use crate::matrix::Matrix;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Largest numerator and denominator of an exact [`Number`].
 const LARGEST: i64 = 1 << 53;

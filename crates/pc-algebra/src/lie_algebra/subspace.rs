@@ -3,10 +3,10 @@
 use num_rational::BigRational;
 use pc_expr::Number;
 
-use crate::echelon::Echelon;
 use crate::error::AlgebraError;
-use crate::exact::{exact, primitive, rounded};
-use crate::frame::shape;
+use crate::frame::frame::shape;
+use crate::lie_algebra::structure_constants::{exact, primitive, rounded};
+use crate::linear_algebra::echelon::Echelon;
 
 /// A linear subspace of ℚ^k, kept as its reduced row echelon form, so that equal subspaces compare equal.
 #[derive(Clone, Debug, PartialEq)]

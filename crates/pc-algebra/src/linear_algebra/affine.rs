@@ -2,7 +2,7 @@
 
 use pc_expr::{Expr, Folding, Graph};
 
-use crate::matrix::Matrix;
+use crate::linear_algebra::matrix::Matrix;
 
 /// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols` z; `None` for
 /// one that is not.

@@ -2,9 +2,9 @@
 
 use pc_expr::{Expr, Graph, Number};
 
-use crate::block_triangular::block_triangular;
-use crate::matrix::Matrix;
-use crate::sample::Neighbourhood;
+use crate::identity::sample::Neighbourhood;
+use crate::linear_algebra::block_triangular::block_triangular;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;

@@ -2,7 +2,7 @@
 
 use pc_expr::Number;
 
-use crate::matrix::Matrix;
+use crate::linear_algebra::matrix::Matrix;
 
 const PRIME: u64 = (1 << 61) - 1;
 

@@ -52,7 +52,7 @@ pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
 pub struct Interpreter {
     program: Arc<Program>,
     /// None for a program that is too long for it or rounds several operations at once.
-    tape: Option<Arc<Tape>>,
+    pub(super) tape: Option<Arc<Tape>>,
     registers: Vec<f64>,
 }
 
@@ -133,7 +133,7 @@ fn taken(program: &Program, registers: &[f64]) -> Vec<bool> {
 }
 
 /// Computes all registers of a program, which may hold anything before.
-fn walk(program: &Program, registers: &mut [f64], t: f64, state: &[f64], parameters: &[f64]) {
+pub(super) fn walk(program: &Program, registers: &mut [f64], t: f64, state: &[f64], parameters: &[f64]) {
     let inputs = program.first_input();
     let first = program.first_result();
     registers[..inputs].copy_from_slice(program.constants());

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::time_profile::profile::*;
-use crate::{Expr, Graph, Inputs, Interpreter, Kernel};
+use crate::{Expr, Graph, Inputs, Interpreter, Kernel, Program};
 
 /// A function of (t, y).
 type Pulse = Box<dyn for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Expr<'g>>;

@@ -3,8 +3,8 @@
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph, Inputs, Pattern};
 
-use crate::compiled::columns::nonzeros;
-use crate::compiled::ldl::Factors;
+use crate::compiled::elimination::columns::nonzeros;
+use crate::compiled::elimination::symbolic_ldl::Factors;
 
 /// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
 ///

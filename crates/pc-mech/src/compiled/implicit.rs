@@ -2,9 +2,9 @@
 
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::elimination::solver::Solver;
+use crate::compiled::failure::{Fault, check_finite};
 use crate::compiled::first_order::{FirstOrder, Implicit};
-use crate::compiled::solver::Solver;
 
 /// The most steps.
 const MOST_STEPS: usize = 200;

@@ -7,13 +7,13 @@ use pc_expr::{
     Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField,
 };
 
-use crate::compiled::columns::derivative;
-use crate::compiled::fault::check_finite;
+use crate::compiled::elimination::columns::derivative;
+use crate::compiled::failure::check_finite;
 use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
+use crate::constraints::multipliers::Multipliers;
+use crate::equations::legendre::LegendreTransform;
 use crate::error::MechError;
-use crate::legendre::LegendreTransform;
-use crate::multipliers::Multipliers;
 
 /// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
 ///

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pc_expr::Entry;
 
-use crate::compiled::pivots::Layout;
+use crate::compiled::elimination::pivots::Layout;
 
 /// The machine code of f, for callers that manage memory themselves, and what its outputs are.
 ///

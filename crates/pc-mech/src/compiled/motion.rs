@@ -2,21 +2,21 @@
 
 use pc_expr::{Cost, Expr, Failure, Pattern, TimeDependence, VectorField};
 
-use crate::compiled::columns::Layout;
-use crate::compiled::elimination;
-use crate::compiled::fault::Fault;
+use crate::compiled::elimination::columns::Layout;
+use crate::compiled::elimination::cost;
+use crate::compiled::elimination::numeric::Staged;
+use crate::compiled::elimination::symbolic::Unrolled;
+use crate::compiled::failure::Fault;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::in_momenta::InMomenta;
-use crate::compiled::kept::KeptIntegrals;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
-use crate::compiled::staged::Staged;
-use crate::compiled::surface::Surface;
-use crate::compiled::surface::holding::Held;
-use crate::compiled::unrolled::Unrolled;
+use crate::compiled::projection::constraint_manifold::Surface;
+use crate::compiled::projection::holding::Held;
+use crate::compiled::projection::integrals::KeptIntegrals;
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
-use crate::poincare::Equations;
-use crate::signals::Signals;
+use crate::system::signals::Signals;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
 /// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
@@ -114,8 +114,8 @@ impl FirstOrder<'_> {
     /// # Errors
     /// As for [`Equations::compile`].
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
-        let short = || elimination::operations(&self.mass) <= longest;
-        let unrolled = || short() || !elimination::needs_no_pivoting(self.graph, &self.mass);
+        let short = || cost::operations(&self.mass) <= longest;
+        let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
         let form = if self.implicit.is_none() && self.multipliers == 0 && unrolled() {
             Form::Unrolled(Box::new(Unrolled::new(self, options)?))
         } else {

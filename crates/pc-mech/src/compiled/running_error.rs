@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg};
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Function, Graph, Inputs, Number, Program, Scalar};
 
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::failure::{Fault, check_finite};
 
 /// What the errors are counted in. An operation errs by a quarter of it; a long sum, of whose roundings only those of the
 /// terms are counted, by more.

@@ -3,10 +3,10 @@
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph};
 
-use crate::bodies::velocity::BodyVelocity;
-use crate::compiled::ldl::Factors;
-use crate::multipliers::Multipliers;
-use crate::system::System;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::constraints::multipliers::Multipliers;
+use crate::system::bodies::velocity::BodyVelocity;
+use crate::system::system::System;
 
 /// What the reactions of constraints are on one body: of each constraint a force at the body's point, along the axes of
 /// its position, and a torque about this, along the axes of its angular velocity.

@@ -3,10 +3,10 @@
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
-use crate::compiled::ldl::Factors;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::constraints::multipliers::{Constraint, Multipliers};
 use crate::error::MechError;
-use crate::multipliers::{Constraint, Multipliers};
-use crate::system::System;
+use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
     /// Whether its reaction does no work on the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, and this vanishes

@@ -3,12 +3,12 @@
 use pc_algebra::{Elimination, Matrix, Neighbourhood, StructureCoefficients, inverse};
 use pc_expr::Expr;
 
-use crate::compiled::fault::Fault;
-use crate::compiled::saddle::Saddle;
+use crate::compiled::elimination::saddle_point::Saddle;
+use crate::compiled::failure::Fault;
+use crate::constraints::multipliers::Multipliers;
 use crate::error::{MechError, shape};
-use crate::multipliers::Multipliers;
 use crate::numeric::least_squares::LeastSquares;
-use crate::system::System;
+use crate::system::system::System;
 
 /// The least singular value against the largest of a matrix that is well solved with.
 const WELL: f64 = 1e-3;

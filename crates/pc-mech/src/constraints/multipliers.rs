@@ -7,12 +7,12 @@ use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::in_momenta::InMomenta;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
-use crate::compiled::surface::{Conditions, Surface};
+use crate::compiled::projection::constraint_manifold::{Conditions, Surface};
+use crate::equations::legendre::LegendreTransform;
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
-use crate::legendre::LegendreTransform;
-use crate::poincare::Equations;
 use crate::stability::steady::check_length;
-use crate::system::System;
+use crate::system::system::System;
 
 /// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities.
 #[derive(Clone, Debug)]

@@ -1,14 +1,11 @@
 //! Equations of motion as C or Rust source that depends on nothing of this library.
 
-mod c;
-mod rust;
-
 use pc_expr::{Body, Calls, Expr, Language, Layout, Place, Program, Slot};
 
+use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Linearised};
-use crate::compiled::ldl::Factors;
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
-use crate::poincare::Equations;
 
 /// Equations longer than this are not shown in the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
@@ -16,20 +13,20 @@ const LONG_EQUATION: usize = 160;
 /// What source to write.
 #[derive(Clone, Debug)]
 pub struct EmitOptions {
-    language: Language,
+    pub(super) language: Language,
     name: String,
-    title: String,
+    pub(super) title: String,
     remark: String,
-    start: Option<Start>,
-    fused: bool,
+    pub(super) start: Option<Start>,
+    pub(super) fused: bool,
 }
 
 /// A motion to be tried.
 #[derive(Clone, Debug)]
-struct Start {
-    t: f64,
-    state: Vec<f64>,
-    t_end: f64,
+pub(super) struct Start {
+    pub(super) t: f64,
+    pub(super) state: Vec<f64>,
+    pub(super) t_end: f64,
 }
 
 impl EmitOptions {
@@ -81,7 +78,7 @@ pub struct EmittedFile {
 
 /// How many numbers a routine writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Extent {
+pub(super) enum Extent {
     /// One, which is returned.
     One,
     /// One for each component of the state.
@@ -95,32 +92,32 @@ enum Extent {
 }
 
 /// A function of the source.
-struct Routine {
-    name: &'static str,
-    purpose: String,
+pub(super) struct Routine {
+    pub(super) name: &'static str,
+    pub(super) purpose: String,
     /// The array that it writes.
-    array: &'static str,
-    extent: Extent,
+    pub(super) array: &'static str,
+    pub(super) extent: Extent,
     /// Whether zeros have to be written before the rest.
-    sparse: bool,
-    body: Body,
+    pub(super) sparse: bool,
+    pub(super) body: Body,
 }
 
 /// All that the files of a language are put together from.
-struct Source<'a> {
-    options: &'a EmitOptions,
+pub(super) struct Source<'a> {
+    pub(super) options: &'a EmitOptions,
     /// The name as an identifier.
-    name: String,
-    state: Vec<String>,
-    coordinates: usize,
+    pub(super) name: String,
+    pub(super) state: Vec<String>,
+    pub(super) coordinates: usize,
     /// Number of first-order states.
-    states: usize,
-    parameters: Vec<(String, f64)>,
-    integrals: Vec<String>,
-    outputs: Vec<String>,
+    pub(super) states: usize,
+    pub(super) parameters: Vec<(String, f64)>,
+    pub(super) integrals: Vec<String>,
+    pub(super) outputs: Vec<String>,
     /// The equations as text, unless they are long.
     equations: Vec<String>,
-    routines: Vec<Routine>,
+    pub(super) routines: Vec<Routine>,
 }
 
 impl<'g> Equations<'g> {
@@ -156,8 +153,8 @@ impl<'g> Equations<'g> {
     pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
         let source = self.source(options)?;
         Ok(match options.language {
-            Language::C => c::files(&source),
-            Language::Rust => rust::files(&source),
+            Language::C => crate::emit::c::files(&source),
+            Language::Rust => crate::emit::rust::files(&source),
         })
     }
 
@@ -294,8 +291,8 @@ impl<'a, 'g> Writer<'a, 'g> {
         let language = options.language;
         let name = language.identifiers(&[&options.name], &[]).remove(0);
         let mut reserved = match language {
-            Language::C => c::macros(&name),
-            Language::Rust => rust::CONSTANTS.iter().map(|&name| name.to_owned()).collect(),
+            Language::C => crate::emit::c::macros(&name),
+            Language::Rust => crate::emit::rust::CONSTANTS.iter().map(|&name| name.to_owned()).collect(),
         };
         reserved.extend(["ydot", "jac", "mass", "values"].map(str::to_owned));
         let inputs = language.identifiers(&names, &reserved.iter().map(String::as_str).collect::<Vec<_>>());
@@ -345,12 +342,12 @@ impl<'a, 'g> Writer<'a, 'g> {
 
 impl Source<'_> {
     /// What all routines call.
-    fn calls(&self) -> Calls {
+    pub(super) fn calls(&self) -> Calls {
         self.routines.iter().fold(Calls::default(), |calls, routine| calls.and(&routine.body.calls))
     }
 
     /// The comment at the head: title, equations, state and parameters, line by line.
-    fn head(&self) -> Vec<String> {
+    pub(super) fn head(&self) -> Vec<String> {
         let comment = |text: &str| self.options.language.comment(text);
         let mut lines = vec![
             comment(&self.options.title),
@@ -393,15 +390,15 @@ impl Source<'_> {
         lines
     }
 
-    fn quasi_velocities(&self) -> usize {
+    pub(super) fn quasi_velocities(&self) -> usize {
         self.state.len() - self.coordinates - self.states
     }
 
-    fn constants(&self, values: impl Iterator<Item = f64>) -> String {
+    pub(super) fn constants(&self, values: impl Iterator<Item = f64>) -> String {
         values.map(|value| self.options.language.constant(value)).collect::<Vec<_>>().join(", ")
     }
 
-    fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
+    pub(super) fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
         texts.map(|text| self.options.language.string(text)).collect::<Vec<_>>().join(", ")
     }
 }

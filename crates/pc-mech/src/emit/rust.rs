@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{EmittedFile, Extent, Routine, Source};
+use crate::emit::emit::{EmittedFile, Extent, Routine, Source};
 
 /// Constants of the file: a local must not have the name of a constant.
 pub(super) const CONSTANTS: &[&str] = &[

@@ -2,8 +2,8 @@
 
 use pc_expr::{Expr, Folding, Graph, Style};
 
-use crate::poincare::Equations;
-use crate::system::System;
+use crate::equations::poincare::Equations;
+use crate::system::system::System;
 
 impl<'g> Equations<'g> {
     /// The left and right sides of M η̇ = r, k pairs of texts.

@@ -3,15 +3,15 @@
 use pc_algebra::{Matrix, determinant};
 use pc_expr::{Expr, Graph, Style};
 
-use crate::book::expanded;
+use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Implicit};
-use crate::compiled::ldl::Factors;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
+use crate::equations::book::expanded;
+use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::MechError;
-use crate::legendre::{Inverse, Legendre};
 use crate::stability::steady::check_length;
-use crate::system::System;
+use crate::system::system::System;
 
 /// The rows up to which a block of the mass matrix is inverted by cofactors.
 const MOST_COFACTORS: usize = 3;

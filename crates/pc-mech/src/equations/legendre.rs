@@ -5,14 +5,14 @@ use std::ops::Range;
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
-use crate::canonical::Canonical;
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::elimination::solver::Solver;
+use crate::compiled::failure::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
-use crate::compiled::solver::Solver;
+use crate::equations::canonical::Canonical;
 use crate::error::MechError;
 use crate::stability::steady::check_length;
-use crate::system::System;
+use crate::system::system::System;
 
 /// The Legendre transform of L.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
-use crate::compiled::ldl::Factors;
+use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::error::MechError;
-use crate::system::System;
+use crate::system::system::System;
 
 /// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k quasi-velocities, or (30)
 /// with l free ones in place of k.

@@ -3,10 +3,10 @@
 use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::canonical::Canonical;
+use crate::equations::canonical::Canonical;
 use crate::error::{MechError, check_variables, shape};
 use crate::integrals::polynomials::independent;
-use crate::system::System;
+use crate::system::system::System;
 
 /// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).
 ///

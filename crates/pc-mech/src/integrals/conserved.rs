@@ -2,11 +2,11 @@
 
 use pc_expr::{Expr, Graph};
 
-use crate::canonical::Canonical;
-use crate::compiled::ldl::Factors;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::equations::canonical::Canonical;
+use crate::equations::poincare::Equations;
 use crate::error::{MechError, check_variables};
-use crate::poincare::Equations;
-use crate::system::System;
+use crate::system::system::System;
 
 /// What is known of a function along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use pc_expr::{Expr, Number};
 
 use crate::integrals::polynomials::combination;
-use crate::system::System;
+use crate::system::system::System;
 
 /// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion keeps.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,9 +4,9 @@
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
 use crate::numeric::dense::{SingularValues, norm, product, symmetric_eigenvalues};
-use crate::poincare::Equations;
 use crate::stability::definite::{combination, definite_combination};
 use crate::stability::spectrum::Verdict;
 use crate::stability::steady::check_length;

@@ -8,7 +8,7 @@ use pc_algebra::Frame;
 use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, shape};
-use crate::system::check_no_state;
+use crate::system::system::check_no_state;
 
 /// Something with mass.
 #[derive(Clone, Debug)]

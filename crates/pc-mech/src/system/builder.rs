@@ -3,14 +3,14 @@
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::bodies::particle::Particle;
-use crate::bodies::rigid_body::RigidBody;
-use crate::bodies::velocity::{Bodies, BodyVelocity};
-use crate::bodies::{Body, Moving};
 use crate::error::{MechError, shape};
-use crate::external;
-use crate::forces::Force;
-use crate::system::{System, check_no_state};
+use crate::system::bodies::particle::Particle;
+use crate::system::bodies::rigid_body::RigidBody;
+use crate::system::bodies::velocity::{Bodies, BodyVelocity};
+use crate::system::bodies::{Body, Moving};
+use crate::system::external_force;
+use crate::system::forces::Force;
+use crate::system::system::{System, check_no_state};
 
 /// How a system is described; every closure receives (t, x, η).
 ///
@@ -420,7 +420,7 @@ impl<'g> SystemBuilder<'g> {
         for force in &self.forces {
             parts.push(force.components(&frame, &eta)?);
         }
-        let external = external::symbols(&self.external, &frame, &eta, &self.parameters, &self.states)?;
+        let external = external_force::symbols(&self.external, &frame, &eta, &self.parameters, &self.states)?;
         for (name, symbol) in &external {
             parts.push(
                 eta.iter().map(|eta| if eta.to_string() == *name { *symbol } else { Expr::ZERO }).collect(),

@@ -3,12 +3,12 @@
 use pc_algebra::Frame;
 use pc_expr::{Expr, Failure, Pattern, TimeDependence, VectorField};
 
-use crate::canonical::Canonical;
 use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
+use crate::constraints::multipliers::Multipliers;
+use crate::equations::canonical::Canonical;
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
-use crate::multipliers::Multipliers;
-use crate::poincare::Equations;
 
 /// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
 ///

@@ -3,9 +3,9 @@
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::bodies::velocity::Bodies;
-use crate::builder::SystemBuilder;
 use crate::error::{MechError, shape};
+use crate::system::bodies::velocity::Bodies;
+use crate::system::builder::SystemBuilder;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///

@@ -4,7 +4,7 @@ use pc_algebra::{AlgebraError, Frame, LieAlgebra};
 use pc_expr::Expr;
 
 use crate::error::MechError;
-use crate::system::System;
+use crate::system::system::System;
 
 impl<'g> System<'g> {
     /// The system with η = ẋ: its equations (9) are Lagrange's, d/dt ∂L/∂ẋ_i − ∂L/∂x_i = Q_i.

@@ -3,10 +3,10 @@
 use pc_algebra::{Matrix, quadratic};
 use pc_expr::Expr;
 
-use crate::compiled::ldl::Factors;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::equations::legendre::not_quadratic_in;
 use crate::error::MechError;
-use crate::legendre::not_quadratic_in;
-use crate::system::System;
+use crate::system::system::System;
 
 impl<'g> System<'g> {
     /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ, so

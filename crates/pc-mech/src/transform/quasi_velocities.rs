@@ -4,7 +4,7 @@ use pc_algebra::{AlgebraError, Frame, FrameChange, Matrix, StructureCoefficients
 use pc_expr::Expr;
 
 use crate::error::{MechError, shape};
-use crate::system::System;
+use crate::system::system::System;
 
 impl<'g> System<'g> {
     /// The same system in the quasi-velocities η' = A η + A_0, given by their names and their expressions in the old

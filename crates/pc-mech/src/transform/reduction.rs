@@ -3,9 +3,9 @@
 use pc_algebra::{Frame, Matrix};
 use pc_expr::Expr;
 
-use crate::bodies::velocity::Bodies;
 use crate::error::MechError;
-use crate::system::System;
+use crate::system::bodies::velocity::Bodies;
+use crate::system::system::System;
 
 impl<'g> System<'g> {
     /// The system without the coordinates that its motion does not depend on: neither L, Q and c_rs^m do, nor the

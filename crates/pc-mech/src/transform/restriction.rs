@@ -3,7 +3,7 @@
 use pc_expr::Expr;
 
 use crate::error::MechError;
-use crate::system::System;
+use crate::system::system::System;
 
 impl<'g> System<'g> {
     /// The system of the first `free` quasi-velocities whose equations (9) are those of this one with the nonholonomic

@@ -3,7 +3,7 @@
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::error::MechError;
-use crate::system::System;
+use crate::system::system::System;
 
 /// States (x, η) and (x, ẋ) of one system turned into each other, ẋ = b η + b_0 (3) and η = a ẋ + a_0 (2); compiled.
 ///

@@ -2,8 +2,8 @@
 
 use pc_mech::{Constraint, Expr, Graph, System};
 
+use crate::classification::positions::{Place, Positions, norm};
 use crate::error::NonholoError;
-use crate::positions::{Place, Positions, norm};
 
 /// What is left of a unit vector that is worth looking closer, whether it depends on others: the root of a rounding.
 const DEPENDENT: f64 = 1e-7;

@@ -2,10 +2,10 @@
 
 use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
-use crate::adapted::independent;
-use crate::binding::{Binding, Redundant};
+use crate::classification::binding::{Binding, Redundant};
+use crate::classification::involutive::{Field, involutive_closure};
 use crate::error::NonholoError;
-use crate::involutive::{Field, involutive_closure};
+use crate::reduction::adapted::independent;
 
 /// What a constraint does, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]

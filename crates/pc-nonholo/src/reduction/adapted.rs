@@ -2,8 +2,8 @@
 
 use pc_mech::{Constraint, Expr, MechError, Multipliers, System};
 
-use crate::constrained::Constrained;
 use crate::error::NonholoError;
+use crate::reduction::constrained::Constrained;
 
 /// A system in quasi-velocities of which the last are the left-hand sides of its constraints,
 ///

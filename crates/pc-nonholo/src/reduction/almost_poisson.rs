@@ -2,8 +2,8 @@
 
 use pc_mech::{Expr, Matrix, PoissonBracket};
 
-use crate::constrained::Constrained;
 use crate::error::NonholoError;
+use crate::reduction::constrained::Constrained;
 
 impl<'g> Constrained<'g> {
     /// The almost-Poisson bracket of coordinates and momenta y_s = ∂θ/∂η_s of the free quasi-velocities,

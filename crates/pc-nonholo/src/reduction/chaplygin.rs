@@ -3,8 +3,8 @@
 use pc_mech::{Expr, Number, System};
 
 use crate::error::NonholoError;
-use crate::measure::invariant_measure;
-use crate::voronets::Voronets;
+use crate::reduction::invariant_measure::invariant_measure;
+use crate::reduction::voronets::Voronets;
 
 /// A time in which a Chaplygin system is a Lagrangian one.
 #[derive(Clone, Debug)]

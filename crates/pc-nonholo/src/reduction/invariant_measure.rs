@@ -2,8 +2,8 @@
 
 use pc_mech::{Expr, Graph, Matrix, MechError, Number, System, determinant};
 
-use crate::constrained::Constrained;
 use crate::error::NonholoError;
+use crate::reduction::constrained::Constrained;
 
 /// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of the coordinates and c_i rational.
 #[derive(Clone, Debug)]

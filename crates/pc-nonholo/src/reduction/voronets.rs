@@ -2,8 +2,8 @@
 
 use pc_mech::{Expr, Graph, Matrix, Multipliers, System};
 
-use crate::adapted::affine;
 use crate::error::NonholoError;
+use crate::reduction::adapted::affine;
 
 /// A system in the velocities of its coordinates whose constraints are solved for some of them,
 ///

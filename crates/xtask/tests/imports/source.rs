@@ -9,7 +9,7 @@ use syn::{Item, UseTree};
 type ModulePath = Vec<String>;
 
 /// The modules of a crate by their paths; the root's is empty.
-pub struct Crate {
+pub(crate) struct Crate {
     modules: BTreeMap<ModulePath, Module>,
 }
 
@@ -25,7 +25,7 @@ struct Module {
 }
 
 impl Crate {
-    pub fn read(folder: &Path) -> Self {
+    pub(crate) fn read(folder: &Path) -> Self {
         let mut read = Self { modules: BTreeMap::new() };
         let root = ["lib.rs", "main.rs"].into_iter().find(|file| folder.join(file).is_file());
         read.file(folder, root.expect("a crate has a root"), Vec::new());
@@ -68,7 +68,7 @@ impl Crate {
     }
 
     /// Of each file the files whose names it uses.
-    pub fn arrows(&self) -> BTreeMap<String, BTreeSet<String>> {
+    pub(crate) fn arrows(&self) -> BTreeMap<String, BTreeSet<String>> {
         let mut arrows: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for module in self.modules.values() {
             let to = arrows.entry(module.file.clone()).or_default();

@@ -2,7 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::failure::{Fault, check_finite};
 
 /// A derivative of more operations is interpreted: integrators ask for it once in dozens of steps, and
 /// machine code for it would take longer to make than a run.

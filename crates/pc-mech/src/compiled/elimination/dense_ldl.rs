@@ -8,8 +8,8 @@ use faer::linalg::cholesky::ldlt::{factor, solve};
 use faer::{Mat, MatMut, Par};
 use pc_expr::Pattern;
 
-use crate::compiled::fault::Fault;
-use crate::compiled::pivots;
+use crate::compiled::elimination::pivots;
+use crate::compiled::failure::Fault;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
 #[derive(Clone, Debug)]

@@ -3,12 +3,12 @@
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
-use crate::compiled::columns::{Layout, derivative, nonzeros};
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::elimination::columns::{Layout, derivative, nonzeros};
+use crate::compiled::elimination::solver::Solver;
+use crate::compiled::failure::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
-use crate::compiled::solver::Solver;
 
 /// ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
 #[derive(Clone, Debug)]

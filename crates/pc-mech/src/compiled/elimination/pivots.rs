@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Program};
 
-use crate::compiled::fault::Fault;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::compiled::failure::Fault;
 use crate::compiled::first_order::FirstOrder;
-use crate::compiled::ldl::Factors;
 
 /// A pivot this small against what it is left of is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;

@@ -2,8 +2,8 @@
 
 use pc_expr::Pattern;
 
-use crate::compiled::dense_ldl::DenseLdl;
-use crate::compiled::fault::Fault;
+use crate::compiled::elimination::dense_ldl::DenseLdl;
+use crate::compiled::failure::Fault;
 
 /// A pivot of the constraints this small against their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;

@@ -2,9 +2,9 @@
 
 use pc_expr::Pattern;
 
-use crate::compiled::dense_ldl::DenseLdl;
-use crate::compiled::fault::Fault;
-use crate::compiled::saddle::Saddle;
+use crate::compiled::elimination::dense_ldl::DenseLdl;
+use crate::compiled::elimination::saddle_point::Saddle;
+use crate::compiled::failure::Fault;
 
 /// A symmetric matrix to be factorised and solved with.
 #[derive(Clone, Debug)]

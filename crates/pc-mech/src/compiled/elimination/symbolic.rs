@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
-use crate::compiled::columns::{Columns, Layout, derivative};
-use crate::compiled::fault::{Fault, blame, check_finite};
+use crate::compiled::elimination::columns::{Columns, Layout, derivative};
+use crate::compiled::elimination::pivots::Pivots;
+use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::compiled::failure::{Fault, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
-use crate::compiled::ldl::Factors;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
-use crate::compiled::pivots::Pivots;
 
 /// ẏ = g(t, y, M⁻¹ r) and its derivatives.
 #[derive(Clone, Debug)]

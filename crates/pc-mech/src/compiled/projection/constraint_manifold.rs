@@ -1,18 +1,15 @@
 //! The surface of the states that satisfy constraints, in numbers.
 
-mod followers;
-pub(crate) mod holding;
-
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
-use crate::compiled::fault::{Fault, check_finite};
-use crate::compiled::rounding::Measured;
-use crate::compiled::solver::Solver;
-use crate::compiled::surface::followers::Followers;
+use crate::compiled::elimination::solver::Solver;
+use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::projection::followers::Followers;
+use crate::compiled::running_error::Measured;
 
 /// Steps from afar, where they are damped. Near the surface each is the square of the one before, and a handful is all
 /// there are.
-const MOST_STEPS: usize = 50;
+pub(super) const MOST_STEPS: usize = 50;
 
 /// How often a step is halved before the way is taken to lead nowhere.
 const HALVINGS: i32 = 20;
@@ -63,32 +60,32 @@ pub(crate) struct Conditions<'a, 'g> {
 /// M⁻¹ ∂f/∂π, then η likewise.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
-    coordinates: usize,
-    k: usize,
+    pub(super) coordinates: usize,
+    pub(super) k: usize,
     /// Number of constraints that are independent.
-    rank: usize,
-    positions: Measured,
-    places: Vec<usize>,
-    velocities: Measured,
+    pub(super) rank: usize,
+    pub(super) positions: Measured,
+    pub(super) places: Vec<usize>,
+    pub(super) velocities: Measured,
     followers: Followers,
-    displacements: Evaluator,
-    lower: Pattern,
-    bordered: Evaluator,
-    entries: Vec<f64>,
+    pub(super) displacements: Evaluator,
+    pub(super) lower: Pattern,
+    pub(super) bordered: Evaluator,
+    pub(super) entries: Vec<f64>,
     /// Where the diagonal of the mass matrix stands among the entries.
     diagonal: Vec<Option<usize>>,
     /// Masses by which steps of the quasi-velocities are measured, all positive.
     weights: Vec<f64>,
     solver: Solver,
     /// A right-hand side, then a solution.
-    change: Vec<f64>,
+    pub(super) change: Vec<f64>,
     /// x, then δπ.
-    displaced: Vec<f64>,
+    pub(super) displaced: Vec<f64>,
 }
 
 /// What of a state is moved.
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+pub(super) enum Part {
     /// x, to f = 0.
     Position,
     /// η, to g = 0.
@@ -259,7 +256,7 @@ impl Surface {
         length <= ROUNDINGS * noise
     }
 
-    fn measured(&mut self, part: Part) -> &mut Measured {
+    pub(super) fn measured(&mut self, part: Part) -> &mut Measured {
         match part {
             Part::Position => &mut self.positions,
             Part::Velocity => &mut self.velocities,
@@ -290,7 +287,7 @@ impl Surface {
     }
 
     /// What the step changes of x or of η.
-    fn moved(&mut self, part: Part, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
+    pub(super) fn moved(&mut self, part: Part, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
         let (n, k) = (self.coordinates, self.k);
         match part {
             Part::Velocity => self.change[..k].to_vec(),

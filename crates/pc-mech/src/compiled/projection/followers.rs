@@ -2,7 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
-use crate::compiled::fault::Fault;
+use crate::compiled::failure::Fault;
 
 /// What a condition that follows from others may be off, in displacements of a component of the state, absolute or relative
 /// whichever is larger: what is held is so to rounding, and this is a hundred times what a start may be off.

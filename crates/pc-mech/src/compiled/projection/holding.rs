@@ -2,8 +2,8 @@
 
 use pc_algebra::Matrix;
 
-use crate::compiled::fault::{Fault, check_finite};
-use crate::compiled::surface::{MOST_STEPS, Part, Surface};
+use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface};
 use crate::numeric::least_squares::LeastSquares;
 
 /// A combination of rows this small against them is rounding.

@@ -2,14 +2,14 @@
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 
-use crate::canonical::Canonical;
-use crate::compiled::fault::{Fault, check_finite};
+use crate::compiled::failure::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::motion::Motion;
-use crate::compiled::rounding::Measured;
+use crate::compiled::running_error::Measured;
+use crate::constraints::multipliers::Multipliers;
+use crate::equations::canonical::Canonical;
+use crate::equations::poincare::Equations;
 use crate::error::MechError;
-use crate::multipliers::Multipliers;
-use crate::poincare::Equations;
 
 /// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
 const MOST_STEPS: usize = 50;

@@ -3,9 +3,9 @@
 use pc_algebra::{Matrix, Neighbourhood, affine, determinant};
 use pc_expr::Expr;
 
-use crate::bodies::particle::Particle;
-use crate::bodies::{Moving, Share};
 use crate::error::{MechError, shape};
+use crate::system::bodies::particle::Particle;
+use crate::system::bodies::{Moving, Share};
 
 /// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
 ///

@@ -4,8 +4,8 @@ use pc_expr::{Graph, VectorField};
 
 use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
-use crate::poincare::Equations;
-use crate::system::System;
+use crate::equations::poincare::Equations;
+use crate::system::system::System;
 
 /// Unit links and masses, in angles from the vertical, under gravity 10.
 fn pendulum(graph: &Graph, links: usize) -> Equations<'_> {

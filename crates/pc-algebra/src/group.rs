@@ -1,0 +1,18 @@
+//! Lie groups in coordinates: numbers for integrators, expressions for frames.
+//!
+//! In goes a group, out come its invariant frames, exp and log, composition and projection. Read `group` (the interface),
+//! then a group: rotations of the plane and of space, motions of both, Heisenberg's groups, products. `rotation`,
+//! `exponential` and `stumpff` are what several of them compute with.
+
+pub(crate) mod direct_product;
+pub(crate) mod euler_angles;
+pub(crate) mod exponential;
+pub(crate) mod group;
+pub(crate) mod heisenberg;
+pub(crate) mod plane_motions;
+pub(crate) mod plane_rotations;
+pub(crate) mod rigid_motions;
+pub(crate) mod rotation;
+pub(crate) mod rotation_matrices;
+pub(crate) mod stumpff;
+pub(crate) mod unit_quaternions;

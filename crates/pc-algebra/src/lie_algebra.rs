@@ -1,0 +1,20 @@
+//! Lie algebras by their structure constants, exact, with what is said of an algebra as a whole.
+//!
+//! In go c_rs^m as rational numbers, out come verdicts. Read `structure_constants` and `lie_algebra` first; `subspace`
+//! is what `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` speak about. Algebras come
+//! from a `catalogue`, `families`, `matrix_algebra`, or from others by `product` and `representation`; `bianchi` names
+//! those of three dimensions.
+
+pub(crate) mod bianchi;
+pub(crate) mod catalogue;
+pub(crate) mod families;
+pub(crate) mod invariant_forms;
+pub(crate) mod killing;
+pub(crate) mod lie_algebra;
+pub(crate) mod matrix_algebra;
+pub(crate) mod product;
+pub(crate) mod rank;
+pub(crate) mod representation;
+pub(crate) mod series;
+pub(crate) mod structure_constants;
+pub(crate) mod subspace;

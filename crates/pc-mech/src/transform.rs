@@ -1,0 +1,12 @@
+//! A system as another system of the same motions.
+//!
+//! `quasi_velocities` changes to other η, `lagrange` back to ẋ, `velocities` converts states between them;
+//! `restriction` keeps the last η at zero, `reduction` leaves out coordinates that nothing depends on, and
+//! `orthonormal_frame` makes the mass matrix the unit matrix.
+
+pub(crate) mod lagrange;
+pub(crate) mod orthonormal_frame;
+pub(crate) mod quasi_velocities;
+pub(crate) mod reduction;
+pub(crate) mod restriction;
+pub(crate) mod velocities;

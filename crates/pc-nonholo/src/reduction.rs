@@ -1,0 +1,12 @@
+//! Equations of the velocities that constraints leave.
+//!
+//! `adapted` makes constraints vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
+//! `voronets` solves them for velocities (35); `almost_poisson`, `chaplygin` and `invariant_measure` say what structure
+//! is left.
+
+pub(crate) mod adapted;
+pub(crate) mod almost_poisson;
+pub(crate) mod chaplygin;
+pub(crate) mod constrained;
+pub(crate) mod invariant_measure;
+pub(crate) mod voronets;
