@@ -5,10 +5,10 @@ use std::fmt;
 
 use pc_expr::Failure;
 
-use crate::code::Code;
-use crate::inequality::Inequality;
-use crate::options::Method;
-use crate::trajectory::Trajectory;
+use crate::cvode::return_code::Code;
+use crate::integration::inequality::Inequality;
+use crate::integration::options::Method;
+use crate::integration::trajectory::Trajectory;
 
 /// Why an integration was not begun or not completed.
 #[derive(Debug, thiserror::Error)]
@@ -634,7 +634,7 @@ pub enum InputError {
     NoStep,
 }
 
-/// A failed [`solve`](crate::solve()) with the outputs it had reached.
+/// A failed [`solve`](crate::integration::solve()) with the outputs it had reached.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SolveFailure {

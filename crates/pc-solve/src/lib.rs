@@ -25,54 +25,38 @@
 
 #![expect(unsafe_code, reason = "calls of the C library SUNDIALS")]
 
-mod adjoint;
-mod adjoint_field;
-mod callback;
 mod checkpoint;
-mod code;
-mod context;
-mod crossing;
 mod cvode;
-mod dense;
 mod ensemble;
 mod error;
 mod events;
-mod fn_field;
-mod handles;
-mod inequality;
+mod integration;
 mod linear;
-mod linearisation;
 mod lyapunov;
-mod motion_record;
-mod offset;
-mod options;
-mod orthonormal;
 mod sensitivity;
-mod sensitivity_trajectory;
-mod solve;
-mod statistics;
-mod trajectory;
-mod variation;
 
-pub use adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
-pub use checkpoint::{Checkpoint, CheckpointError, solve_checkpointed, solve_with_events_checkpointed};
-pub use code::Code;
-pub use cvode::{Cvode, Ending, Hybrid};
-pub use dense::{DenseOutput, Segment};
-pub use ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
+pub use checkpoint::checkpoint::{
+    Checkpoint, CheckpointError, solve_checkpointed, solve_with_events_checkpointed,
+};
+pub use cvode::cvode::{Cvode, Ending};
+pub use cvode::hybrid::hybrid::Hybrid;
+pub use cvode::return_code::Code;
+pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
 pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
-pub use events::{Accumulation, FnEvents, Occurrence};
-pub use fn_field::{FnField, from_fn};
-pub use inequality::Inequality;
-pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
-pub use lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
-pub use options::{Method, NonlinearSolver, Options, Tolerance};
-pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
-pub use sensitivity::{Correction, Sensitivities, SensitivityStatistics};
-pub use sensitivity_trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};
-pub use solve::{
+pub use events::events::{Accumulation, FnEvents, Occurrence};
+pub use integration::dense_output::{DenseOutput, Segment};
+pub use integration::fn_field::{FnField, from_fn};
+pub use integration::inequality::Inequality;
+pub use integration::options::{Method, NonlinearSolver, Options, Tolerance};
+pub use integration::solve::{
     HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,
     solve_with_events_observed,
 };
-pub use statistics::Statistics;
-pub use trajectory::Trajectory;
+pub use integration::statistics::Statistics;
+pub use integration::trajectory::Trajectory;
+pub use linear::linear::{Krylov, LinearSolver, Preconditioner, Side};
+pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
+pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
+pub use sensitivity::adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
+pub use sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
+pub use sensitivity::trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};

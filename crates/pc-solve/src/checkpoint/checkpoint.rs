@@ -21,15 +21,12 @@
 //! occurred last, and which are due. What a field keeps by projection, such as the energy, is what it kept when made, but
 //! after a [restart](crate::Cvode::restart), by a reset say, what it is in the state of the checkpoint.
 
-mod encoding;
-mod legs;
+pub use crate::checkpoint::encoding::CheckpointError;
+pub use crate::checkpoint::legs::{solve_checkpointed, solve_with_events_checkpointed};
 
-pub use self::encoding::CheckpointError;
-pub use self::legs::{solve_checkpointed, solve_with_events_checkpointed};
-
-use crate::events::{History, Occurrence};
-use crate::statistics::Statistics;
-use crate::trajectory::Trajectory;
+use crate::events::events::{History, Occurrence};
+use crate::integration::statistics::Statistics;
+use crate::integration::trajectory::Trajectory;
 
 /// Time and state of a motion, the outputs and occurrences before it, and the work so far.
 ///

@@ -14,10 +14,10 @@
 //! ```
 //! All numbers are little-endian, integers and floats of 64 bits.
 
-use super::{Checkpoint, EventPast, Past};
-use crate::events::{History, Occurrence};
-use crate::statistics::Statistics;
-use crate::trajectory::Trajectory;
+use crate::checkpoint::checkpoint::{Checkpoint, EventPast, Past};
+use crate::events::events::{History, Occurrence};
+use crate::integration::statistics::Statistics;
+use crate::integration::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
 const VERSION: u64 = 4;

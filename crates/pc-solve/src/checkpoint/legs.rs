@@ -6,15 +6,16 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use super::Checkpoint;
-use crate::code::Code;
-use crate::cvode::{Ending, Hybrid};
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::cvode::cvode::Ending;
+use crate::cvode::hybrid::hybrid::Hybrid;
+use crate::cvode::return_code::Code;
 use crate::error::{IntegrationError, Reason, SolveError, SolveFailure};
-use crate::events::{FnEvents, Occurrence};
-use crate::options::Options;
-use crate::solve::{HybridFailure, HybridMotion};
-use crate::statistics::Statistics;
-use crate::trajectory::Trajectory;
+use crate::events::events::{FnEvents, Occurrence};
+use crate::integration::options::Options;
+use crate::integration::solve::{HybridFailure, HybridMotion};
+use crate::integration::statistics::Statistics;
+use crate::integration::trajectory::Trajectory;
 
 /// As [`solve_observed`](crate::solve_observed), with a checkpoint after `every` so many internal steps.
 ///
@@ -26,7 +27,7 @@ use crate::trajectory::Trajectory;
 /// fails: with the outputs beyond it, which are returned, nothing can be begun anew.
 ///
 /// # Errors
-/// As for [`solve`](crate::solve()).
+/// As for [`solve`](crate::integration::solve()).
 pub fn solve_checkpointed<F: VectorField>(
     mut field: impl FnMut() -> F,
     from: Checkpoint,

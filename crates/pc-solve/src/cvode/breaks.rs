@@ -3,7 +3,7 @@
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
 
 impl<F: VectorField> Cvode<F> {

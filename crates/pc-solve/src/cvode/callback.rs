@@ -9,11 +9,11 @@ use std::slice;
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
+use crate::cvode::handles::numbers_of;
 use crate::error::NonFinite;
-use crate::handles::numbers_of;
-use crate::linear::Work;
-use crate::offset::Offset;
-use crate::variation::Variation;
+use crate::integration::projection::Offset;
+use crate::linear::linear::Work;
+use crate::sensitivity::variation::Variation;
 
 pub(crate) const SUCCESS: c_int = 0;
 const RECOVERABLE: c_int = 1;

@@ -2,11 +2,11 @@
 
 use pc_expr::VectorField;
 
-use super::Cvode;
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, SolveError};
-use crate::options::{Options, finite};
-use crate::sensitivity::Sensitivities;
+use crate::integration::options::{Options, finite};
+use crate::sensitivity::options::Sensitivities;
 
 impl<F: VectorField> Cvode<F> {
     /// Time, state, sensitivities and work where the integration stands, to be gone on from by [`resume`](Cvode::resume), or

@@ -1,17 +1,6 @@
 //! The integrator.
 
-mod breaks;
-mod checkpoint;
-mod dense;
-mod foresight;
-mod hybrid;
-mod interpolation;
-mod quadrature;
-mod restart;
-mod sensitivity;
-mod setup;
-
-pub(crate) use quadrature::Quadratures;
+pub(crate) use crate::cvode::quadrature::Quadratures;
 
 use std::ffi::{c_int, c_void};
 use std::fmt;
@@ -21,18 +10,16 @@ use std::panic::resume_unwind;
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
-use crate::callback::UserData;
-use crate::code::Code;
-use crate::context::Context;
+use crate::cvode::callback::UserData;
+use crate::cvode::context::Context;
+use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
+use crate::cvode::return_code::Code;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
-use crate::events::Accumulation;
-use crate::handles::{Memory, NonlinearIteration, Vector};
-use crate::inequality::Inequality;
-use crate::linear::{Linear, LinearSolver};
-use crate::options::finite;
-use crate::statistics::Statistics;
-
-pub use hybrid::Hybrid;
+use crate::events::events::Accumulation;
+use crate::integration::inequality::Inequality;
+use crate::integration::options::finite;
+use crate::integration::statistics::Statistics;
+use crate::linear::linear::{Linear, LinearSolver};
 
 /// An integration of ẏ = f(t, y) by CVODES, owning the vector field.
 ///
@@ -44,40 +31,40 @@ pub use hybrid::Hybrid;
 /// goes on to the caller.
 pub struct Cvode<F> {
     // Dropped in this order: what CVODES refers to after CVODES, the context last.
-    memory: Memory,
-    _nonlinear_iteration: NonlinearIteration,
-    linear: Option<Linear>,
-    sensitivity: Option<sensitivity::Forward>,
+    pub(crate) memory: Memory,
+    pub(super) _nonlinear_iteration: NonlinearIteration,
+    pub(super) linear: Option<Linear>,
+    pub(crate) sensitivity: Option<crate::sensitivity::forward::Forward>,
     /// y(`step_time`).
-    step_state: Vector,
+    pub(crate) step_state: Vector,
     /// y(`time`), unless `time` is `step_time`.
-    output: Vector,
+    pub(super) output: Vector,
     /// Where CVODES writes.
-    work: Vector,
-    callbacks: UserData<F>,
-    context: Context,
+    pub(super) work: Vector,
+    pub(crate) callbacks: UserData<F>,
+    pub(crate) context: Context,
 
-    time: f64,
+    pub(crate) time: f64,
     /// How far CVODES is.
-    step_time: f64,
+    pub(super) step_time: f64,
     /// 1 or −1 since the first step.
-    direction: Option<f64>,
-    initial_step: Option<f64>,
-    max_steps: u64,
-    stop_time: Option<f64>,
-    inequalities: Vec<Inequality>,
+    pub(crate) direction: Option<f64>,
+    pub(super) initial_step: Option<f64>,
+    pub(super) max_steps: u64,
+    pub(super) stop_time: Option<f64>,
+    pub(super) inequalities: Vec<Inequality>,
     /// Steps in sequence that have ended at the same time, and the last failure got over in them.
-    idle_steps: u32,
-    idle_failure: Option<Failure>,
+    pub(super) idle_steps: u32,
+    pub(super) idle_failure: Option<Failure>,
     /// The work before the last restart, and whether there has been no step since.
-    earlier: Statistics,
-    restarted: bool,
+    pub(super) earlier: Statistics,
+    pub(crate) restarted: bool,
     /// Whether there has been a restart.
-    jumped: bool,
-    foresight: foresight::Foresight,
+    pub(super) jumped: bool,
+    pub(super) foresight: crate::cvode::foresight::Foresight,
     /// For events.
-    samples_per_step: u32,
-    accumulation: Accumulation,
+    pub(super) samples_per_step: u32,
+    pub(super) accumulation: Accumulation,
 }
 
 /// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
@@ -278,7 +265,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Checks that the integration can go on to `t`.
-    fn check_ahead(&self, t: f64) -> Result<(), InputError> {
+    pub(super) fn check_ahead(&self, t: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         if t == self.time {
             return Ok(());
@@ -296,7 +283,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Checks output times and returns the last.
-    fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
+    pub(crate) fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
         let &end = times.last().ok_or(InputError::NoTimes)?;
         for (i, &t) in times.iter().enumerate() {
             finite(&format!("output time number {i} (from 0)"), t)?;
@@ -318,7 +305,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Goes to `t`, which has been checked, with internal steps towards `end` as far as needed.
-    fn advance(
+    pub(crate) fn advance(
         &mut self,
         t: f64,
         end: f64,
@@ -346,7 +333,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// That one more step may be taken after so many on the way to `t`: counted here, because CVODES is asked for one step
     /// at a time.
-    fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+    pub(super) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.max_steps {
             return Ok(());
         }
@@ -355,7 +342,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// One step of CVODES.
-    fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
+    pub(super) fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
         if self.direction.is_none()
             && let Some(length) = self.initial_step
         {
@@ -424,7 +411,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Makes a state of what CVODES has written for time `t`, at the end of a step or within it.
-    fn project(&mut self, t: f64, step: bool) -> Result<(), SolveError> {
+    pub(super) fn project(&mut self, t: f64, step: bool) -> Result<(), SolveError> {
         let Some((field, offset)) = self.callbacks.projection() else { return Ok(()) };
         match offset.project(field, t, self.work.as_mut_slice(), step) {
             Ok(()) => Ok(()),
@@ -433,12 +420,12 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// The error of a failed step, after going to the end of the last successful one.
-    fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+    pub(super) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         self.time = self.step_time;
         self.error(reason, failure)
     }
 
-    fn error(&self, reason: Reason, failure: Option<Failure>) -> SolveError {
+    pub(crate) fn error(&self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let state = self.step_state.as_slice().to_vec();
         SolveError::Integration(Box::new(IntegrationError { reason, time: self.step_time, state, failure }))
     }

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::{Cvode, Ending};
-use crate::dense::Segment;
+use crate::cvode::cvode::{Cvode, Ending};
 use crate::error::SolveError;
+use crate::integration::dense_output::Segment;
 
 impl<F: VectorField> Cvode<F> {
     /// Integrates to `end` and gives the motion as [`Segment`]s, one for each internal step, to `segment`, which may

@@ -16,9 +16,9 @@
 use pc_expr::{Surprises, TimeDependence, TimeProfile, VectorField};
 use sundials_sys as sys;
 
-use super::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
-use crate::options::{Options, Tolerance};
+use crate::integration::options::{Options, Tolerance};
 
 /// Places at which a field that is known by its values alone is looked at, from the start to where it is to be integrated.
 const SAMPLES: f64 = 64.0;

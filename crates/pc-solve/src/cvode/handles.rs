@@ -8,7 +8,7 @@ use std::slice;
 
 use sundials_sys as sys;
 
-use crate::context::Context;
+use crate::cvode::context::Context;
 use crate::error::SolveError;
 
 /// A serial `N_Vector`.

@@ -3,9 +3,9 @@
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, Reason, SolveError};
-use crate::options::finite;
+use crate::integration::options::finite;
 
 impl<F: VectorField> Cvode<F> {
     /// The derivative of y of the given order at `t` in the last internal step, by the polynomial of the method.

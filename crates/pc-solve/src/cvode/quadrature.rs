@@ -6,10 +6,10 @@ use std::slice;
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
-use super::Cvode;
-use crate::callback::{Callbacks, nan_slice};
+use crate::cvode::callback::{Callbacks, nan_slice};
+use crate::cvode::cvode::Cvode;
+use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::SolveError;
-use crate::handles::{Vector, numbers_of};
 
 /// A vector field with integrals q̇ = r(t, y) that do not act on it.
 pub(crate) trait Quadratures {
@@ -60,7 +60,7 @@ impl<F: VectorField> Cvode<F> {
 /// `CVQuadRhsFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData), a vector of its dimension and one
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and one
 /// as long as there are integrals.
 unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     t: f64,

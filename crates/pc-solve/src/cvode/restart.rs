@@ -3,10 +3,10 @@
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, SolveError};
-use crate::inequality;
-use crate::options::{check_length, finite};
+use crate::integration::inequality;
+use crate::integration::options::{check_length, finite};
 
 impl<F: VectorField> Cvode<F> {
     /// Starts anew at y(t) = y, after a jump of the state, say.
@@ -26,7 +26,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// The same, of the state without its sensitivities.
-    pub(super) fn restart_alone(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
+    pub(crate) fn restart_alone(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         finite("the start time", t)?;
         check_length("the start", y.len(), self.field().dim())?;
         if let Some(i) = y.iter().position(|value| !value.is_finite()) {

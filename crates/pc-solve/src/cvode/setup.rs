@@ -5,16 +5,19 @@ use std::ffi::c_int;
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::Cvode;
 use super::foresight::Foresight;
-use crate::callback::{self, UserData};
-use crate::context::Context;
+use crate::cvode::callback;
+use crate::cvode::callback::UserData;
+use crate::cvode::context::Context;
+use crate::cvode::cvode::Cvode;
+use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
 use crate::error::{InputError, SolveError};
-use crate::handles::{Memory, NonlinearIteration, Vector};
-use crate::inequality::{self, Inequality};
-use crate::linear::{self, Linear};
-use crate::options::{Method, Options, Tolerance, check_length, finite};
-use crate::statistics::Statistics;
+use crate::integration::inequality;
+use crate::integration::inequality::Inequality;
+use crate::integration::options::{Method, Options, Tolerance, check_length, finite};
+use crate::integration::statistics::Statistics;
+use crate::linear::linear;
+use crate::linear::linear::Linear;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.

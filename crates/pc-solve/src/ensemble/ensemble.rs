@@ -26,9 +26,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod ordered;
-mod random;
-
 use std::any::Any;
 use std::cell::RefCell;
 use std::error::Error;
@@ -42,14 +39,14 @@ use std::thread;
 use pc_expr::VectorField;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-pub use self::random::member_stream;
+pub use crate::ensemble::random::member_stream;
 
-use self::ordered::Queue;
-use crate::cvode::Ending;
+use crate::cvode::cvode::Ending;
+use crate::ensemble::ordered::Queue;
 use crate::error::SolveFailure;
-use crate::options::Options;
-use crate::solve::solve_observed;
-use crate::trajectory::Trajectory;
+use crate::integration::options::Options;
+use crate::integration::solve::solve_observed;
+use crate::integration::trajectory::Trajectory;
 
 /// Members that may be ahead of the one that is consumed next, for each thread.
 const WINDOW: usize = 64;
@@ -97,7 +94,7 @@ impl<'a> Ensemble<'a> {
         Ensemble { flag: Some(flag), ..self }
     }
 
-    /// Integrates each member, as [`solve`](crate::solve()) does, and gives the trajectories to `consume` in the order of
+    /// Integrates each member, as [`solve`](crate::integration::solve()) does, and gives the trajectories to `consume` in the order of
     /// the members.
     ///
     /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
@@ -201,7 +198,7 @@ impl<'a> Ensemble<'a> {
 /// Whether the rest of an ensemble is wanted no longer.
 #[derive(Debug, Clone, Copy)]
 pub struct Stop<'a> {
-    own: &'a AtomicBool,
+    pub(super) own: &'a AtomicBool,
     flag: Option<&'a AtomicBool>,
 }
 

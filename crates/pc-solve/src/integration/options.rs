@@ -3,9 +3,9 @@
 use std::fmt;
 
 use crate::error::InputError;
-use crate::events::Accumulation;
-use crate::inequality::Inequality;
-use crate::linear::LinearSolver;
+use crate::events::events::Accumulation;
+use crate::integration::inequality::Inequality;
+use crate::linear::linear::LinearSolver;
 
 /// A family of linear multistep methods of variable order and step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

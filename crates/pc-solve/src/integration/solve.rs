@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::{Cvode, Ending};
-use crate::dense::DenseOutput;
+use crate::cvode::cvode::{Cvode, Ending};
 use crate::error::{SolveError, SolveFailure};
-use crate::events::Occurrence;
-use crate::options::Options;
-use crate::trajectory::Trajectory;
+use crate::events::events::Occurrence;
+use crate::integration::dense_output::DenseOutput;
+use crate::integration::options::Options;
+use crate::integration::trajectory::Trajectory;
 
 /// Integrates ẏ = f(t, y) from y(t0) = y0 and returns the states at `times`.
 ///

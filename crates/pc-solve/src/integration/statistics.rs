@@ -4,8 +4,8 @@ use std::ffi::{c_int, c_long, c_void};
 
 use sundials_sys as sys;
 
-use crate::handles::Memory;
-use crate::linear::Work;
+use crate::cvode::handles::Memory;
+use crate::linear::linear::Work;
 
 /// Counts since the start, and the last internal step.
 ///

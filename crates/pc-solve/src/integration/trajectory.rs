@@ -1,6 +1,6 @@
 //! States at the output times.
 
-use crate::statistics::Statistics;
+use crate::integration::statistics::Statistics;
 
 /// The states of a motion at its output times, in the order they were reached.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,13 +6,13 @@ use std::slice;
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use crate::callback::Callbacks;
-use crate::handles::numbers_of;
+use crate::cvode::callback::Callbacks;
+use crate::cvode::handles::numbers_of;
 
 /// `CVLsJacFn`, from the field's sparse Jacobian.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData), a vector of its dimension and a
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
 /// band matrix that contains the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,

@@ -4,7 +4,7 @@ use pc_expr::{Pattern, VectorField};
 
 use super::krylov::Krylov;
 use crate::error::InputError;
-use crate::options::{NonlinearSolver, Options};
+use crate::integration::options::{NonlinearSolver, Options};
 
 /// How the linear systems (I − γ ∂f/∂y) x = b of Newton's iteration are solved.
 ///

@@ -12,10 +12,10 @@ use sundials_sys as sys;
 
 use super::direct::{self, Factors, Singular};
 use super::handles::{Matrix, Solver};
-use crate::callback::{Callbacks, nan_slice};
-use crate::context::Context;
+use crate::cvode::callback::{Callbacks, nan_slice};
+use crate::cvode::context::Context;
+use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::{NonFinite, SolveError};
-use crate::handles::{Vector, numbers_of};
 
 /// From this many components on the blocked factorisation is used. Measured interleaved, it takes 1/4 of the time of
 /// SUNDIALS' at 64 components, 1/5 at 100, 1/8 at 200 and 1/25 at 400, a solve 1/1.4, 1/1.7, 1/2 and 1/3; below some 20
@@ -101,7 +101,7 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData), a vector of its dimension and a
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
 /// dense square matrix.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,

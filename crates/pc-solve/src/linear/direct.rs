@@ -7,9 +7,9 @@ use std::slice;
 use sundials_sys as sys;
 
 use super::handles::{Matrix, Solver};
-use crate::context::Context;
+use crate::cvode::context::Context;
+use crate::cvode::handles::numbers_of;
 use crate::error::SolveError;
-use crate::handles::numbers_of;
 
 const SUCCESS: c_int = 0;
 /// Of `SUNLinSolSetup`: a smaller step, so a smaller γ, may help.

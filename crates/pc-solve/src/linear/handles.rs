@@ -6,9 +6,9 @@ use std::ptr::NonNull;
 
 use sundials_sys as sys;
 
-use crate::context::Context;
+use crate::cvode::context::Context;
+use crate::cvode::handles::Vector;
 use crate::error::SolveError;
-use crate::handles::Vector;
 
 /// An n × n `SUNMatrix`.
 pub(super) struct Matrix(NonNull<sys::_generic_SUNMatrix>);

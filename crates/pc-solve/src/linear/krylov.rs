@@ -9,11 +9,11 @@ use sundials_sys as sys;
 
 use super::handles::Solver;
 use super::preconditioner::Preconditioner;
-use crate::callback::{Callbacks, FATAL, nan_slice};
-use crate::context::Context;
+use crate::cvode::callback::{Callbacks, FATAL, nan_slice};
+use crate::cvode::context::Context;
+use crate::cvode::handles::{Memory, Vector, numbers_of};
 use crate::error::{InputError, NonFinite, SolveError};
-use crate::handles::{Memory, Vector, numbers_of};
-use crate::options::positive;
+use crate::integration::options::positive;
 
 /// On which side of A = I − γ ∂f/∂y the inverse of the preconditioner P stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -165,7 +165,7 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacTimesVecFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData) and vectors of its dimension.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) and vectors of its dimension.
 unsafe extern "C" fn product<F: VectorField>(
     v: sys::N_Vector,
     product: sys::N_Vector,

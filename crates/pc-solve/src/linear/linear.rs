@@ -3,44 +3,33 @@
 //! γ is the step times a coefficient of the method, so that a solver goes through three stages, each rarer than the
 //! one after it: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.
 
-mod band;
-mod choice;
-mod dense;
-mod direct;
-mod handles;
-mod krylov;
-mod preconditioner;
-mod quotients;
-mod sparse;
-mod sparse_lu;
-
 use std::borrow::Cow;
 use std::ptr;
 
 use pc_expr::{Pattern, VectorField};
 use sundials_sys as sys;
 
-pub use choice::LinearSolver;
-pub(crate) use choice::choose;
-pub use krylov::{Krylov, Side};
-pub use preconditioner::Preconditioner;
+pub use crate::linear::choice::LinearSolver;
+pub(crate) use crate::linear::choice::choose;
+pub use crate::linear::krylov::{Krylov, Side};
+pub use crate::linear::preconditioner::Preconditioner;
 
-use crate::callback::UserData;
-use crate::context::Context;
+use crate::cvode::callback::UserData;
+use crate::cvode::context::Context;
+use crate::cvode::handles::{Memory, Vector};
 use crate::error::SolveError;
-use crate::handles::{Memory, Vector};
-use crate::inequality::Inequality;
-use handles::{Matrix, Solver};
-use quotients::Quotients;
-use sparse::Places;
+use crate::integration::inequality::Inequality;
+use crate::linear::handles::{Matrix, Solver};
+use crate::linear::quotients::Quotients;
+use crate::linear::sparse::Places;
 
 /// What the callbacks of the linear solver read and write, beside the vector field.
 #[derive(Default)]
 pub(crate) struct Work {
     /// The entries of ∂f/∂y, in the order of the field's pattern.
-    entries: Vec<f64>,
-    quotients: Option<Quotients>,
-    preconditioner: Option<Box<dyn Preconditioner + Send>>,
+    pub(super) entries: Vec<f64>,
+    pub(super) quotients: Option<Quotients>,
+    pub(super) preconditioner: Option<Box<dyn Preconditioner + Send>>,
 }
 
 impl Work {
@@ -77,7 +66,7 @@ impl Linear {
         let (solver, matrix) = match &choice {
             LinearSolver::Dense => {
                 let matrix = Matrix::dense(context, dim)?;
-                (dense::solver(context, y, &matrix)?, Some(matrix))
+                (crate::linear::dense::solver(context, y, &matrix)?, Some(matrix))
             }
             LinearSolver::Band { lower, upper } => {
                 let matrix = Matrix::band(context, dim, *lower, *upper)?;
@@ -85,8 +74,8 @@ impl Linear {
             }
             LinearSolver::Sparse => {
                 let places = Places::new(&pattern(field));
-                let matrix = sparse::matrix(context, &places)?;
-                (sparse_lu::solver(context, &matrix, places.pattern())?, Some(matrix))
+                let matrix = crate::linear::sparse::matrix(context, &places)?;
+                (crate::linear::sparse_lu::solver(context, &matrix, places.pattern())?, Some(matrix))
             }
             LinearSolver::Krylov(krylov) => (krylov.solver(context, y)?, None),
         };
@@ -116,18 +105,18 @@ impl Linear {
         let entries = field.sparsity().map_or(0, Pattern::len);
         let mut work = Work::default();
         let jacobian: sys::CVLsJacFn = match &self.choice {
-            LinearSolver::Dense => has_jacobian.then_some(dense::jacobian::<F>),
+            LinearSolver::Dense => has_jacobian.then_some(crate::linear::dense::jacobian::<F>),
             LinearSolver::Band { .. } => {
                 work.entries = vec![0.0; entries];
-                (has_jacobian && field.sparsity().is_some()).then_some(band::jacobian::<F>)
+                (has_jacobian && field.sparsity().is_some()).then_some(crate::linear::band::jacobian::<F>)
             }
             LinearSolver::Sparse if has_jacobian => {
                 work.entries = vec![0.0; entries];
-                Some(sparse::jacobian::<F>)
+                Some(crate::linear::sparse::jacobian::<F>)
             }
             LinearSolver::Sparse => {
                 work.quotients = Some(Quotients::new(memory, &pattern(field), inequalities));
-                Some(quotients::jacobian::<F>)
+                Some(crate::linear::quotients::jacobian::<F>)
             }
             LinearSolver::Krylov(krylov) => {
                 work.preconditioner = krylov.attach::<F>(memory, context, field.has_jvp())?;

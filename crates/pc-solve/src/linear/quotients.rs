@@ -7,9 +7,9 @@ use pc_expr::{Pattern, VectorField};
 use sundials_sys as sys;
 
 use super::sparse;
-use crate::callback::{Callbacks, FATAL, SUCCESS};
-use crate::handles::{Memory, numbers_of};
-use crate::inequality::Inequality;
+use crate::cvode::callback::{Callbacks, FATAL, SUCCESS};
+use crate::cvode::handles::{Memory, numbers_of};
+use crate::integration::inequality::Inequality;
 
 /// Difference quotients of f in the directions of sums of unit vectors, columns of one colour at once, with CVODE's
 /// increments.
@@ -71,7 +71,7 @@ fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
 /// `CVLsJacFn`, by difference quotients.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData), vectors of its dimension and a
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), vectors of its dimension and a
 /// matrix of our own for the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,

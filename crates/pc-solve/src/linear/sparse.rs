@@ -8,10 +8,10 @@ use pc_expr::{Failure, Pattern, VectorField};
 use sundials_sys as sys;
 
 use super::handles::Matrix;
-use crate::callback::Callbacks;
-use crate::context::Context;
+use crate::cvode::callback::Callbacks;
+use crate::cvode::context::Context;
+use crate::cvode::handles::numbers_of;
 use crate::error::{NonFinite, SolveError};
-use crate::handles::numbers_of;
 
 const SUCCESS: c_int = 0;
 
@@ -178,7 +178,7 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacFn`, from the field's sparse Jacobian.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData), a vector of its dimension and a
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
 /// [`matrix`] of its places.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,

@@ -10,7 +10,7 @@ use sundials_sys as sys;
 use super::direct::{self, Factors, Singular};
 use super::handles::{Matrix, Solver};
 use super::sparse;
-use crate::context::Context;
+use crate::cvode::context::Context;
 use crate::error::SolveError;
 
 /// The solver for a `matrix` in compressed columns with this pattern.

@@ -2,11 +2,11 @@
 
 use pc_expr::VectorField;
 
-use crate::cvode::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
-use crate::options::{Options, positive};
-use crate::orthonormal::{length, orthonormalise};
-use crate::sensitivity::Sensitivities;
+use crate::integration::options::{Options, positive};
+use crate::lyapunov::orthonormal::{length, orthonormalise};
+use crate::sensitivity::options::Sensitivities;
 
 /// How many exponents, from how long a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Failure, VectorField};
 
-use crate::adjoint_field::{AdjointField, not_finite};
-use crate::cvode::Cvode;
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
-use crate::options::{Options, Tolerance, positive};
-use crate::statistics::Statistics;
+use crate::integration::options::{Options, Tolerance, positive};
+use crate::integration::statistics::Statistics;
+use crate::sensitivity::adjoint_field::{AdjointField, not_finite};
 
 /// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its derivatives.
 ///

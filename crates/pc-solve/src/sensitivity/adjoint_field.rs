@@ -2,12 +2,12 @@
 
 use pc_expr::{Failure, VectorField};
 
-use crate::adjoint::Functional;
-use crate::cvode::Quadratures;
+use crate::cvode::cvode::Quadratures;
 use crate::error::{NonFinite, SolveError};
-use crate::linearisation::Linearisation;
-use crate::motion_record::MotionRecord;
-use crate::options::Options;
+use crate::integration::motion_record::MotionRecord;
+use crate::integration::options::Options;
+use crate::sensitivity::adjoint::Functional;
+use crate::sensitivity::linearisation::Linearisation;
 
 /// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals that the gradient takes.
 pub(crate) struct AdjointField<F, G> {

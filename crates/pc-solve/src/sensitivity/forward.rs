@@ -6,16 +6,17 @@ use std::ops::ControlFlow;
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::{Cvode, Ending};
+use crate::cvode::cvode::{Cvode, Ending};
+use crate::cvode::handles::{NonlinearIteration, Vector};
 use crate::error::{Reason, SolveError};
-use crate::handles::{NonlinearIteration, Vector};
-use crate::linearisation::Linearisation;
-use crate::options::{NonlinearSolver, Options, check_length, finite};
-use crate::sensitivity::{Correction, Sensitivities, SensitivityStatistics};
-use crate::variation::{self, Variation};
+use crate::integration::options::{NonlinearSolver, Options, check_length, finite};
+use crate::sensitivity::linearisation::Linearisation;
+use crate::sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
+use crate::sensitivity::variation;
+use crate::sensitivity::variation::Variation;
 
 /// What an integration with sensitivities has besides.
-pub(super) struct Forward {
+pub(crate) struct Forward {
     /// Referred to by CVODES.
     _nonlinear_iteration: NonlinearIteration,
     /// Where CVODES writes the columns.
@@ -52,7 +53,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// This integration, which has not begun, with columns that are `start` now.
-    pub(super) fn and_sensitivities(
+    pub(crate) fn and_sensitivities(
         mut self,
         sensitivities: &Sensitivities,
         options: &Options,
@@ -155,7 +156,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// S at `t` in the last internal step; none where there is nothing but a start.
-    pub(super) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
+    pub(crate) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
         let Some(forward) = self.sensitivity.as_ref().filter(|_| self.direction.is_some() && !self.restarted)
         else {
             return Ok(None);
@@ -171,12 +172,12 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// The parameter of each column.
-    pub(super) fn sensitivity_parameters(&self) -> &[Option<usize>] {
+    pub(crate) fn sensitivity_parameters(&self) -> &[Option<usize>] {
         self.callbacks.variation().parameters()
     }
 
     /// S where the integration stands, for a checkpoint; empty without sensitivities.
-    pub(super) fn sensitivities_to_keep(&self) -> Vec<f64> {
+    pub(crate) fn sensitivities_to_keep(&self) -> Vec<f64> {
         match self.sensitivities_at(self.time) {
             Ok(Some(matrix)) => matrix,
             // What cannot be had is not finite, and refused by whoever goes on from it.

@@ -3,7 +3,7 @@
 use pc_expr::{Failure, VectorField};
 
 use crate::error::NonFinite;
-use crate::options::{Options, Tolerance};
+use crate::integration::options::{Options, Tolerance};
 
 /// Where products (∂f/∂y) v come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

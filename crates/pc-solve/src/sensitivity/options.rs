@@ -3,8 +3,8 @@
 use pc_expr::VectorField;
 
 use crate::error::InputError;
-use crate::linearisation::Linearisation;
-use crate::options::{check_length, finite, positive};
+use crate::integration::options::{check_length, finite, positive};
+use crate::sensitivity::linearisation::Linearisation;
 
 /// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
 ///

@@ -6,11 +6,11 @@ use std::ops::ControlFlow;
 
 use pc_expr::VectorField;
 
-use crate::cvode::{Cvode, Ending};
+use crate::cvode::cvode::{Cvode, Ending};
 use crate::error::SolveError;
-use crate::options::Options;
-use crate::sensitivity::Sensitivities;
-use crate::trajectory::Trajectory;
+use crate::integration::options::Options;
+use crate::integration::trajectory::Trajectory;
+use crate::sensitivity::options::Sensitivities;
 
 /// The states of a motion at its output times, and S(t) = ∂y(t)/∂(p, y₀) there.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ impl SensitivityTrajectory {
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, and derivatives of the motion with it.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::integration::solve()) does, and derivatives of the motion with it.
 ///
 /// # Errors
 /// [`SensitivityFailure`] with the outputs reached before the failure; none if the input is not valid.

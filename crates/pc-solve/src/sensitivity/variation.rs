@@ -6,10 +6,10 @@ use std::slice;
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
-use crate::callback::{Callbacks, nan_slice};
+use crate::cvode::callback::{Callbacks, nan_slice};
+use crate::cvode::handles::numbers_of;
 use crate::error::NonFinite;
-use crate::handles::numbers_of;
-use crate::linearisation::Linearisation;
+use crate::sensitivity::linearisation::Linearisation;
 
 /// The equations of the columns of S = ∂y/∂(p, y₀).
 #[derive(Debug, Default)]
@@ -61,7 +61,7 @@ impl Variation {
 /// `CVSensRhsFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::callback::UserData) whose variation has `count`
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) whose variation has `count`
 /// columns, and with vectors of its dimension.
 pub(crate) unsafe extern "C" fn rates<F: VectorField>(
     count: c_int,

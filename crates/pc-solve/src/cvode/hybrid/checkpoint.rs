@@ -2,14 +2,14 @@
 
 use pc_expr::{Events, VectorField};
 
-use super::{Hybrid, directions};
-use crate::checkpoint::{Checkpoint, EventPast, Past};
-use crate::crossing::Sides;
-use crate::cvode::Cvode;
+use crate::checkpoint::checkpoint::{Checkpoint, EventPast, Past};
+use crate::cvode::cvode::Cvode;
+use crate::cvode::hybrid::hybrid::{Hybrid, directions};
 use crate::error::{InputError, SolveError};
-use crate::options::Options;
-use crate::sensitivity::Sensitivities;
-use crate::statistics::Statistics;
+use crate::events::root_finding::Sides;
+use crate::integration::options::Options;
+use crate::integration::statistics::Statistics;
+use crate::sensitivity::options::Sensitivities;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Time, state and work where the integration stands, and what is known of its events, to be gone on from by

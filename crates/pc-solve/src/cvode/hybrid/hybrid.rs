@@ -1,20 +1,14 @@
 //! An integration that events interrupt.
 
-mod checkpoint;
-mod occur;
-mod run;
-mod saltation;
-mod step;
-
 use std::fmt;
 
 use pc_expr::{Direction, Event, Events, Failure, VectorField};
 
-use super::{Cvode, Ending};
-use crate::crossing::{Passage, Sample, Sides};
+use crate::cvode::cvode::{Cvode, Ending};
 use crate::error::{InputError, NonFinite, Reason, SolveError};
-use crate::events::{Accumulation, History};
-use crate::statistics::Statistics;
+use crate::events::events::{Accumulation, History};
+use crate::events::root_finding::{Passage, Sample, Sides};
+use crate::integration::statistics::Statistics;
 
 /// An integration of ẏ = f(t, y) by [`Cvode`] with [`Events`].
 ///
@@ -44,24 +38,24 @@ use crate::statistics::Statistics;
 /// integration. After an error or a panic it stands where it last could.
 pub struct Hybrid<F, E> {
     /// Stands at the end of its last step; its `time` is that of this integration.
-    engine: Cvode<F>,
-    events: E,
-    histories: Vec<History>,
+    pub(super) engine: Cvode<F>,
+    pub(super) events: E,
+    pub(super) histories: Vec<History>,
     /// 1 or −1 since the first step.
-    direction: Option<f64>,
+    pub(super) direction: Option<f64>,
     /// Up to where it is known what occurs, the functions there, and y.
-    front: Sample,
-    front_state: Vec<f64>,
-    sides: Sides,
+    pub(super) front: Sample,
+    pub(super) front_state: Vec<f64>,
+    pub(super) sides: Sides,
     /// The sides before the front moved there.
-    sides_before: Sides,
+    pub(super) sides_before: Sides,
     /// The events that occur at the front and have yet to be dealt with.
-    due: Vec<usize>,
-    noise: Vec<f64>,
+    pub(super) due: Vec<usize>,
+    pub(super) noise: Vec<f64>,
     /// The side of zero that each of those due goes on to.
-    beyond: Vec<f64>,
+    pub(super) beyond: Vec<f64>,
     /// y(`time`), unless `time` is the front.
-    output: Vec<f64>,
+    pub(super) output: Vec<f64>,
 }
 
 impl<F: VectorField, E: Events> fmt::Debug for Hybrid<F, E> {
@@ -119,7 +113,7 @@ impl<F: VectorField> Cvode<F> {
     }
 }
 
-fn directions(events: &impl Events) -> Vec<Direction> {
+pub(super) fn directions(events: &impl Events) -> Vec<Direction> {
     events.events().iter().map(Event::crosses).collect()
 }
 
@@ -171,7 +165,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     }
 
     /// Moves the front to the next event or to the end of the next internal step.
-    fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
+    pub(super) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
         if self.engine.step_time == self.front.t {
             if self.arrives(towards)? {
                 return Ok(());
@@ -238,29 +232,29 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     }
 
     /// The functions at a state.
-    fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
+    pub(super) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         let mut blamed = 0;
         values_at(&mut self.events, t, state, &mut blamed)
             .map_err(|failure| self.event_error(blamed, t, failure))
     }
 
     /// The error of the function of an event.
-    fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
+    pub(super) fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
         let reason = Reason::Event { event: self.name(event), t };
         self.failed(reason, Some(failure))
     }
 
-    fn name(&self, event: usize) -> String {
+    pub(super) fn name(&self, event: usize) -> String {
         self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
     }
 
     /// The error of something that did not succeed beyond the front, where the integration stands then.
-    fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+    pub(super) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let error = self.engine.failed(reason, failure);
         self.stay(error)
     }
 
-    fn stay(&mut self, mut error: SolveError) -> SolveError {
+    pub(super) fn stay(&mut self, mut error: SolveError) -> SolveError {
         self.engine.time = self.front.t;
         if let SolveError::Integration(error) = &mut error {
             error.time = self.front.t;

@@ -1,13 +1,14 @@
 //! What happens to the state at events.
 
+use crate::cvode::cvode::Ending;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, Failure, VectorField};
 
-use super::{Ending, Hybrid};
+use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::error::{NonFinite, Reason, SolveError};
-use crate::events::Occurrence;
-use crate::inequality;
+use crate::events::events::Occurrence;
+use crate::integration::inequality;
 
 /// A function is near zero after a reset within so many times what the tolerances of the state make of zero.
 const TOLERANCES: f64 = 10.0;

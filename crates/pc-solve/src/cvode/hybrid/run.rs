@@ -1,14 +1,15 @@
 //! Going on from event to event.
 
+use crate::cvode::cvode::Ending;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use super::{Ending, Hybrid};
-use crate::code::Code;
-use crate::dense::Segment;
+use crate::cvode::hybrid::hybrid::Hybrid;
+use crate::cvode::return_code::Code;
 use crate::error::{Reason, SolveError};
-use crate::events::Occurrence;
+use crate::events::events::Occurrence;
+use crate::integration::dense_output::Segment;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Integrates to `t`, or to a terminal event before, and tells what occurs, events at `t` included, to `occurred`,

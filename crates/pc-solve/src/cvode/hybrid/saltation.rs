@@ -2,7 +2,7 @@
 
 use pc_expr::{Events, VectorField};
 
-use super::Hybrid;
+use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::error::{Reason, SolveError};
 
 /// A function that changes at less than this part of the sum of its terms along the motion only touches zero.

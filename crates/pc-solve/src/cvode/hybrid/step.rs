@@ -1,13 +1,14 @@
 //! Single steps, and states inside them.
 
+use crate::cvode::cvode::Ending;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use super::{Ending, Hybrid};
+use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::error::{InputError, SolveError};
-use crate::events::Occurrence;
-use crate::options::finite;
+use crate::events::events::Occurrence;
+use crate::integration::options::finite;
 
 impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// Takes one internal step in the direction of `towards`, or the part of it before the next event, and tells what

@@ -1,0 +1,7 @@
+//! Where a motion can be taken up again, with the same numbers to the last bit.
+//!
+//! `checkpoint` says what is kept, `encoding` how it is written as bytes, `legs` goes from checkpoint to checkpoint.
+
+pub(crate) mod checkpoint;
+pub(crate) mod encoding;
+pub(crate) mod legs;

@@ -1,0 +1,7 @@
+//! Events: what they are given by, and where they occur.
+//!
+//! `events` takes closures and tells what occurred; `root_finding` locates where functions along a step pass through zero
+//! first.
+
+pub(crate) mod events;
+pub(crate) mod root_finding;
