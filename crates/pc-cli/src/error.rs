@@ -8,10 +8,10 @@ use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
 use pc_verify::VerifyError;
 
-use crate::plot::PlotError;
-use crate::saving::SavingError;
+use crate::plot::plot::PlotError;
+use crate::report::text::short;
+use crate::run::checkpoint::SavingError;
 use crate::sweep::error::SweepError;
-use crate::text::short;
 
 /// An error of the program.
 #[derive(Debug, thiserror::Error)]

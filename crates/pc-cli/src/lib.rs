@@ -12,27 +12,14 @@
 //! Each command is a function of its arguments; `main` only dispatches. What a command computes goes to standard
 //! output, what it says about it to standard error.
 
-pub mod args;
-pub mod binding;
-pub mod check;
-pub mod derive;
-pub mod emit;
 pub mod error;
-mod follow;
-mod identity;
-pub mod input;
-mod interrupt;
-pub mod models;
+
+pub mod args;
+pub mod commands;
 pub mod output;
-pub mod plan;
 pub mod plot;
-mod progress;
+pub mod report;
 pub mod run;
-pub mod saving;
-pub mod summary;
 pub mod sweep;
-pub mod table;
-pub mod text;
-pub mod verification;
 
 pub use error::CliError;

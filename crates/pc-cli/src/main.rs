@@ -3,8 +3,11 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use pc_cli::args::{Arguments, Command};
-use pc_cli::{CliError, check, derive, emit, models, run, sweep, text};
+use pc_cli::CliError;
+use pc_cli::args::args::{Arguments, Command};
+use pc_cli::commands::{check, derive, emit, models, run};
+use pc_cli::report::text;
+use pc_cli::sweep::sweep;
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {

@@ -2,12 +2,12 @@
 
 use std::ffi::c_char;
 
-use crate::builder::draft;
-use crate::draft::{Draft, Section, list, quoted};
-use crate::error::{Fault, pc_error};
-use crate::model::pc_model;
-use crate::pointer::{text, texts};
-use crate::status::pc_status;
+use crate::api::builder::draft;
+use crate::api::model::pc_model;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{text, texts};
+use crate::ffi::status::pc_status;
+use crate::machinery::draft::{Draft, Section, list, quoted};
 
 /// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its mass centre or
 /// of a point of it that is at rest, as expressions of coordinates. Energy and forces follow from bodies; no

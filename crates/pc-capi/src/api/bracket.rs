@@ -5,12 +5,12 @@ use std::ffi::c_char;
 use pc_expr::Evaluator;
 use pc_mech::{Expr, Graph};
 
-use crate::error::{Fault, pc_error};
-use crate::mechanics::{compile, evaluate};
-use crate::pointer::text;
-use crate::rates::{State, Target, slices};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::mechanics::{compile, evaluate};
+use crate::api::rates::{State, Target, slices};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::text;
+use crate::ffi::status::pc_status;
 
 /// Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
 ///

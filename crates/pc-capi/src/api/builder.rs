@@ -4,12 +4,12 @@ use std::ffi::c_char;
 
 use pc_mech::Graph;
 
-use crate::draft::{Draft, Section, list, number, numbers as list_of, quoted};
-use crate::entry::entry;
-use crate::error::{Fault, pc_error};
-use crate::model::{Contents, Origin, boxed, change, pc_model};
-use crate::pointer::{clear, finite, numbers, text, write};
-use crate::status::pc_status;
+use crate::api::model::{Contents, Origin, boxed, change, pc_model};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, finite, numbers, text, write};
+use crate::ffi::status::pc_status;
+use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
 
 /// A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
 /// coordinates, quasi-velocities, parameters and so on is that of their calls. Expressions are those of the text

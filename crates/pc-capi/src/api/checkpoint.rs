@@ -4,16 +4,16 @@ use std::ffi::{c_char, c_void};
 
 use pc_solve::Checkpoint;
 
-use crate::engine::Integration;
-use crate::entry::entry;
-use crate::error::pc_error;
-use crate::followed::Followed;
-use crate::options::{pc_solver_options, take};
-use crate::pointer::{bytes, clear, text, write};
-use crate::solver::{integrate, pc_solver};
-use crate::status::pc_status;
-use crate::strings::give;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::options::{pc_solver_options, take};
+use crate::api::solver::{integrate, pc_solver};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{bytes, clear, text, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::give;
+use crate::machinery::engine::Integration;
+use crate::machinery::event_set::Followed;
 
 /// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
 /// in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.

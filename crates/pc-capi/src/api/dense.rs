@@ -4,12 +4,12 @@ use std::ffi::c_uint;
 
 use pc_solve::{DenseOutput, InputError, SolveError};
 
-use crate::engine::Integration;
-use crate::entry::{entry, free};
-use crate::error::{Fault, pc_error};
-use crate::pointer::{clear, handle, room, write};
-use crate::solver::{integrate, pc_solver};
-use crate::status::pc_status;
+use crate::api::solver::{integrate, pc_solver};
+use crate::ffi::boundary::{entry, free};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, handle, room, write};
+use crate::ffi::status::pc_status;
+use crate::machinery::engine::Integration;
 
 /// A motion as a function of time. It never changes, so that any number of threads may use it. Free it with
 /// pc_dense_free.

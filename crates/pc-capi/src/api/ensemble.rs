@@ -9,15 +9,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ::pc_model::FlowEvents;
 use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
 
-use crate::engine::Engine;
-use crate::entry::entry;
-use crate::error::{Fault, pc_error};
-use crate::field::Field;
-use crate::followed::Followed;
-use crate::options::{pc_solver_options, take};
-use crate::pointer::{finite, handle, numbers};
-use crate::status::pc_status;
-use crate::system::pc_system;
+use crate::api::options::{pc_solver_options, take};
+use crate::api::system::pc_system;
+use crate::ffi::boundary::entry;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{finite, handle, numbers};
+use crate::ffi::status::pc_status;
+use crate::machinery::engine::Engine;
+use crate::machinery::event_set::Followed;
+use crate::machinery::field::Field;
 
 /// What has come of a member of an ensemble. It may grow at the end.
 #[repr(C)]

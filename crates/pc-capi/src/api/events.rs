@@ -4,14 +4,14 @@ use std::ffi::{c_char, c_int};
 
 use pc_expr::{Direction, Event, Events};
 
-use crate::builder::draft;
-use crate::draft::{Draft, Section, quoted};
-use crate::error::{Fault, pc_error};
-use crate::model::pc_model;
-use crate::pointer::{numbers, room, text};
-use crate::rates::{State, Target, slices};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, count, inside, name, pc_system};
+use crate::api::builder::draft;
+use crate::api::model::pc_model;
+use crate::api::rates::{State, Target, slices};
+use crate::api::system::{Inner, Inventory, count, inside, name, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{numbers, room, text};
+use crate::ffi::status::pc_status;
+use crate::machinery::draft::{Draft, Section, quoted};
 
 /// In which direction the function of an event passes through zero, as the integration goes.
 #[repr(C)]

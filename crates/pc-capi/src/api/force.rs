@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use pc_mech::{ExternalForce, Failure};
 
-use crate::entry::entry;
-use crate::error::{Fault, pc_error};
-use crate::model::{Contents, change, pc_model};
-use crate::pointer::text;
-use crate::status::pc_status;
-use crate::strings::nth;
-use crate::system::{Inner, Inventory, inside, pc_system};
-use crate::user::{User, pc_destroy};
+use crate::api::model::{Contents, change, pc_model};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::text;
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::nth;
+use crate::ffi::user_data::{User, pc_destroy};
 
 /// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
 /// pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a

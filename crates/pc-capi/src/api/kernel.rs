@@ -6,13 +6,13 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::direct::Direct;
-use crate::entry::{entry, free};
-use crate::error::{Fault, pc_error};
-use crate::field::Field;
-use crate::pointer::{are_usable, clear, fresh, handle, numbers, write};
-use crate::status::pc_status;
-use crate::system::{Inner, holding, pc_system};
+use crate::api::system::{Inner, holding, pc_system};
+use crate::ffi::boundary::{entry, free};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{are_usable, clear, fresh, handle, numbers, write};
+use crate::ffi::status::pc_status;
+use crate::machinery::field::Field;
+use crate::machinery::lock_free_rhs::Direct;
 
 /// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
 /// pc_kernel_free.

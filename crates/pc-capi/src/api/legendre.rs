@@ -2,10 +2,10 @@
 
 use pc_mech::{Graph, LegendreTransform, MechError};
 
-use crate::error::{Fault, pc_error};
-use crate::rates::{State, Target, slices};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::rates::{State, Target, slices};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::status::pc_status;
 
 impl Inner {
     /// The transform of the state, derived when first asked for.

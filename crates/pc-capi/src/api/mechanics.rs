@@ -4,12 +4,12 @@ use ::pc_model::{Model, Variables};
 use pc_expr::{Evaluator, Inputs, Program};
 use pc_mech::{Backend, Equations, Expr, Graph, MechError, VectorField};
 
-use crate::error::{Fault, pc_error};
-use crate::field::Field;
-use crate::pointer::{apart, numbers, write};
-use crate::rates::{State, Target, slices};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::rates::{State, Target, slices};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{apart, numbers, write};
+use crate::ffi::status::pc_status;
+use crate::machinery::field::Field;
 
 /// The parts of M η̇ = r and of ẋ = b η + b_0, functions of t and (x, η).
 #[derive(Clone)]

@@ -5,13 +5,13 @@ use std::sync::OnceLock;
 
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
-use crate::draft::Draft;
-use crate::entry::{entry, free};
-use crate::error::{Fault, pc_error};
-use crate::held::Held;
-use crate::pointer::{bytes, clear, finite, handle, text, write};
-use crate::status::pc_status;
-use crate::strings::{c_string, give, nth};
+use crate::ffi::boundary::{entry, free};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{bytes, clear, finite, handle, text, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::{c_string, give, nth};
+use crate::machinery::draft::Draft;
+use crate::machinery::exclusive::Held;
 
 /// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
 pub struct pc_model {
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn pc_model_parse(
         let text = unsafe { bytes(text, length, "text") }?;
         let name = if name.is_null() { c"model".as_ptr() } else { name };
         // SAFETY: as above.
-        let name = unsafe { crate::pointer::text(name, "name") }?;
+        let name = unsafe { crate::ffi::pointer::text(name, "name") }?;
         let document = Document::parse(Source::from_bytes(name, text))?;
         // SAFETY: as above.
         unsafe { write(model, of_document(document), "model") }

@@ -1,9 +1,9 @@
 //! What is watched along a motion.
 
-use crate::error::{Fault, pc_error};
-use crate::rates::{State, Target, slices};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::rates::{State, Target, slices};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::status::pc_status;
 
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
 ///

@@ -5,15 +5,15 @@ use std::sync::{MutexGuard, PoisonError};
 
 use pc_expr::Event;
 
-use crate::engine::{Integration, Observer};
-use crate::error::{Fault, pc_error};
-use crate::events::direction;
-use crate::followed::Own;
-use crate::pointer::{apart, handle, room, text, write};
-use crate::solver::{integrate, pc_solver};
-use crate::status::pc_status;
-use crate::strings::{c_string, nth};
-use crate::user::{User, pc_destroy};
+use crate::api::events::direction;
+use crate::api::solver::{integrate, pc_solver};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{apart, handle, room, text, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::{c_string, nth};
+use crate::ffi::user_data::{User, pc_destroy};
+use crate::machinery::engine::{Integration, Observer};
+use crate::machinery::event_set::Own;
 
 /// Is given each event where it occurs, by its number among the events of the solver, with the states before and
 /// after it, which are valid during the call. Of simultaneous events each has the state that it found and the one

@@ -4,11 +4,11 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::entry::succeeded;
-use crate::error::{Fault, pc_error};
-use crate::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
-use crate::status::pc_status;
-use crate::system::{Inner, Inventory, holding, inside, pc_system};
+use crate::api::system::{Inner, Inventory, holding, inside, pc_system};
+use crate::ffi::boundary::succeeded;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
+use crate::ffi::status::pc_status;
 
 /// A state from C.
 #[derive(Clone, Copy)]
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
 ) -> pc_status {
     let get = || {
         // SAFETY: null or a live handle, as the preamble demands.
-        let inventory = &unsafe { crate::pointer::handle(system, "system") }?.inventory;
+        let inventory = &unsafe { crate::ffi::pointer::handle(system, "system") }?.inventory;
         let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
         // SAFETY: null or places for results, as the preamble demands.
         unsafe {
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
         Ok(())
     };
     // SAFETY: `error` is null or a place for a pointer.
-    unsafe { crate::entry::entry(error, get) }
+    unsafe { crate::ffi::boundary::entry(error, get) }
 }
 
 const NO_PATTERN: Fault =

@@ -2,12 +2,12 @@
 
 use std::ffi::c_char;
 
-use crate::builder::draft;
-use crate::draft::{Draft, Section, number, quoted};
-use crate::error::{Fault, pc_error};
-use crate::model::{Contents, Origin, change, pc_model};
-use crate::pointer::{finite, text};
-use crate::status::pc_status;
+use crate::api::builder::draft;
+use crate::api::model::{Contents, Origin, change, pc_model};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{finite, text};
+use crate::ffi::status::pc_status;
+use crate::machinery::draft::{Draft, Section, number, quoted};
 
 /// Says what the model is.
 #[unsafe(no_mangle)]

@@ -7,16 +7,16 @@ use std::sync::Mutex;
 use pc_expr::Events;
 use pc_solve::Checkpoint;
 
-use crate::engine::Integration;
-use crate::entry::{entry, free};
-use crate::error::{Fault, pc_error};
-use crate::followed::Followed;
-use crate::held::Held;
-use crate::options::{pc_solver_options, take};
-use crate::pointer::{clear, handle, numbers, room, write};
-use crate::status::pc_status;
-use crate::strings::c_string;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::options::{pc_solver_options, take};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::boundary::{entry, free};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, handle, numbers, room, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::c_string;
+use crate::machinery::engine::Integration;
+use crate::machinery::event_set::Followed;
+use crate::machinery::exclusive::Held;
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {

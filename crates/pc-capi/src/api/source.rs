@@ -6,12 +6,12 @@ use ::pc_model::Variables;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::{Form, Page};
 
-use crate::entry::entry;
-use crate::error::{Fault, pc_error};
-use crate::pointer::{clear, handle, text, write};
-use crate::status::pc_status;
-use crate::strings::give;
-use crate::system::{Inventory, pc_system};
+use crate::api::system::{Inventory, pc_system};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, handle, text, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::give;
 
 /// How equations are printed.
 #[repr(C)]

@@ -2,12 +2,12 @@
 
 use pc_solve::Statistics;
 
-use crate::entry::entry;
-use crate::error::{Fault, pc_error};
-use crate::options::give;
-use crate::pointer::handle;
-use crate::solver::pc_solver;
-use crate::status::pc_status;
+use crate::api::options::give;
+use crate::api::solver::pc_solver;
+use crate::ffi::boundary::entry;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::handle;
+use crate::ffi::status::pc_status;
 
 /// Counts since the start of an integration, and its last internal step. It may grow at the end.
 #[repr(C)]

@@ -7,17 +7,17 @@ use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
 use pc_expr::{Event, Events, Pattern};
 use pc_mech::{Graph, LegendreTransform, VectorField};
 
-use crate::direct::Direct;
-use crate::entry::{entry, free};
-use crate::error::{Fault, pc_error};
-use crate::field::Field;
-use crate::held::Held;
-use crate::mechanics::Mechanics;
-use crate::model::pc_model;
-use crate::options::{pc_system_options, take};
-use crate::pointer::{clear, finite, handle, numbers, room, write};
-use crate::status::pc_status;
-use crate::strings::{c_string, c_strings, nth};
+use crate::api::mechanics::Mechanics;
+use crate::api::model::pc_model;
+use crate::api::options::{pc_system_options, take};
+use crate::ffi::boundary::{entry, free};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, finite, handle, numbers, room, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::{c_string, c_strings, nth};
+use crate::machinery::exclusive::Held;
+use crate::machinery::field::Field;
+use crate::machinery::lock_free_rhs::Direct;
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {

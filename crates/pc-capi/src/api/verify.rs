@@ -4,11 +4,11 @@ use std::ffi::c_char;
 
 use pc_verify::{Options, VerifyError, verify};
 
-use crate::error::{Fault, pc_error};
-use crate::pointer::{clear, write};
-use crate::status::pc_status;
-use crate::strings::give;
-use crate::system::{Inner, Inventory, inside, pc_system};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{clear, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::give;
 
 /// Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
 /// random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
-use crate::error::{Fault, pc_error};
-use crate::status::pc_status;
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::status::pc_status;
 
 /// Runs `body`, catching panics, and writes its fault to `*error`, or null.
 ///
@@ -77,8 +77,8 @@ mod tests {
     use std::ffi::CStr;
 
     use super::*;
-    use crate::error::{pc_error_free, pc_error_message};
-    use crate::held::Held;
+    use crate::ffi::error::{pc_error_free, pc_error_message};
+    use crate::machinery::exclusive::Held;
 
     /// Status and message of a call of `body`.
     fn called(body: impl FnOnce() -> Result<(), Fault>) -> (pc_status, String) {

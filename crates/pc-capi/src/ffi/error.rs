@@ -9,8 +9,8 @@ use pc_mech::MechError;
 use pc_solve::{CheckpointError, Code, EnsembleError, SolveError};
 use pc_verify::VerifyError;
 
-use crate::status::pc_status;
-use crate::strings::c_string;
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::c_string;
 
 /// Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
 /// pc_error_free.
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_in
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_free(error: *mut pc_error) {
     // SAFETY: null or an error of ours that nobody uses any more.
-    unsafe { crate::entry::free(error) };
+    unsafe { crate::ffi::boundary::free(error) };
 }
 
 fn place(error: *const pc_error) -> Place {

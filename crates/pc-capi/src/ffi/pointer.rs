@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char};
 use std::slice;
 
-use crate::error::Fault;
+use crate::ffi::error::Fault;
 
 /// The object of a handle.
 ///

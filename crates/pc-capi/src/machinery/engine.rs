@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 use pc_expr::{Event, Events};
 use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
 
-use crate::error::Fault;
-use crate::field::Field;
-use crate::followed::{Followed, Own};
+use crate::ffi::error::Fault;
+use crate::machinery::event_set::{Followed, Own};
+use crate::machinery::field::Field;
 
 /// The integration.
 pub(crate) enum Engine {

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use ::pc_model::FlowEvents;
 use pc_expr::{Event, Events, Failure};
 
-use crate::user::User;
+use crate::ffi::user_data::User;
 
 /// g(t, y) of an event, for C.
 pub(crate) type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, *mut c_void) -> c_int;

@@ -2,7 +2,7 @@
 
 use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
-use crate::force::Controller;
+use crate::api::force::Controller;
 
 /// The vector field of the equations of motion, with or without forces that a function of the program computes.
 #[derive(Clone)]

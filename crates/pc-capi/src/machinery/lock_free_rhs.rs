@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering, fence};
 
 use pc_mech::MachineCode;
 
-use crate::field::Field;
+use crate::machinery::field::Field;
 
 /// The machine code of f, and the parameters it is for.
 ///

@@ -6,8 +6,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use pc_model::Variables;
 use pc_model::document::MOST_SAMPLES;
 
-use crate::saving::SavingArguments;
-use crate::sweep::arguments::SweepArguments;
+use crate::args::sweep::SweepArguments;
+use crate::run::checkpoint::SavingArguments;
 
 /// The command line of `pc`.
 #[derive(Clone, Debug, Parser)]

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use crate::args::{self, EventArguments, Method, ModelArguments, RunArguments, RunForm};
-use crate::saving::SavingArguments;
+use crate::args::args;
+use crate::args::args::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
+use crate::run::checkpoint::SavingArguments;
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]

@@ -14,12 +14,12 @@ use serde_json::{Value, json};
 use self::frame::FrameFacts;
 use self::integrals::Integral;
 use self::steady::Search;
-use crate::args::{CheckArguments, Format};
-use crate::binding::{NEGATIVE_ENERGY, dropped, say_moved};
+use crate::args::args::{CheckArguments, Format};
+use crate::args::input;
 use crate::error::CliError;
-use crate::input;
-use crate::text::{assignments, labelled, print, short, small, wrapped};
-use crate::verification;
+use crate::report::notes::{NEGATIVE_ENERGY, dropped, say_moved};
+use crate::report::text::{assignments, labelled, print, short, small, wrapped};
+use crate::report::verification;
 
 /// Prints what can be said of a model before it is run.
 ///

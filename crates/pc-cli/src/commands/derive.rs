@@ -3,11 +3,11 @@
 use pc_mech::Graph;
 use pc_print::page;
 
-use crate::args::DeriveArguments;
-use crate::binding::{say_dropped, say_moved};
+use crate::args::args::DeriveArguments;
+use crate::args::input;
 use crate::error::CliError;
-use crate::input;
-use crate::text::print;
+use crate::report::notes::{say_dropped, say_moved};
+use crate::report::text::print;
 
 /// Prints the equations of a model.
 ///

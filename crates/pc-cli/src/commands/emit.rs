@@ -6,12 +6,12 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::energy_remark;
 
-use crate::args::{EmitArguments, Lang};
-use crate::binding::{choice, say_choice, say_dropped, say_moved};
+use crate::args::args::{EmitArguments, Lang};
+use crate::args::input;
 use crate::error::CliError;
-use crate::input;
 use crate::output::atomic;
-use crate::text::say;
+use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
+use crate::report::text::say;
 
 const NO_EVENTS: &str =
     "The events of the model are not part of this source: it has the equations between them.";

@@ -7,18 +7,20 @@ use pc_mech::Graph;
 use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
 
-use crate::args::{Outputs, RunArguments, RunForm};
-use crate::binding::{dropped, say_moved, say_negative_energy, say_undetermined};
+use crate::args::args::{Outputs, RunArguments, RunForm};
+use crate::args::input;
 use crate::error::CliError;
-use crate::follow::follow;
-use crate::output::Destination;
-use crate::plan::Plan;
-use crate::plot::Picture;
-use crate::progress::Progress;
-use crate::saving::{Saving, SavingArguments};
-use crate::table::Table;
-use crate::verification::Verification;
-use crate::{input, interrupt, summary, text};
+use crate::output::output::Destination;
+use crate::plot::plot::Picture;
+use crate::report::notes::{dropped, say_moved, say_negative_energy, say_undetermined};
+use crate::report::verification::Verification;
+use crate::report::{summary, text};
+use crate::run::checkpoint::{Saving, SavingArguments};
+use crate::run::follow::follow;
+use crate::run::interrupt;
+use crate::run::plan::Plan;
+use crate::run::progress::Progress;
+use crate::run::table::Table;
 
 /// A motion as far as it was computed, and how that went.
 #[derive(Debug)]

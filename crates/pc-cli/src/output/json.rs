@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
-use crate::run::Run;
-use crate::summary;
+use crate::commands::run::Run;
+use crate::report::summary;
 
 /// Numbers are as short as gives the same number back; what is not finite is null.
 pub(super) fn write(run: &Run, out: &mut dyn Write) -> io::Result<()> {

@@ -1,17 +1,12 @@
 //! Where results go: standard output, or a file that is there whole or not at all.
 
-pub(crate) mod atomic;
-mod csv;
-mod json;
-mod npz;
-
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use crate::commands::run::Run;
 use crate::error::CliError;
-use crate::plot::Picture;
-use crate::run::Run;
-use crate::text;
+use crate::plot::plot::Picture;
+use crate::report::text;
 
 /// How a result is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +62,7 @@ impl Destination {
         let Some(&(_, encoding)) = encoding else {
             return Err(CliError::UnknownExtension { option, path: path.to_owned(), expected });
         };
-        atomic::look(path).map_err(|source| write_error(path, source))?;
+        crate::output::atomic::look(path).map_err(|source| write_error(path, source))?;
         Ok(Destination { encoding, path: Some(path.to_owned()) })
     }
 
@@ -77,9 +72,9 @@ impl Destination {
     /// [`CliError::Write`]; an existing file is then as it was.
     pub fn write_table(&self, run: &Run) -> Result<(), CliError> {
         self.write(|out| match self.encoding {
-            Encoding::Json => json::write(run, out),
-            Encoding::Npz => npz::write(run, out),
-            Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
+            Encoding::Json => crate::output::json::write(run, out),
+            Encoding::Npz => crate::output::npz::write(run, out),
+            Encoding::Csv | Encoding::Svg | Encoding::Png => crate::output::csv::write(&run.table, out),
         })
     }
 
@@ -98,7 +93,9 @@ impl Destination {
     fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
         match &self.path {
             None => text::print(write),
-            Some(path) => atomic::write(path, write).map_err(|source| write_error(path, source)),
+            Some(path) => {
+                crate::output::atomic::write(path, write).map_err(|source| write_error(path, source))
+            }
         }
     }
 }

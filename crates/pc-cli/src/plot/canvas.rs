@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
 
-use super::{Panel, Picture, PlotError, Scale};
+use crate::plot::plot::{Panel, Picture, PlotError, Scale};
 
 /// Size in points: of the picture, and of a panel's height.
 const WIDTH: u32 = 960;
@@ -144,7 +144,7 @@ fn draw_panel<B: DrawingBackend>(
         .y_label_area_size(66 * scale)
         .build_cartesian_2d(time.0..time.1, low..high)?;
     let value: &dyn Fn(&f64) -> String = match panel.scale {
-        Scale::Linear => &|value| crate::text::short(*value, 6),
+        Scale::Linear => &|value| crate::report::text::short(*value, 6),
         Scale::Decades => &|value| decade(*value),
     };
     chart
@@ -153,7 +153,7 @@ fn draw_panel<B: DrawingBackend>(
         .y_desc(panel.label)
         .axis_desc_style(font(13, scale))
         .label_style(font(11, scale))
-        .x_label_formatter(&|t| crate::text::short(*t, 6))
+        .x_label_formatter(&|t| crate::report::text::short(*t, 6))
         .y_label_formatter(value)
         .y_labels(7)
         .x_labels(11)

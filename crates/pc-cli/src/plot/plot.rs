@@ -1,9 +1,7 @@
 //! The picture of a motion: coordinates, quasi-velocities, drift of the integrals, one panel each.
 
-mod canvas;
-
-use crate::run::Run;
-use crate::table::Table;
+use crate::commands::run::Run;
+use crate::run::table::Table;
 
 /// A picture that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -28,30 +26,30 @@ pub enum PlotError {
 /// Panels under each other with a common axis of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    title: String,
-    time: (f64, f64),
-    panels: Vec<Panel>,
+    pub(super) title: String,
+    pub(super) time: (f64, f64),
+    pub(super) panels: Vec<Panel>,
 }
 
 /// Curves on common axes.
 #[derive(Clone, Debug, PartialEq)]
-struct Panel {
-    label: &'static str,
-    scale: Scale,
-    curves: Vec<Curve>,
+pub(super) struct Panel {
+    pub(super) label: &'static str,
+    pub(super) scale: Scale,
+    pub(super) curves: Vec<Curve>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scale {
+pub(super) enum Scale {
     Linear,
     /// Values are decimal logarithms.
     Decades,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Curve {
-    name: String,
-    points: Vec<(f64, f64)>,
+pub(super) struct Curve {
+    pub(super) name: String,
+    pub(super) points: Vec<(f64, f64)>,
 }
 
 /// Decimal logarithm of the smallest drift that is drawn: less is rounding.
@@ -98,7 +96,7 @@ impl Picture {
     /// # Errors
     /// [`PlotError`].
     pub fn svg(&self) -> Result<String, PlotError> {
-        canvas::svg(self)
+        crate::plot::canvas::svg(self)
     }
 
     /// As a bitmap.
@@ -106,7 +104,7 @@ impl Picture {
     /// # Errors
     /// [`PlotError`].
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        canvas::png(self)
+        crate::plot::canvas::png(self)
     }
 }
 

@@ -3,7 +3,7 @@
 use pc_mech::{Constraint, Expr, System};
 use pc_model::{Assembly, Form};
 
-use crate::text::{say, short, wrapped};
+use crate::report::text::{say, short, wrapped};
 
 /// The constraints that were dropped, each with the reason.
 pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {

@@ -3,8 +3,8 @@
 use pc_print::columns;
 use serde_json::{Map, Value, json};
 
-use crate::run::{Ending, Run};
-use crate::text::{assignments, labelled, short, small};
+use crate::commands::run::{Ending, Run};
+use crate::report::text::{assignments, labelled, short, small};
 
 const LABEL: usize = 9;
 const WIDTH: usize = 86;

@@ -13,12 +13,13 @@ use pc_solve::{
     Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_with_events_checkpointed,
 };
 
-use crate::args::RunForm;
+use crate::args::args::RunForm;
 use crate::error::CliError;
-use crate::identity::{self, Identity};
 use crate::output::atomic;
-use crate::plan::Plan;
-use crate::text;
+use crate::report::text;
+use crate::run::identity;
+use crate::run::identity::Identity;
+use crate::run::plan::Plan;
 
 /// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
 /// against them.

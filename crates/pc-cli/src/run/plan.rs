@@ -4,7 +4,8 @@ use pc_model::Model;
 use pc_model::document;
 use pc_solve::{Accumulation, Method, Options};
 
-use crate::args::{self, RunArguments, RunForm};
+use crate::args::args;
+use crate::args::args::{RunArguments, RunForm};
 use crate::error::CliError;
 
 /// Rows of a table if nobody says how many.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::text::short;
+use crate::report::text::short;
 
 /// A run that takes no longer needs no bar.
 const PATIENCE: Duration = Duration::from_millis(500);

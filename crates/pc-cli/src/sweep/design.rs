@@ -4,8 +4,8 @@ use pc_model::Model;
 use pc_solve::member_stream;
 use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 
-use super::arguments::{Law, Random, SweepArguments, Vary};
 use super::error::SweepError;
+use crate::args::sweep::{Law, Random, SweepArguments, Vary};
 
 /// The members, numbered from 0, with their values.
 #[derive(Clone, Debug)]

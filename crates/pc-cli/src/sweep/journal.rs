@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 
 use super::error::SweepError;
 use super::record::{Record, Status};
-use crate::identity::{self, Identity};
+use crate::run::identity;
+use crate::run::identity::Identity;
 
 const MAGIC: &[u8] = b"pc sweep journal\n";
 

@@ -10,11 +10,11 @@ use pc_solve::{Ending, Events, HybridMotion, Options, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
-use crate::args::RunForm;
-use crate::follow::follow;
-use crate::interrupt;
-use crate::plan::Plan;
-use crate::table::Table;
+use crate::args::args::RunForm;
+use crate::run::follow::follow;
+use crate::run::interrupt;
+use crate::run::plan::Plan;
+use crate::run::table::Table;
 
 /// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
 /// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.

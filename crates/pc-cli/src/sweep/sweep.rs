@@ -6,16 +6,6 @@
 //! ```
 //! The journal is all there is between a member and the table, so that a sweep may end at any moment and go on later.
 
-pub mod arguments;
-mod design;
-pub mod error;
-mod journal;
-mod member;
-mod output;
-mod progress;
-mod record;
-mod sheet;
-
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -24,20 +14,23 @@ use pc_mech::Graph;
 use pc_model::{Category, Model};
 use pc_solve::{Ending, Ensemble};
 
-use self::arguments::{Law, Random, SweepArguments, Vary};
-use self::design::Design;
-use self::error::SweepError;
-use self::journal::Journal;
-use self::member::Members;
-use self::output::Destination;
-use self::progress::Progress;
-use self::sheet::Sheet;
-use crate::args::RunForm;
+use crate::args::args::RunForm;
+use crate::args::input;
+use crate::args::sweep::{Law, Random, SweepArguments, Vary};
 use crate::error::CliError;
-use crate::identity::{self, Identity};
-use crate::plan::Plan;
-use crate::text::{labelled, short};
-use crate::{binding, input, interrupt, text};
+use crate::report::text::{labelled, short};
+use crate::report::{notes, text};
+use crate::run::identity;
+use crate::run::identity::Identity;
+use crate::run::interrupt;
+use crate::run::plan::Plan;
+use crate::sweep::design::Design;
+use crate::sweep::error::SweepError;
+use crate::sweep::journal::Journal;
+use crate::sweep::member::Members;
+use crate::sweep::output::Destination;
+use crate::sweep::progress::Progress;
+use crate::sweep::sheet::Sheet;
 
 /// Bytes of finished members that may wait for an earlier one.
 const WAITING: usize = 64 << 20;
@@ -117,7 +110,7 @@ fn look(model: &Model) -> Result<(), CliError> {
     let graph = Graph::new();
     match model.assemble(&graph) {
         Ok(assembly) => {
-            binding::say_dropped(&assembly);
+            notes::say_dropped(&assembly);
             Ok(())
         }
         Err(error) if error.category() == Category::Inconsistent => Ok(()),
@@ -149,7 +142,13 @@ fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm)
     header
 }
 
-fn summary(title: &str, plan: &Plan, tally: &journal::Tally, before: u64, elapsed: f64) -> String {
+fn summary(
+    title: &str,
+    plan: &Plan,
+    tally: &crate::sweep::journal::Tally,
+    before: u64,
+    elapsed: f64,
+) -> String {
     let mut text = format!("{title}\n");
     let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
     line("method", plan.in_words());

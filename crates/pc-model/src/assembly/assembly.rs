@@ -1,23 +1,13 @@
 //! From a document to a mechanical system.
 
-mod bodies;
-mod brackets;
-mod constraints;
-mod definitions;
-mod events;
-mod frame;
-mod resultants;
-mod start;
-mod trial;
-
 use pc_mech::{Expr, Graph, MechError, System};
 
-use self::bodies::Body;
-use crate::document::NamedExpression;
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::model::{Assembly, Model};
-use crate::scope::{Scope, Stage};
+use crate::assembly::bodies::Body;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document::NamedExpression;
+use crate::model::model::{Assembly, Model};
+use crate::names::scope::{Scope, Stage};
 
 /// The mechanical system of a model, its expressions in `graph`, and its start state.
 ///
@@ -39,10 +29,10 @@ pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError
     Ok([given.values, given.states].concat())
 }
 
-struct Assembler<'g, 'm> {
-    model: &'m Model,
-    graph: &'g Graph,
-    scope: Scope<'g, 'm>,
+pub(super) struct Assembler<'g, 'm> {
+    pub(super) model: &'m Model,
+    pub(super) graph: &'g Graph,
+    pub(super) scope: Scope<'g, 'm>,
 }
 
 impl<'g> Assembler<'g, '_> {
@@ -157,11 +147,11 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.
-    fn is_lagrangian_form(&self) -> bool {
+    pub(super) fn is_lagrangian_form(&self) -> bool {
         self.model.document().quasi_velocities.is_empty()
     }
 
-    fn not_a_coordinate(&self, name: &crate::document::Name) -> ModelError {
+    pub(super) fn not_a_coordinate(&self, name: &crate::document::document::Name) -> ModelError {
         let coordinates = self.model.document().coordinates.iter().map(|c| c.name.text.clone()).collect();
         self.model.error(&name.place, Fault::NotACoordinate { name: name.text.clone(), coordinates })
     }
@@ -195,9 +185,9 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// An expression of the dynamics with ẋ = b η + b_0 put in.
-    fn dynamic(
+    pub(super) fn dynamic(
         &mut self,
-        expression: &crate::document::Expression,
+        expression: &crate::document::document::Expression,
         x_dot: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Expr<'g>, ModelError> {
         let value = self.scope.resolve(expression, Stage::Dynamics)?;

@@ -3,11 +3,12 @@
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
 
-use super::Assembler;
-use crate::document::{self, Expression, Orientation};
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::scope::Stage;
+use crate::assembly::assembly::Assembler;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document;
+use crate::document::document::{Expression, Orientation};
+use crate::names::scope::Stage;
 
 /// A body as the mechanics knows it.
 pub(super) enum Body<'g> {

@@ -3,10 +3,10 @@
 use pc_mech::{Constraint, Expr, Multipliers, System};
 use pc_nonholo::Redundant;
 
-use super::Assembler;
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::resultant::{force_names, torque_names};
+use crate::assembly::assembly::Assembler;
+use crate::assembly::resultant::{force_names, torque_names};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
 
 /// What the reactions do to bodies, each component with its name.
 #[derive(Default)]
@@ -25,7 +25,7 @@ impl<'g> Assembler<'g, '_> {
     ///
     /// # Errors
     /// [`Fault::ForceNotDetermined`] if such a one is named.
-    pub(super) fn with_resultants(
+    pub(crate) fn with_resultants(
         &self,
         system: System<'g>,
         multipliers: &Multipliers<'g>,

@@ -3,13 +3,14 @@
 use pc_mech::{Constraint, Expr, System};
 use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
 
-use super::Assembler;
 use super::trial::{StartHeld, Trial};
-use crate::bound::{Bound, Form, Held, Verdict};
-use crate::document::{self, ConstraintKind};
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::scope::Stage;
+use crate::assembly::assembly::Assembler;
+use crate::assembly::constraint_treatment::{Bound, Form, Held, Verdict};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document;
+use crate::document::document::ConstraintKind;
+use crate::names::scope::Stage;
 
 /// A constraint of the text with its expression, x' still symbols.
 pub(super) struct Written<'g> {

@@ -4,12 +4,12 @@ use pc_algebra::affine;
 use pc_mech::{AlgebraError, Constraint, Expr, Frame, System};
 use pc_nonholo::Binding;
 
-use super::Assembler;
 use super::constraints::Written;
-use crate::document::Expression;
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::scope::Stage;
+use crate::assembly::assembly::Assembler;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document::Expression;
+use crate::names::scope::Stage;
 
 /// A coefficient smaller than this against the largest of its row is no pivot.
 const SMALL: f64 = 1e-3;

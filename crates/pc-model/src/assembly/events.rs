@@ -2,13 +2,14 @@
 
 use pc_expr::{Direction, Expr};
 
-use super::Assembler;
-use crate::bound::Bound;
-use crate::document::{self, NamedExpression};
-use crate::error::ModelError;
-use crate::event::Event;
-use crate::fault::Fault;
-use crate::scope::{Stage, entry};
+use crate::assembly::assembly::Assembler;
+use crate::assembly::constraint_treatment::Bound;
+use crate::assembly::event::Event;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document;
+use crate::document::document::NamedExpression;
+use crate::names::scope::{Stage, entry};
 
 impl<'g> Assembler<'g, '_> {
     /// What passes through zero, ẋ = b η + b_0 put in, in the order of the file.

@@ -1,6 +1,6 @@
 //! Forces on a model that are computed outside.
 
-use crate::model::Model;
+use crate::model::model::Model;
 
 /// A name on which no external force can act.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

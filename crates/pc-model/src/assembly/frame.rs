@@ -2,12 +2,12 @@
 
 use pc_mech::{AlgebraError, Expr, Frame};
 
-use super::Assembler;
 use super::constraints::Written;
-use crate::document::NamedExpression;
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::scope::{Stage, entry};
+use crate::assembly::assembly::Assembler;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document::NamedExpression;
+use crate::names::scope::{Stage, entry};
 
 impl<'g> Assembler<'g, '_> {
     /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.

@@ -2,11 +2,11 @@
 
 use pc_mech::Expr;
 
-use crate::document::Expression;
-use crate::error::ModelError;
-use crate::model::{Assembly, Model};
-use crate::scope::{Scope, Stage};
-use crate::source::Source;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::source::Source;
+use crate::document::document::Expression;
+use crate::model::model::{Assembly, Model};
+use crate::names::scope::{Scope, Stage};
 
 impl Model {
     /// The function of (t, x, η) that a text says in the names of the model, where x' is the velocity of a coordinate x.

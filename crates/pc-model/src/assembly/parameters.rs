@@ -6,11 +6,11 @@ use pc_expr::parse::AstKind;
 use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
 use pc_mech::Table;
 
-use crate::document::{Document, Expression, InputValue, Name};
-use crate::error::{ErrorKind, ModelError};
-use crate::fault::Fault;
-use crate::scope::Scope;
-use crate::tables;
+use crate::assembly::tables;
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::fault::Fault;
+use crate::document::document::{Document, Expression, InputValue, Name};
+use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression in
 /// those before it follows these, until it is set itself.

@@ -3,12 +3,12 @@
 use pc_algebra::affine;
 use pc_mech::{Expr, Frame};
 
-use super::Assembler;
 use super::constraints::Written;
-use crate::document::Expression;
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::scope::{Stage, entry};
+use crate::assembly::assembly::Assembler;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::document::document::Expression;
+use crate::names::scope::{Stage, entry};
 
 /// What is left of a unit vector that depends on others, beside rounding.
 const DEPENDENT: f64 = 1e-9;

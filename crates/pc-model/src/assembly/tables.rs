@@ -5,10 +5,10 @@ use std::path::Path;
 
 use pc_mech::{Table, TableError};
 
-use crate::document::{Document, Input, InputValue, Name, TableFile};
-use crate::error::{ErrorKind, ModelError};
-use crate::fault::Fault;
-use crate::source::Place;
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::fault::Fault;
+use crate::diagnostics::source::Place;
+use crate::document::document::{Document, Input, InputValue, Name, TableFile};
 
 const LISTS: &str = "give as many values as times, two at least, and let the times rise";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \

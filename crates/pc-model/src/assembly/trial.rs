@@ -3,9 +3,9 @@
 use pc_mech::{CompileOptions, Constraint, Expr, MechError, System, VectorField};
 use pc_nonholo::Sorted;
 
-use crate::error::ModelError;
-use crate::fault::Fault;
-use crate::model::Model;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::model::model::Model;
 
 /// A start that misses a constraint by less than this displacement of a coordinate or velocity, absolute or relative
 /// whichever is larger, is rounding of the numbers it is written with.

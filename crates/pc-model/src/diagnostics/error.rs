@@ -6,8 +6,8 @@ use std::ops::Range;
 use pc_expr::parse::{FUNCTIONS, ParseError};
 use thiserror::Error;
 
-use crate::fault::Fault;
-use crate::source::{Place, Position, Source};
+use crate::diagnostics::fault::Fault;
+use crate::diagnostics::source::{Place, Position, Source};
 
 /// What the reader of a message has to change; decides the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

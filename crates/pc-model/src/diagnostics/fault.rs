@@ -1,11 +1,9 @@
 //! What can be wrong with the meaning of a model whose text is well formed.
 
-mod words;
-
 use pc_mech::acts_as_zero;
 
-use self::words::{against, at, listed, rounded, suggest, undetermined_text};
-use crate::error::Category;
+use crate::diagnostics::error::Category;
+use crate::diagnostics::words::{against, at, listed, rounded, suggest, undetermined_text};
 
 /// A fault of the meaning; quasi-velocities stand for their operators.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

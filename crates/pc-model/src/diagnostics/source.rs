@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::{ErrorKind, ModelError};
 
 /// A model file: its name as shown in messages, and its text.
 #[derive(Clone, Debug, Default)]

@@ -3,17 +3,17 @@
 use pc_expr::parse::nearest;
 use pc_expr::readable;
 
-pub(super) fn at(state: &[(String, f64)]) -> String {
+pub(crate) fn at(state: &[(String, f64)]) -> String {
     let values: Vec<String> = state.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if values.is_empty() { String::new() } else { format!(" ({})", values.join(", ")) }
 }
 
 /// Six digits.
-pub(super) fn rounded(value: f64) -> String {
+pub(crate) fn rounded(value: f64) -> String {
     readable(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
-pub(super) fn against(others: &[String]) -> String {
+pub(crate) fn against(others: &[String]) -> String {
     let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
     match names.as_slice() {
         [] => "cannot hold: it is always ".to_owned(),
@@ -22,16 +22,16 @@ pub(super) fn against(others: &[String]) -> String {
     }
 }
 
-pub(super) fn undetermined_text(names: &[String]) -> String {
+pub(crate) fn undetermined_text(names: &[String]) -> String {
     let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
     rates.join(", ") + if rates.len() == 1 { " is" } else { " are" }
 }
 
-pub(super) fn listed(names: &[String]) -> String {
+pub(crate) fn listed(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-pub(super) fn suggest(name: &str, known: &[String], otherwise: &str) -> String {
+pub(crate) fn suggest(name: &str, known: &[String], otherwise: &str) -> String {
     match nearest(name, known.iter().map(String::as_str)) {
         Some(word) => format!("did you mean `{word}`? {otherwise}"),
         None => otherwise.to_owned(),

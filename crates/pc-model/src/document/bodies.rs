@@ -1,8 +1,8 @@
 //! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
-use super::{Body, Gravity, Inertia, Orientation};
-use crate::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::document::document::{Body, Gravity, Inertia, Orientation};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
 const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::{Document, Name};
-use crate::error::{ErrorKind, ModelError, Role};
+use crate::diagnostics::error::{ErrorKind, ModelError, Role};
+use crate::document::document::{Document, Name};
 
 /// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {

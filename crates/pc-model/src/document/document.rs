@@ -14,20 +14,11 @@ use pc_expr::Direction;
 use pc_expr::parse::{Ast, Span, nearest, parse};
 use pc_mech::Interpolation;
 
-use crate::error::{ErrorKind, ModelError, SECTIONS};
-use crate::source::{Place, Source};
+use crate::diagnostics::error::{ErrorKind, ModelError, SECTIONS};
+use crate::diagnostics::source::{Place, Source};
 
-mod bodies;
-mod checks;
-mod inputs;
-mod reader;
-mod sections;
-mod simulation;
-mod syntax;
-mod text_map;
-
-pub use simulation::{MOST_SAMPLES, Simulation};
-pub use text_map::TextMap;
+use crate::document::simulation::Simulation;
+use crate::document::text_map::TextMap;
 
 /// A value and where it stands in the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,8 +45,8 @@ pub struct Expression {
     pub text: String,
     /// Its tree, with spans in `text`.
     pub ast: Ast,
-    entry: String,
-    map: TextMap,
+    pub(super) entry: String,
+    pub(super) map: TextMap,
 }
 
 impl Expression {
@@ -380,14 +371,16 @@ impl Document {
     /// The first thing in the file that is not part of a model.
     pub fn parse(source: Source) -> Result<Self, ModelError> {
         let mut document = Self::default();
-        for item in reader::Table::root(&source, &syntax::table(&source)?).items() {
+        for item in
+            crate::document::reader::Table::root(&source, &crate::document::syntax::table(&source)?).items()
+        {
             document.read(&item)?;
         }
         document.source = source;
-        checks::check_names(&document)?;
-        checks::require_motion(&document)?;
-        checks::require_energy(&document)?;
-        checks::require_bodies(&document)?;
+        crate::document::checks::check_names(&document)?;
+        crate::document::checks::require_motion(&document)?;
+        crate::document::checks::require_energy(&document)?;
+        crate::document::checks::require_bodies(&document)?;
         Ok(document)
     }
 
@@ -406,7 +399,7 @@ impl Document {
     }
 
     /// Reads one section.
-    fn read(&mut self, item: &reader::Item<'_>) -> Result<(), ModelError> {
+    fn read(&mut self, item: &crate::document::reader::Item<'_>) -> Result<(), ModelError> {
         let key = item.key();
         if !SECTIONS.contains(&key) {
             let name = key.to_owned();
@@ -418,24 +411,24 @@ impl Document {
         }
         let table = item.section(key, &format!("[{key}]"))?;
         match key {
-            "model" => self.model = sections::heading(&table)?,
+            "model" => self.model = crate::document::sections::heading(&table)?,
             "parameters" => self.parameters = table.declarations()?,
-            "inputs" => self.inputs = inputs::inputs(&table)?,
+            "inputs" => self.inputs = crate::document::inputs::inputs(&table)?,
             "definitions" => self.definitions = table.declarations()?,
             "coordinates" => self.coordinates = table.declarations()?,
-            "quasi_velocities" => sections::quasi_velocities(&table, self)?,
-            "states" => self.states = sections::states(&table)?,
+            "quasi_velocities" => crate::document::sections::quasi_velocities(&table, self)?,
+            "states" => self.states = crate::document::sections::states(&table)?,
             "kinematics" => self.kinematics = table.expressions()?,
-            "algebra" => self.algebra = Some(sections::algebra(&table)?),
-            "constraints" => self.constraints = sections::constraints(&table)?,
-            "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
-            "bodies" => self.bodies = bodies::bodies(&table)?,
-            "gravity" => self.gravity = Some(bodies::gravity(&table)?),
+            "algebra" => self.algebra = Some(crate::document::sections::algebra(&table)?),
+            "constraints" => self.constraints = crate::document::sections::constraints(&table)?,
+            "lagrangian" => self.lagrangian = Some(crate::document::sections::lagrangian(&table)?),
+            "bodies" => self.bodies = crate::document::bodies::bodies(&table)?,
+            "gravity" => self.gravity = Some(crate::document::bodies::gravity(&table)?),
             "forces" => self.forces = table.expressions()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
-            "events" => self.events = simulation::events(&table)?,
-            _ => self.simulation = simulation::simulation(&table)?,
+            "events" => self.events = crate::document::simulation::events(&table)?,
+            _ => self.simulation = crate::document::simulation::simulation(&table)?,
         }
         Ok(())
     }

@@ -7,9 +7,9 @@ use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
 
 use super::text_map::TextMap;
-use super::{Expression, Located, Name, NamedExpression};
-use crate::error::{ErrorKind, ModelError};
-use crate::source::{Place, Source};
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::source::{Place, Source};
+use crate::document::document::{Expression, Located, Name, NamedExpression};
 
 /// A TOML table and the path of its entries.
 #[derive(Clone)]

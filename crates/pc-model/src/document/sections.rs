@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use super::reader::{Item, Table};
-use super::{
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::document::document::{
     Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
     NamedExpression, QuasiVelocity, State,
 };
-use crate::error::{ErrorKind, ModelError};
 
 pub(super) fn heading(table: &Table<'_>) -> Result<Heading, ModelError> {
     let mut heading = Heading::default();

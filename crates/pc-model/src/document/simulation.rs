@@ -1,10 +1,11 @@
 //! The sections that say how the motion is followed: events and simulation.
 
 use super::reader::{Item, Table};
+use crate::diagnostics::source::Place;
 use pc_expr::Direction;
 
-use super::{Event, Form, Located, Method, NamedExpression, Place};
-use crate::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::document::document::{Event, Form, Located, Method, NamedExpression};
 
 /// The most rows of a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
@@ -185,8 +186,8 @@ fn resets(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Document;
-    use crate::source::Source;
+    use crate::diagnostics::source::Source;
+    use crate::document::document::Document;
 
     #[test]
     fn the_largest_table_is_that_of_the_message() {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use toml::de::{DeTable, Error};
 
-use crate::error::{ErrorKind, ModelError};
-use crate::source::{Place, Source};
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::source::{Place, Source};
 
 /// The table of a whole file.
 pub(super) fn table(source: &Source) -> Result<DeTable<'_>, ModelError> {

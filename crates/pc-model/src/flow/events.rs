@@ -3,11 +3,11 @@
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
-use super::inputs;
 use super::reading::Reading;
-use crate::bound::Form;
-use crate::error::ModelError;
-use crate::model::{Assembly, Model};
+use crate::assembly::constraint_treatment::Form;
+use crate::diagnostics::error::ModelError;
+use crate::flow::flow::inputs;
+use crate::model::model::{Assembly, Model};
 
 /// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
 /// larger, is no rounding.
@@ -101,7 +101,7 @@ impl FlowEvents {
     }
 }
 
-fn event(event: &crate::event::Event<'_>) -> Event {
+fn event(event: &crate::assembly::event::Event<'_>) -> Event {
     let resets = !event.resets.is_empty();
     Event::new(&event.name).direction(event.direction).terminal(event.terminal).resetting(resets)
 }

@@ -1,17 +1,14 @@
 //! The vector field that is integrated, what happens on its way, and what a table shows of its states.
 
-mod events;
-mod reading;
-
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 use pc_mech::{LegendreTransform, MechError, Motion, System};
 
-pub use self::events::FlowEvents;
-use self::reading::Reading;
-use crate::bound::Form;
-use crate::error::ModelError;
-use crate::model::{Assembly, Model};
-use crate::variables::Variables;
+use crate::assembly::constraint_treatment::Form;
+use crate::diagnostics::error::ModelError;
+pub use crate::flow::events::FlowEvents;
+use crate::flow::reading::Reading;
+use crate::flow::variables::Variables;
+use crate::model::model::{Assembly, Model};
 
 /// Equations of motion of a model, compiled and tried at the start, with what is read off their states.
 #[derive(Clone, Debug)]
@@ -163,7 +160,7 @@ impl Flow {
 }
 
 /// Time, a state of these symbols, and the parameters.
-fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
+pub(super) fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
     Inputs {
         time: Some(system.frame().time()),
         state: state.to_vec(),

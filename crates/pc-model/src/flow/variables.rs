@@ -2,9 +2,9 @@
 
 use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
-use crate::bound::Form;
-use crate::error::ModelError;
-use crate::model::{Assembly, Model};
+use crate::assembly::constraint_treatment::Form;
+use crate::diagnostics::error::ModelError;
+use crate::model::model::{Assembly, Model};
 
 /// The variables of the state beside the coordinates, and so which equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

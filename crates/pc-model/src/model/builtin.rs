@@ -1,8 +1,8 @@
 //! The models that come with the library.
 
-use crate::document::Document;
-use crate::error::ModelError;
-use crate::source::Source;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::source::Source;
+use crate::document::document::Document;
 
 /// A model that comes with the library.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub struct Builtin {
 
 macro_rules! models {
     ($($name:literal),* $(,)?) => {
-        &[$(Builtin { name: $name, text: include_str!(concat!("../models/", $name, ".toml")) }),*]
+        &[$(Builtin { name: $name, text: include_str!(concat!("../../models/", $name, ".toml")) }),*]
     };
 }
 

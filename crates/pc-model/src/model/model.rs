@@ -9,14 +9,15 @@ use pc_mech::{
 };
 use pc_nonholo::NonholoError;
 
-use crate::assembly::assemble;
-use crate::bound::{Bound, Form};
-use crate::document::{self, AlgebraDefinition, Bracket, Document, Method};
-use crate::error::{ErrorKind, ModelError};
-use crate::event::Event;
-use crate::fault::Fault;
-use crate::parameters::Parameters;
-use crate::source::Place;
+use crate::assembly::assembly::assemble;
+use crate::assembly::constraint_treatment::{Bound, Form};
+use crate::assembly::event::Event;
+use crate::assembly::parameters::Parameters;
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::fault::Fault;
+use crate::diagnostics::source::Place;
+use crate::document::document;
+use crate::document::document::{AlgebraDefinition, Bracket, Document, Method};
 
 /// A model whose parameters can be set and that can be turned into a mechanical system.
 #[derive(Clone, Debug)]

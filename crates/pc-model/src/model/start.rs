@@ -2,9 +2,9 @@
 
 use pc_expr::Graph;
 
-use crate::assembly;
-use crate::error::ModelError;
-use crate::model::Model;
+use crate::assembly::assembly;
+use crate::diagnostics::error::ModelError;
+use crate::model::model::Model;
 
 /// A name that has no start value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use pc_expr::Expr;
 use pc_expr::parse::{Ast, AstKind};
 
-use super::{Context, Scope, Stage};
-use crate::error::ModelError;
+use crate::diagnostics::error::ModelError;
+use crate::names::scope::{Context, Scope, Stage};
 
 impl<'g> Scope<'g, '_> {
     /// Looks at the definitions that nothing is made of: they may contain all that an output may.
@@ -20,7 +20,7 @@ impl<'g> Scope<'g, '_> {
 
     /// The definition at `place`, after those that it is made of: they stand before it, so that in this order a long chain of
     /// them needs no deep recursion.
-    pub(super) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
+    pub(crate) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
         self.uses.push(((stage, place), self.context.clone()));
         if let Some(&value) = self.definitions.get(&(stage, place)) {
             return Ok(value);

@@ -1,18 +1,16 @@
 //! Names and expressions of a model, resolved to expressions of a graph.
 
-mod definitions;
-
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
-use crate::document::{Body, Document, Expression, NamedExpression};
-use crate::error::{ErrorKind, ModelError};
-use crate::fault::Fault;
-use crate::resultant::{force_names, torque_names};
-use crate::source::{Place, Source};
+use crate::assembly::resultant::{force_names, torque_names};
+use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::fault::Fault;
+use crate::diagnostics::source::{Place, Source};
+use crate::document::document::{Body, Document, Expression, NamedExpression};
 
 /// What an expression may contain, by the place where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,14 +88,14 @@ pub(crate) struct Written<'g> {
 
 /// Where a part stands: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
-struct Context<'g> {
-    definition: Option<(Stage, usize)>,
-    branches: Vec<Branch<'g>>,
+pub(super) struct Context<'g> {
+    pub(super) definition: Option<(Stage, usize)>,
+    pub(super) branches: Vec<Branch<'g>>,
 }
 
 /// The first branch of `step(condition, …, …)`, or the second.
 #[derive(Clone)]
-struct Branch<'g> {
+pub(super) struct Branch<'g> {
     condition: Expr<'g>,
     first: bool,
 }
@@ -111,18 +109,18 @@ impl Branch<'_> {
 /// The declared names of a model as symbols of a graph.
 pub(crate) struct Scope<'g, 'd> {
     graph: &'g Graph,
-    document: &'d Document,
+    pub(super) document: &'d Document,
     /// Where the expressions stand.
     source: &'d Source,
     time: Expr<'g>,
     /// The places of the definitions in their section.
-    places: HashMap<&'d str, usize>,
+    pub(super) places: HashMap<&'d str, usize>,
     /// Definitions that were used already: each is resolved once for a stage.
-    definitions: BTreeMap<(Stage, usize), Expr<'g>>,
+    pub(super) definitions: BTreeMap<(Stage, usize), Expr<'g>>,
     /// Where definitions were named.
-    uses: Vec<((Stage, usize), Context<'g>)>,
+    pub(super) uses: Vec<((Stage, usize), Context<'g>)>,
     /// Where the part stands that is being resolved; the place of a parameter in that stage.
-    context: Context<'g>,
+    pub(super) context: Context<'g>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
     /// Forces and torques of reactions that were named, each with a place.
@@ -473,7 +471,8 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
-        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
+        let input =
+            |input: &&crate::document::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
             return Err(self.error(expression, span, |_| Fault::RateOfInput { name }));

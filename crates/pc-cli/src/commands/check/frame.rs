@@ -5,7 +5,7 @@ use pc_mech::{Neighbourhood, StructureCoefficients, Style, System};
 use pc_print::recognised;
 use serde_json::{Value, json};
 
-use crate::text::wrapped;
+use crate::report::text::wrapped;
 
 /// Quasi-velocities that are velocities of something, and functions that no motion changes.
 #[derive(Clone, Debug)]

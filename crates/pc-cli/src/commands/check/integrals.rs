@@ -5,7 +5,7 @@ use pc_model::{Assembly, Form};
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
-use crate::text::short;
+use crate::report::text::short;
 
 /// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
 const MOST_FUNCTIONS: usize = 150;

@@ -6,7 +6,7 @@ use pc_mech::{
 use serde_json::{Map, Value, json};
 
 use super::integrals::{Integral, bind, rank_of_gradients};
-use crate::text::{short, wrapped};
+use crate::report::text::{short, wrapped};
 
 /// An equilibrium or a steady motion of an autonomous system near its start.
 #[derive(Clone, Debug)]

@@ -1,0 +1,29 @@
+//! The functions of pc.h, a file for each group of them.
+//!
+//! Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `rates`, `mechanics`, `kernel`, `legendre`,
+//! `bracket`, `source`, `verify`. Motions: `options`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`,
+//! `checkpoint`, `statistics`, `ensemble`. The library: `version`.
+
+pub(crate) mod bodies;
+pub(crate) mod bracket;
+pub(crate) mod builder;
+pub(crate) mod checkpoint;
+pub(crate) mod dense;
+pub(crate) mod ensemble;
+pub(crate) mod events;
+pub(crate) mod force;
+pub(crate) mod kernel;
+pub(crate) mod legendre;
+pub(crate) mod mechanics;
+pub(crate) mod model;
+pub(crate) mod observe;
+pub(crate) mod occurrences;
+pub(crate) mod options;
+pub(crate) mod rates;
+pub(crate) mod settings;
+pub(crate) mod solver;
+pub(crate) mod source;
+pub(crate) mod statistics;
+pub(crate) mod system;
+pub(crate) mod verify;
+pub(crate) mod version;

@@ -1,0 +1,9 @@
+//! What is said to people.
+//!
+//! `text` sets numbers and lines; `notes` are said of constraints beside the equations, `verification` of the second
+//! derivation, `summary` of a run.
+
+pub mod notes;
+pub mod summary;
+pub mod text;
+pub mod verification;

@@ -1,0 +1,14 @@
+//! `pc sweep`: many motions of one model, of other parameters and starts, in one table.
+//!
+//! `design` is which values members have, `member` the motion of one, `record` what is kept of it, in a `journal` on disk
+//! until the `output` is made, row by row of a `sheet`.
+
+pub(crate) mod design;
+pub(crate) mod error;
+pub(crate) mod journal;
+pub(crate) mod member;
+pub mod output;
+pub(crate) mod progress;
+pub(crate) mod record;
+pub(crate) mod sheet;
+pub mod sweep;
