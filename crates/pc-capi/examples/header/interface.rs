@@ -30,7 +30,7 @@ pub(crate) fn replaces(new: &str, old: &str) -> Result<(), String> {
     }
     Err(format!(
         "programs compiled with an earlier pc.h need what is there no more or is different now:\n  {}\n\
-         Keep it, or raise PC_ABI_VERSION, in crates/pc-capi/src/version.rs and build.rs; then `cargo xtask header`.",
+         Keep it, or raise PC_ABI_VERSION, in crates/pc-capi/src/api/version.rs and build.rs; then `cargo xtask header`.",
         lost.join("\n  ")
     ))
 }
