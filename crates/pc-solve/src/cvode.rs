@@ -9,6 +9,7 @@ mod interpolation;
 mod quadrature;
 mod restart;
 mod sensitivity;
+mod sensitivity_output;
 mod setup;
 
 pub(crate) use quadrature::Quadratures;

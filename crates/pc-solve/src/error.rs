@@ -432,6 +432,10 @@ pub enum InputError {
         found: usize,
     },
 
+    /// Derivatives of a motion are asked of an integration that has none.
+    #[error("the integration was begun without sensitivities")]
+    NoSensitivities,
+
     /// Derivatives by parameters, with events whose own derivatives by these are not known.
     #[error(
         "an event resets the state, and it is not known how its function and its reset depend on the parameters that \
