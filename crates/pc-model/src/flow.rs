@@ -1,11 +1,14 @@
 //! The vector field that is integrated, what happens on its way, and what a table shows of its states.
 
+mod event_slopes;
 mod events;
 mod reading;
+mod start_slopes;
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 use pc_mech::{LegendreTransform, MechError, Motion, System};
 
+use self::event_slopes::EventSlopes;
 pub use self::events::FlowEvents;
 use self::reading::Reading;
 use crate::bound::Form;
@@ -87,8 +90,12 @@ impl Flow {
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             transform,
         };
+        let explicit = reading.transform.is_none() && !matches!(assembly.bound.form(), Form::Held(_));
+        let slopes = (explicit && model.differentiates_by_parameters())
+            .then(|| EventSlopes::new(model, assembly, free, &all))
+            .transpose()?;
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities())?,
+            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities(), slopes)?,
             motion,
             start,
             names: x.iter().chain(declared).chain(&states).map(ToString::to_string).collect(),
