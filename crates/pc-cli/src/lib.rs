@@ -29,6 +29,7 @@ pub mod plot;
 mod progress;
 pub mod run;
 pub mod saving;
+mod sensitivities;
 pub mod summary;
 pub mod sweep;
 pub mod table;
