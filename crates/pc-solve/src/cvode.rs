@@ -49,6 +49,7 @@ pub struct Cvode<F> {
     _nonlinear_iteration: NonlinearIteration,
     linear: Option<Linear>,
     sensitivity: Option<sensitivity::Forward>,
+    quadrature: Option<quadrature::Integration>,
     /// y(`step_time`).
     step_state: Vector,
     /// y(`time`), unless `time` is `step_time`.

@@ -27,6 +27,7 @@
 
 mod adjoint;
 mod adjoint_field;
+mod adjoint_pass;
 mod callback;
 mod checkpoint;
 mod code;
@@ -40,6 +41,7 @@ mod events;
 mod fn_field;
 mod handles;
 mod inequality;
+mod integrals;
 mod linear;
 mod linearisation;
 mod lyapunov;
@@ -52,9 +54,12 @@ mod sensitivity_trajectory;
 mod solve;
 mod statistics;
 mod trajectory;
+mod transpose;
 mod variation;
 
-pub use adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
+pub use adjoint::{
+    AdjointOptions, Functional, Gradient, adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events,
+};
 pub use checkpoint::{Checkpoint, CheckpointError, solve_checkpointed, solve_with_events_checkpointed};
 pub use code::Code;
 pub use cvode::{Cvode, Ending, Hybrid};
@@ -64,6 +69,7 @@ pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, Sol
 pub use events::{Accumulation, FnEvents, Occurrence};
 pub use fn_field::{FnField, from_fn};
 pub use inequality::Inequality;
+pub use integrals::{Integrals, solve_with_integrals};
 pub use linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use options::{Method, NonlinearSolver, Options, Tolerance};

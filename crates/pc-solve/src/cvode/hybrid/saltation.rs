@@ -50,6 +50,47 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok(jumped)
     }
 
+    /// λ⁻, and what ∂G/∂p grows by, from λ⁺ at such an event, for each of so many parameters p,
+    /// ```text
+    /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
+    /// ```
+    /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied by λ⁺ from the left.
+    pub(crate) fn transposed_jump(
+        &mut self,
+        event: usize,
+        t: f64,
+        before: &[f64],
+        after: &[f64],
+        (adjoint, density_step): (&[f64], f64),
+        parameters: usize,
+    ) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let rates_before = self.rates_at(t, before)?;
+        let rates_after = self.rates_at(t, after)?;
+        let (along, size, reset_along) = self.derivative_along(event, (t, before), (1.0, &rates_before))?;
+        if along.abs() <= GRAZING * size {
+            return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
+        }
+        let shift = (dot(adjoint, &reset_along) - dot(adjoint, &rates_after) + density_step) / along;
+        let mut jumped = Vec::with_capacity(before.len());
+        let mut unit = vec![0.0; before.len()];
+        for i in 0..before.len() {
+            unit[i] = 1.0;
+            let (function, _, reset) = self.derivative_along(event, (t, before), (0.0, &unit))?;
+            unit[i] = 0.0;
+            jumped.push(dot(adjoint, &reset) - shift * function);
+        }
+        let mut by_parameters = Vec::with_capacity(parameters);
+        for j in 0..parameters {
+            let mut reset = vec![f64::NAN; before.len()];
+            match self.events.by_parameter(event, j, t, before, &mut reset) {
+                Ok(function) => by_parameters.push(dot(adjoint, &reset) - shift * function),
+                Err(failure) => return Err(self.event_error(event, t, failure)),
+            }
+        }
+        Ok((jumped, by_parameters))
+    }
+
     fn rates_at(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         let mut rates = vec![f64::NAN; state.len()];
         let outcome = self.engine.callbacks.field_mut().rhs(t, state, &mut rates);
