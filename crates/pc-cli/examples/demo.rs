@@ -67,6 +67,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
 
     section("the motion, relative tolerance 1e-12");
     let plan = |samples| Plan {
+        sensitivities: Vec::new(),
         t_start: 0.0,
         t_end: 10.0,
         samples,

@@ -42,6 +42,9 @@ pub enum CliError {
     /// `--project` of something that is not an integral.
     #[error("--project: {0}")]
     UnknownIntegral(UnknownIntegral),
+    /// `--sensitivities` by something that is not a parameter.
+    #[error("--sensitivities: {0}")]
+    Sensitivities(UnknownParameter),
     /// `--keep` of something that has no start value.
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
@@ -141,6 +144,7 @@ impl CliError {
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
             | CliError::UnknownIntegral(_)
+            | CliError::Sensitivities(_)
             | CliError::UnknownStart(_)
             | CliError::SetTwice { .. }
             | CliError::BadValue { .. }

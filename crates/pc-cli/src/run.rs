@@ -9,4 +9,5 @@ pub(crate) mod identity;
 pub(crate) mod interrupt;
 pub mod plan;
 pub(crate) mod progress;
+pub(crate) mod sensitivities;
 pub mod table;

@@ -83,6 +83,7 @@ impl Reason {
             Reason::Overflow { .. }
             | Reason::Projection { .. }
             | Reason::Functional
+            | Reason::EndsEarly { .. }
             | Reason::Collapsed { .. }
             | Reason::Stalled
             | Reason::Event { .. }
@@ -102,6 +103,11 @@ impl Reason {
                 f.write_str("the adjoint equations, from the end back: ")?;
                 reason.write(time, f)
             }
+            Reason::EndsEarly { event, t } => write!(
+                f,
+                "the motion ends with the event {event} at t = {t}: there are gradients of functionals only of motions to \
+                 a time that is given"
+            ),
             Reason::Functional => write!(f, "the functional has no value at the end, t = {time}"),
             Reason::Collapsed { vector } => write!(
                 f,
@@ -164,6 +170,14 @@ pub enum Reason {
 
     /// The end term of a [functional](crate::Functional) failed.
     Functional,
+
+    /// A terminal event ends the motion before the end of a [functional](crate::Functional).
+    EndsEarly {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
 
     /// A tangent vector became a combination of those before it, to rounding, in the course of one interval.
     Collapsed {
@@ -340,6 +354,17 @@ pub enum NonFinite {
         t: f64,
     },
 
+    /// A rate of an [integral](crate::Integrals).
+    #[error("the rate of integral number {index} (from 0) is {value} at t = {t}")]
+    Integrand {
+        /// Its number.
+        index: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
     /// A component of a state after a reset.
     #[error("the event {event} sets {component} to {value} at t = {t}")]
     Reset {
@@ -431,6 +456,18 @@ pub enum InputError {
         /// Columns of the checkpoint.
         found: usize,
     },
+
+    /// No functional to differentiate.
+    #[error("there is no functional")]
+    NoFunctional,
+
+    /// Integrals of a motion are asked of an integration that has none, or asked for of one that has begun.
+    #[error("integrals are to be asked for once, before the first step")]
+    NoIntegrals,
+
+    /// Derivatives of a motion are asked of an integration that has none.
+    #[error("the integration was begun without sensitivities")]
+    NoSensitivities,
 
     /// Derivatives by parameters, with events whose own derivatives by these are not known.
     #[error(

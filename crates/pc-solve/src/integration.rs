@@ -9,6 +9,7 @@
 pub(crate) mod dense_output;
 pub(crate) mod fn_field;
 pub(crate) mod inequality;
+pub(crate) mod integrals;
 pub(crate) mod motion_record;
 pub(crate) mod options;
 pub(crate) mod projection;

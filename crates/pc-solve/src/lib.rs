@@ -47,6 +47,7 @@ pub use events::events::{Accumulation, FnEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};
 pub use integration::inequality::Inequality;
+pub use integration::integrals::{Integrals, solve_with_integrals};
 pub use integration::options::{Method, NonlinearSolver, Options, Tolerance};
 pub use integration::solve::{
     HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,
@@ -57,6 +58,11 @@ pub use integration::trajectory::Trajectory;
 pub use linear::linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
-pub use sensitivity::adjoint::{AdjointOptions, Functional, Gradient, adjoint_gradient};
+pub use sensitivity::adjoint::{
+    AdjointOptions, Functional, Gradient, adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events,
+};
 pub use sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
-pub use sensitivity::trajectory::{SensitivityFailure, SensitivityTrajectory, solve_with_sensitivities};
+pub use sensitivity::trajectory::{
+    HybridSensitivities, SensitivityFailure, SensitivityTrajectory, solve_dense_with_sensitivities,
+    solve_with_sensitivities, solve_with_sensitivities_and_events,
+};

@@ -6,8 +6,11 @@
 
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;
+pub(crate) mod adjoint_pass;
 pub(crate) mod forward;
+pub(crate) mod forward_output;
 pub(crate) mod linearisation;
 pub(crate) mod options;
 pub(crate) mod trajectory;
+pub(crate) mod transpose;
 pub(crate) mod variation;

@@ -3,8 +3,9 @@
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Checkpoint, Correction, Cvode, Event, FnEvents, Hybrid, InputError, Method, Options, Reason,
-    Sensitivities, SolveError, VectorField, from_fn, solve_with_sensitivities,
+    Checkpoint, Correction, Cvode, DenseOutput, Event, FnEvents, Hybrid, InputError, Method, Options, Reason,
+    Segment, Sensitivities, SolveError, VectorField, from_fn, solve_dense_with_sensitivities,
+    solve_with_sensitivities,
 };
 
 fn sharp(method: Method) -> Options {
@@ -287,4 +288,80 @@ fn parameters_of_any_size() {
         Ok(())
     });
     assert!(solve_with_sensitivities(one, 0.0, &[1.0], &[1.0], &Options::default(), &wrong).is_err());
+}
+
+/// S as a function of time, over a bounce: from S⁺, with the derivatives of its polynomials, as good as at the steps.
+#[test]
+fn derivatives_between_the_steps() {
+    let (h, g, e) = (1.3, 9.81, 0.8);
+    for method in [Method::Adams, Method::Bdf] {
+        let cvode = Cvode::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns()).unwrap();
+        let mut hybrid = cvode.with_events(bounce(e)).unwrap();
+        let mut matrix = DenseOutput::default();
+        let keep = |_: Segment, of_matrix: Segment| {
+            matrix.extend([of_matrix]);
+            Continue(())
+        };
+        hybrid.run_dense_with_sensitivities(1.2, keep, |_| Continue(())).unwrap();
+        assert_eq!(matrix.span(), Some((0.0, 1.2)));
+        for i in 0..=120 {
+            let t = f64::from(i) / 100.0;
+            let expected = if t > (2.0 * h / g).sqrt() {
+                after_one_bounce(t, h, g, e).1
+            } else {
+                [1.0, 0.0, t, 1.0, -t * t / 2.0, -t, 0.0, 0.0]
+            };
+            assert_near(&matrix.evaluate(t).unwrap(), &expected, 1e-8);
+        }
+        // Inside the last step, with a derivative: ∂ÿ/∂h is 0 and ∂ẏ/∂h is the slope of ∂y/∂h.
+        let t = hybrid.time();
+        let (now, slope) = (
+            hybrid.interpolate_sensitivities(t, 0).unwrap(),
+            hybrid.interpolate_sensitivities(t, 1).unwrap(),
+        );
+        assert_near(&now, &after_one_bounce(t, h, g, e).1, 1e-8);
+        assert_near(&slope[..2], &[now[1], 0.0], 1e-7);
+    }
+}
+
+/// ẏ = −y²: ∂y/∂y₀ = 1/(1 + y₀ t)² at any time, as good as at the ends of the steps.
+#[test]
+fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
+    let decay = || {
+        from_fn(1, |_t, y: &[f64], ydot: &mut [f64]| {
+            ydot[0] = -y[0] * y[0];
+            Ok(())
+        })
+    };
+    let exact = |t: f64| 1.0 / (1.0 + 2.0 * t).powi(2);
+    let columns = Sensitivities::new().by_start(0);
+    for method in [Method::Adams, Method::Bdf] {
+        for rtol in [1e-6, 1e-9] {
+            let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol);
+            let (motion, matrix) =
+                solve_dense_with_sensitivities(decay(), 0.0, &[2.0], 3.0, &options, &columns).unwrap();
+            let error = |t: f64| (matrix.evaluate(t).unwrap()[0] - exact(t)).abs();
+            let at_steps = motion.segments().iter().map(|s| error(s.span().1)).fold(0.0, f64::max);
+            let between = (0..=3000).map(|i| error(f64::from(i) / 1000.0)).fold(0.0, f64::max);
+            assert!(between < 2.0 * at_steps + 2.0 * rtol, "{method} {rtol}: {between:e} {at_steps:e}");
+            assert!(at_steps < 300.0 * rtol, "{method} {rtol}: {at_steps:e}");
+        }
+    }
+    let mut cvode = Cvode::with_sensitivities(decay(), 0.0, &[2.0], &sharp(Method::Adams), &columns).unwrap();
+    assert!(matches!(
+        cvode.interpolate_sensitivities(0.0, 0).unwrap_err(),
+        SolveError::Input(InputError::NoStep)
+    ));
+    let end = cvode.step(3.0).unwrap();
+    assert_near(&cvode.interpolate_sensitivities(end / 2.0, 0).unwrap(), &[exact(end / 2.0)], 1e-9);
+    assert!(matches!(
+        cvode.interpolate_sensitivities(2.0 * end, 0).unwrap_err(),
+        SolveError::Input(InputError::OutsideStep { .. })
+    ));
+    let mut plain = Cvode::new(decay(), 0.0, &[2.0], &sharp(Method::Adams)).unwrap();
+    let end = plain.step(3.0).unwrap();
+    assert!(matches!(
+        plain.interpolate_sensitivities(end, 0).unwrap_err(),
+        SolveError::Input(InputError::NoSensitivities)
+    ));
 }

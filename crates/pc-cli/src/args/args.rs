@@ -146,6 +146,10 @@ pub struct RunArguments {
     /// virtual work determines them: a component across all motion that is possible is 0 here, whatever holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
+    /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states by these parameters,
+    /// separated by commas, with those of the start, and over events
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["checkpoint", "every", "resume"])]
+    pub sensitivities: Vec<String>,
     /// Do not compare the motion at its start and at its end with a second derivation
     #[arg(long)]
     pub no_verify: bool,

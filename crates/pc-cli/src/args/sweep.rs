@@ -79,6 +79,7 @@ impl SweepArguments {
     /// What `pc run` would be told for one member.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {
+            sensitivities: Vec::new(),
             model: self.model.clone(),
             t_end: self.t_end,
             samples: self.rows,

@@ -20,6 +20,7 @@ use crate::run::follow::follow;
 use crate::run::interrupt;
 use crate::run::plan::Plan;
 use crate::run::progress::Progress;
+use crate::run::sensitivities::Derivatives;
 use crate::run::table::Table;
 
 /// A motion as far as it was computed, and how that went.
@@ -95,6 +96,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     if arguments.outputs.is_some() && model.document().constraints.is_empty() {
         text::say(format_args!("note: there are no constraints, and so no reactions\n"));
     }
+    model.differentiate_by_parameters(!arguments.sensitivities.is_empty());
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
@@ -147,6 +149,10 @@ pub fn integrate_saved(
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
     let mut saving = Saving::new(saving, model, &plan, form)?;
+    let mut derivatives = match plan.sensitivities.as_slice() {
+        [] => None,
+        parameters => Some(Derivatives::new(model, form, parameters)?),
+    };
 
     let mut verification = verify.then(|| Verification::new(model, &assembly, form));
     if let Some(verification) = &mut verification {
@@ -160,9 +166,12 @@ pub fn integrate_saved(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let (solved, error) = match &mut saving {
-        Some(saving) => saving.solve(&flow, &plan, observer)?,
-        None => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
+    let (solved, error) = match (&mut saving, &mut derivatives) {
+        (Some(saving), _) => saving.solve(&flow, &plan, observer)?,
+        (None, Some(derivatives)) => {
+            derivatives.follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer)
+        }
+        (None, None) => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
     };
     let wall = start.elapsed();
     drop(progress);
@@ -185,7 +194,7 @@ pub fn integrate_saved(
         title: model.title().to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
-        table: Table::new(&mut flow, &trajectory),
+        table: Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
         constraints: residuals(&mut flow, &trajectory),
         dropped: dropped(&assembly),
         keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),

@@ -7,6 +7,7 @@ use pc_solve::{Accumulation, Method, Options};
 use crate::args::args;
 use crate::args::args::{RunArguments, RunForm};
 use crate::error::CliError;
+use crate::run::sensitivities;
 
 /// Rows of a table if nobody says how many.
 const SAMPLES: usize = 201;
@@ -32,6 +33,8 @@ pub struct Plan {
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Method,
+    /// The parameters, by their numbers, by which the motion is to be differentiated.
+    pub sensitivities: Vec<usize>,
 }
 
 impl Plan {
@@ -47,7 +50,7 @@ impl Plan {
     /// The plan for a model as the command line and the file want it.
     ///
     /// # Errors
-    /// [`CliError::NoEnd`], [`CliError::EndIsStart`].
+    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`].
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
         let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
@@ -73,6 +76,7 @@ impl Plan {
                 .or(simulation.samples_per_step.as_ref().map(|n| n.value)),
             accumulation: arguments.events.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
             method,
+            sensitivities: sensitivities::parameters(model, &arguments.sensitivities)?,
         })
     }
 

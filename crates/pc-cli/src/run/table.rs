@@ -1,7 +1,9 @@
-//! The table of a motion: t, coordinates, quasi-velocities, first-order states, integrals, energy, outputs.
+//! The table of a motion: t, coordinates, quasi-velocities, first-order states, integrals, energy, outputs, derivatives.
 
 use pc_model::Flow;
 use pc_solve::Trajectory;
+
+use crate::run::sensitivities::Derivatives;
 
 /// A row for each output time.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,12 +20,23 @@ pub struct Table {
 impl Table {
     /// The states of a trajectory, in quasi-velocities, with the observables of its motion.
     pub fn new(flow: &mut Flow, trajectory: &Trajectory) -> Table {
+        Table::with_derivatives(flow, trajectory, None)
+    }
+
+    /// The same, and behind that what is known of derivatives.
+    pub(crate) fn with_derivatives(
+        flow: &mut Flow,
+        trajectory: &Trajectory,
+        derivatives: Option<&Derivatives>,
+    ) -> Table {
         let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
-        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).collect();
+        let more = derivatives.map_or_else(Vec::new, |derivatives| derivatives.columns(flow));
+        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).chain(more).collect();
         let mut values = Vec::with_capacity(columns.len() * trajectory.len());
-        for (t, y) in trajectory.iter() {
+        for (i, (t, y)) in trajectory.iter().enumerate() {
             values.push(t);
             values.extend(flow.row(t, y));
+            values.extend(derivatives.map_or_else(Vec::new, |derivatives| derivatives.row(flow, i, t, y)));
         }
         Table {
             columns,

@@ -126,6 +126,45 @@ pub trait Events {
         Err(Failure::fatal(NoParameterDerivatives))
     }
 
+    /// Whether [`gradient`](Events::gradient) and [`reset_along`](Events::reset_along) are implemented; if not, integrators take
+    /// difference quotients.
+    fn has_derivatives(&self) -> bool {
+        false
+    }
+
+    /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, as long as the state.
+    ///
+    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    ///
+    /// # Errors
+    /// [`Failure`] where one is not defined; it ends the integration.
+    fn gradient(
+        &mut self,
+        _event: usize,
+        _t: f64,
+        _y: &[f64],
+        _by_state: &mut [f64],
+    ) -> Result<f64, Failure> {
+        Err(Failure::fatal(NoDerivatives))
+    }
+
+    /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), as long as the state.
+    ///
+    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    ///
+    /// # Errors
+    /// [`Failure`] where one is not defined; it ends the integration.
+    fn reset_along(
+        &mut self,
+        _event: usize,
+        _t: f64,
+        _y: &[f64],
+        _along: (f64, &[f64]),
+        _change: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(Failure::fatal(NoDerivatives))
+    }
+
     /// Turns y⁻ into y⁺ at event number `event`; called only if that [resets](Event::resets).
     ///
     /// # Errors
@@ -155,6 +194,22 @@ impl<E: Events + ?Sized> Events for &mut E {
     ) -> Result<f64, Failure> {
         (**self).by_parameter(event, parameter, t, y, reset)
     }
+    fn has_derivatives(&self) -> bool {
+        (**self).has_derivatives()
+    }
+    fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure> {
+        (**self).gradient(event, t, y, by_state)
+    }
+    fn reset_along(
+        &mut self,
+        event: usize,
+        t: f64,
+        y: &[f64],
+        along: (f64, &[f64]),
+        change: &mut [f64],
+    ) -> Result<(), Failure> {
+        (**self).reset_along(event, t, y, along, change)
+    }
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         (**self).reset(event, t, y)
     }
@@ -163,3 +218,7 @@ impl<E: Events + ?Sized> Events for &mut E {
 #[derive(Debug, thiserror::Error)]
 #[error("these events have no derivatives by parameters")]
 struct NoParameterDerivatives;
+
+#[derive(Debug, thiserror::Error)]
+#[error("these events have no derivatives by time and state")]
+struct NoDerivatives;

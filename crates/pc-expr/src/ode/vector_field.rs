@@ -74,6 +74,21 @@ pub trait VectorField {
         Err(Failure::fatal(NoProduct))
     }
 
+    /// Whether [`vjp`](VectorField::vjp) is implemented.
+    fn has_vjp(&self) -> bool {
+        false
+    }
+
+    /// Writes the product (∂f/∂y)ᵀ w to `product`; all slices have length [`dim`](VectorField::dim).
+    ///
+    /// Called only if [`has_vjp`](VectorField::has_vjp) answers true.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`rhs`](VectorField::rhs).
+    fn vjp(&mut self, _t: f64, _y: &[f64], _w: &[f64], _product: &mut [f64]) -> Result<(), Failure> {
+        Err(Failure::fatal(NoTransposedProduct))
+    }
+
     /// Number of parameters p of f that [`parameter_jacobian`](VectorField::parameter_jacobian)
     /// differentiates by.
     fn parameters_len(&self) -> usize {
@@ -169,6 +184,12 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
         (**self).jvp(t, y, v, product)
     }
+    fn has_vjp(&self) -> bool {
+        (**self).has_vjp()
+    }
+    fn vjp(&mut self, t: f64, y: &[f64], w: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        (**self).vjp(t, y, w, product)
+    }
     fn parameters_len(&self) -> usize {
         (**self).parameters_len()
     }
@@ -258,6 +279,10 @@ struct NoPattern;
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field has no products with its Jacobian")]
 struct NoProduct;
+
+#[derive(Debug, thiserror::Error)]
+#[error("this vector field has no products with its transposed Jacobian")]
+struct NoTransposedProduct;
 
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field has no derivative by its parameters")]

@@ -3,6 +3,7 @@
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
+use super::event_slopes::EventSlopes;
 use super::reading::Reading;
 use crate::assembly::constraint_treatment::Form;
 use crate::diagnostics::error::ModelError;
@@ -22,6 +23,10 @@ pub struct FlowEvents {
     signals: Signals,
     functions: Evaluator,
     resets: Vec<Reset>,
+    /// Derivatives of both, where states are read and written by formulas.
+    slopes: Option<EventSlopes>,
+    /// The places of inputs with tables.
+    tables: Vec<usize>,
     /// The motion under constraints, which knows where they are satisfied.
     constraints: Option<Motion>,
     /// The quasi-velocities that determine the others, and keep the values that resets give them.
@@ -33,6 +38,17 @@ pub struct FlowEvents {
 struct Reset {
     places: Vec<usize>,
     values: Evaluator,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("these events were not compiled with their derivatives")]
+struct NoSlopes;
+
+/// Sensitivities by what is a function of time.
+#[derive(Debug, thiserror::Error)]
+#[error("there is no derivative by parameter {parameter} (from 0): it is an input with a table")]
+struct OfTable {
+    parameter: usize,
 }
 
 /// A reset to where constraints do not allow the system to be.
@@ -55,6 +71,7 @@ impl FlowEvents {
         assembly: &Assembly<'_>,
         reading: &Reading,
         watch: &Motion,
+        slopes: Option<EventSlopes>,
     ) -> Result<FlowEvents, ModelError> {
         let system = &assembly.system;
         let inputs = inputs(system, &system.state());
@@ -80,6 +97,8 @@ impl FlowEvents {
             signals: model.signals(),
             functions: compiled(&functions)?,
             resets: resets.collect::<Result<_, ModelError>>()?,
+            slopes,
+            tables: model.parameter_values().tables().iter().map(|&(place, _)| place).collect(),
             constraints: held.then(|| watch.clone().without_kept()),
         })
     }
@@ -93,6 +112,40 @@ impl FlowEvents {
         if let Some(motion) = &mut self.constraints {
             motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
         }
+    }
+
+    /// ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, good for ten digits: of momenta, and of velocities that
+    /// constraints determine.
+    fn quotient_by_parameter(
+        &mut self,
+        event: usize,
+        j: usize,
+        t: f64,
+        y: &[f64],
+        reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        let held = self.reading.parameters().to_vec();
+        let size = Some(held[j].abs()).filter(|size| *size > 0.0).unwrap_or(1.0);
+        let step = f64::EPSILON.cbrt() * size; // truncation and rounding are alike
+        let mut at = |value: f64| {
+            let mut moved = held.clone();
+            moved[j] = value;
+            self.set_parameters(&moved);
+            let (mut values, mut after) = (vec![f64::NAN; self.events.len()], y.to_vec());
+            self.evaluate(t, y, &mut values)?;
+            if self.events[event].resets() {
+                self.reset(event, t, &mut after)?;
+            }
+            Ok((values[event], after))
+        };
+        let ends = (at(held[j] + step), at(held[j] - step));
+        self.set_parameters(&held);
+        let ((ahead, after_ahead), (behind, after_behind)) = (ends.0?, ends.1?);
+        let length = (held[j] + step) - (held[j] - step);
+        for (slope, (ahead, behind)) in reset.iter_mut().zip(after_ahead.iter().zip(&after_behind)) {
+            *slope = (ahead - behind) / length;
+        }
+        Ok((ahead - behind) / length)
     }
 
     /// Whether there are none.
@@ -150,6 +203,64 @@ impl Events for FlowEvents {
             }
         }
         y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
+        Ok(())
+    }
+
+    fn has_parameter_derivatives(&self) -> bool {
+        true
+    }
+
+    fn by_parameter(
+        &mut self,
+        event: usize,
+        parameter: usize,
+        t: f64,
+        y: &[f64],
+        reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        reset.fill(0.0);
+        if self.tables.contains(&parameter) {
+            return Err(Failure::fatal(OfTable { parameter }));
+        }
+        // External forces do not act on events.
+        if parameter >= self.reading.parameters().len() {
+            return Ok(0.0);
+        }
+        self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
+        match &mut self.slopes {
+            Some(slopes) => {
+                let slopes = slopes.at(event, t, y, self.reading.parameters());
+                slopes.resets(|row| row.by_parameter(parameter)).for_each(|(i, slope)| reset[i] = slope);
+                Ok(slopes.function().by_parameter(parameter))
+            }
+            None => self.quotient_by_parameter(event, parameter, t, y, reset),
+        }
+    }
+
+    /// Not where inputs have tables, whose rates no expression has.
+    fn has_derivatives(&self) -> bool {
+        self.slopes.is_some() && self.tables.is_empty()
+    }
+
+    fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure> {
+        let slopes = self.slopes.as_mut().ok_or_else(|| Failure::fatal(NoSlopes))?;
+        let slopes = slopes.at(event, t, y, self.reading.parameters());
+        by_state.copy_from_slice(slopes.function().by_state());
+        Ok(slopes.function().by_time())
+    }
+
+    fn reset_along(
+        &mut self,
+        event: usize,
+        t: f64,
+        y: &[f64],
+        (in_time, v): (f64, &[f64]),
+        change: &mut [f64],
+    ) -> Result<(), Failure> {
+        let slopes = self.slopes.as_mut().ok_or_else(|| Failure::fatal(NoSlopes))?;
+        change.copy_from_slice(v);
+        let slopes = slopes.at(event, t, y, self.reading.parameters());
+        slopes.resets(|row| row.along(in_time, v)).for_each(|(i, slope)| change[i] = slope);
         Ok(())
     }
 }

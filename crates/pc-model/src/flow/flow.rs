@@ -5,6 +5,7 @@ use pc_mech::{LegendreTransform, MechError, Motion, System};
 
 use crate::assembly::constraint_treatment::Form;
 use crate::diagnostics::error::ModelError;
+use crate::flow::event_slopes::EventSlopes;
 pub use crate::flow::events::FlowEvents;
 use crate::flow::reading::Reading;
 use crate::flow::variables::Variables;
@@ -21,7 +22,7 @@ pub struct Flow {
     pub names: Vec<String>,
     /// What happens where; none in most models.
     pub events: FlowEvents,
-    reading: Reading,
+    pub(super) reading: Reading,
 }
 
 impl Flow {
@@ -84,8 +85,12 @@ impl Flow {
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             transform,
         };
+        let explicit = reading.transform.is_none() && !matches!(assembly.bound.form(), Form::Held(_));
+        let slopes = (explicit && model.differentiates_by_parameters())
+            .then(|| EventSlopes::new(model, assembly, free, &all))
+            .transpose()?;
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities())?,
+            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities(), slopes)?,
             motion,
             start,
             names: x.iter().chain(declared).chain(&states).map(ToString::to_string).collect(),

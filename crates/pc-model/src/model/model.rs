@@ -30,6 +30,8 @@ pub struct Model {
     /// The places of start values that are not moved.
     held_starts: Vec<usize>,
     observes_reactions: bool,
+    /// Whether motions and events are to be differentiated by parameters.
+    by_parameters: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
     /// The quasi-velocities, or coordinates, on which external forces act.
@@ -150,6 +152,7 @@ impl Model {
             projects_start: false,
             held_starts: Vec::new(),
             observes_reactions: false,
+            by_parameters: false,
             kept,
             external: Vec::new(),
         }
@@ -180,6 +183,18 @@ impl Model {
         };
         self.parameters.set(index, value);
         Ok(())
+    }
+
+    /// Gives number `place` of the parameters and inputs another value.
+    pub(crate) fn set_parameter(&mut self, place: usize, value: f64) {
+        self.parameters.set(place, value);
+    }
+
+    /// Where number `place` of the parameters and inputs is written.
+    pub(crate) fn parameter_place(&self, place: usize) -> Place {
+        let parameters = self.document.parameters.iter().map(|p| &p.name);
+        let mut names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
+        names.nth(place).map_or_else(|| self.document.end(), |name| name.place.clone())
     }
 
     /// The names and values of the parameters, then of the inputs: of those with a table that at the start.
@@ -259,7 +274,7 @@ impl Model {
 
     /// The derivative by external forces is part of the Jacobian under them.
     fn options(&self) -> CompileOptions {
-        CompileOptions::default().parameter_jacobian(!self.external.is_empty())
+        CompileOptions::default().parameter_jacobian(self.by_parameters || !self.external.is_empty())
     }
 
     /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept. These are to be
@@ -345,6 +360,16 @@ impl Model {
     /// Says that the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.
     pub fn observe_reactions(&mut self, yes: bool) {
         self.observes_reactions = yes;
+    }
+
+    /// Says that sensitivities will be asked for: motions are compiled with their derivatives by the parameters, and events with
+    /// theirs by time, state and parameters.
+    pub fn differentiate_by_parameters(&mut self, yes: bool) {
+        self.by_parameters = yes;
+    }
+
+    pub(crate) fn differentiates_by_parameters(&self) -> bool {
+        self.by_parameters
     }
 
     pub(crate) fn observes_reactions(&self) -> bool {

@@ -40,10 +40,12 @@ impl<F: VectorField> Cvode<F> {
     /// Starts CVODES anew where it stands, of which the field is not told.
     fn begin_anew(&mut self) -> Result<(), SolveError> {
         let before = self.statistics();
+        let integrals = self.quadrature.as_ref().map(|_| self.quadratures()).transpose()?;
         self.work.as_mut_slice().copy_from_slice(self.step_state.as_slice());
         // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), self.step_time, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
+        self.begin_integrals_anew(integrals)?;
         self.callbacks.begin_anew();
         self.earlier = before;
         self.earlier.current_time = self.step_time;

@@ -11,6 +11,7 @@ use sundials_sys as sys;
 
 use crate::cvode::handles::numbers_of;
 use crate::error::NonFinite;
+use crate::integration::integrals::Integrands;
 use crate::integration::projection::Offset;
 use crate::linear::linear::Work;
 use crate::sensitivity::variation::Variation;
@@ -31,6 +32,8 @@ pub(crate) struct Callbacks<F> {
     panic: Option<Box<dyn Any + Send>>,
     /// The equations of variation, if sensitivities are asked for.
     pub(crate) variation: Variation,
+    /// The integrands, if integrals are asked for.
+    pub(crate) integrands: Option<Integrands>,
 }
 
 impl<F: VectorField> Callbacks<F> {
@@ -94,6 +97,7 @@ impl<F> UserData<F> {
             failure: None,
             panic: None,
             variation: Variation::default(),
+            integrands: None,
         };
         UserData(NonNull::from(Box::leak(Box::new(callbacks))))
     }
@@ -182,6 +186,11 @@ impl<F> UserData<F> {
     pub(crate) fn set_variation(&mut self, variation: Variation) {
         // SAFETY: owned and live, borrowed exclusively.
         unsafe { self.0.as_mut() }.variation = variation;
+    }
+
+    pub(crate) fn set_integrands(&mut self, integrands: Integrands) {
+        // SAFETY: owned and live, borrowed exclusively.
+        unsafe { self.0.as_mut() }.integrands = Some(integrands);
     }
 
     pub(crate) fn take_failure(&mut self) -> Option<Failure> {

@@ -35,18 +35,19 @@ pub struct Cvode<F> {
     pub(super) _nonlinear_iteration: NonlinearIteration,
     pub(super) linear: Option<Linear>,
     pub(crate) sensitivity: Option<crate::sensitivity::forward::Forward>,
+    pub(crate) quadrature: Option<crate::cvode::quadrature::Integration>,
     /// y(`step_time`).
     pub(crate) step_state: Vector,
     /// y(`time`), unless `time` is `step_time`.
-    pub(super) output: Vector,
+    pub(crate) output: Vector,
     /// Where CVODES writes.
-    pub(super) work: Vector,
+    pub(crate) work: Vector,
     pub(crate) callbacks: UserData<F>,
     pub(crate) context: Context,
 
     pub(crate) time: f64,
     /// How far CVODES is.
-    pub(super) step_time: f64,
+    pub(crate) step_time: f64,
     /// 1 or −1 since the first step.
     pub(crate) direction: Option<f64>,
     pub(super) initial_step: Option<f64>,
@@ -333,7 +334,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// That one more step may be taken after so many on the way to `t`: counted here, because CVODES is asked for one step
     /// at a time.
-    pub(super) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+    pub(crate) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.max_steps {
             return Ok(());
         }
@@ -342,7 +343,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// One step of CVODES.
-    pub(super) fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
+    pub(crate) fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
         if self.direction.is_none()
             && let Some(length) = self.initial_step
         {

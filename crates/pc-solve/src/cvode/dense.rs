@@ -50,7 +50,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// The last internal step between two of its states.
-    pub(super) fn segment(
+    pub(crate) fn segment(
         &mut self,
         (start, from): (f64, &[f64]),
         (end, to): (f64, &[f64]),

@@ -33,7 +33,7 @@ impl<F: VectorField> Cvode<F> {
     /// a derivative of that order.
     ///
     /// As CVODES does, a time may lie outside by its rounding, 100 ε of the time.
-    pub(super) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
+    pub(crate) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
         let (mut now, mut length, mut degree) = (0.0, 0.0, 0);
         let memory = self.memory.raw();
         // SAFETY: the memory is live and initialised; the others are places for the results.
@@ -55,7 +55,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// As [`interpolate`](Cvode::interpolate), where it has been checked that this can be.
-    pub(super) fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
+    pub(crate) fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
         let order = i32::try_from(order).unwrap_or(i32::MAX);
         // SAFETY: memory and vector are live and of one context; a step has been taken.
         let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, order, self.work.raw()) };

@@ -35,10 +35,12 @@ impl<F: VectorField> Cvode<F> {
         }
         inequality::check(self.field(), y, &self.inequalities)?;
         let before = self.statistics();
+        let integrals = self.integrals_to_keep()?;
         self.work.as_mut_slice().copy_from_slice(y);
         // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), t, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
+        self.begin_integrals_anew(integrals)?;
         self.callbacks.restart(t, y);
         self.foresight.restart();
         self.step_state.as_mut_slice().copy_from_slice(y);

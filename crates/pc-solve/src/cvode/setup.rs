@@ -73,6 +73,7 @@ impl<F: VectorField> Cvode<F> {
             _nonlinear_iteration: nonlinear_iteration,
             linear,
             sensitivity: None,
+            quadrature: None,
             step_state,
             output,
             work,

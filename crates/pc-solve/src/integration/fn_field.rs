@@ -44,7 +44,7 @@ type Change = fn(f64, &mut [f64]) -> Result<(), Failure>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct FnField<R, J = Write, S = Write, V = WriteProduct, P = Write, C = Change> {
+pub struct FnField<R, J = Write, S = Write, V = WriteProduct, P = Write, C = Change, W = WriteProduct> {
     shape: Shape,
     rhs: R,
     jacobian: Option<J>,
@@ -52,6 +52,7 @@ pub struct FnField<R, J = Write, S = Write, V = WriteProduct, P = Write, C = Cha
     jvp: Option<V>,
     parameter_jacobian: Option<P>,
     projection: Option<C>,
+    vjp: Option<W>,
 }
 
 /// What is not a closure.
@@ -79,6 +80,7 @@ where
         jvp: None,
         parameter_jacobian: None,
         projection: None,
+        vjp: None,
     }
 }
 
@@ -90,15 +92,15 @@ macro_rules! with {
     }};
 }
 
-impl<R, J, S, V, P, C> FnField<R, J, S, V, P, C> {
+impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last argument.
     ///
     /// Every entry must be written, zeros too.
-    pub fn with_jacobian<K>(self, jacobian: K) -> FnField<R, K, S, V, P, C>
+    pub fn with_jacobian<K>(self, jacobian: K) -> FnField<R, K, S, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     {
-        with!(self, jacobian = jacobian, sparse_jacobian, jvp, parameter_jacobian, projection)
+        with!(self, jacobian = jacobian, sparse_jacobian, jvp, parameter_jacobian, projection, vjp)
     }
 
     /// The same field, whose ∂fᵢ/∂yⱼ are zero outside of `pattern`, dim × dim.
@@ -110,41 +112,49 @@ impl<R, J, S, V, P, C> FnField<R, J, S, V, P, C> {
     /// its last argument.
     ///
     /// Every entry must be written. It serves as dense Jacobian too, unless that has its own closure.
-    pub fn with_sparse_jacobian<K>(self, sparse_jacobian: K) -> FnField<R, J, K, V, P, C>
+    pub fn with_sparse_jacobian<K>(self, sparse_jacobian: K) -> FnField<R, J, K, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     {
-        with!(self, sparse_jacobian = sparse_jacobian, jacobian, jvp, parameter_jacobian, projection)
+        with!(self, sparse_jacobian = sparse_jacobian, jacobian, jvp, parameter_jacobian, projection, vjp)
     }
 
     /// The same field with a closure of (t, y, v) that writes (∂f/∂y) v to its last argument.
-    pub fn with_jvp<K>(self, jvp: K) -> FnField<R, J, S, K, P, C>
+    pub fn with_jvp<K>(self, jvp: K) -> FnField<R, J, S, K, P, C, W>
     where
         K: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
     {
-        with!(self, jvp = jvp, jacobian, sparse_jacobian, parameter_jacobian, projection)
+        with!(self, jvp = jvp, jacobian, sparse_jacobian, parameter_jacobian, projection, vjp)
+    }
+
+    /// The same field with a closure of (t, y, w) that writes (∂f/∂y)ᵀ w to its last argument.
+    pub fn with_vjp<K>(self, vjp: K) -> FnField<R, J, S, V, P, C, K>
+    where
+        K: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+    {
+        with!(self, vjp = vjp, jacobian, sparse_jacobian, jvp, parameter_jacobian, projection)
     }
 
     /// The same field with a number of parameters p and a closure that writes ∂fᵢ/∂pⱼ to entry `i + j * dim` of its
     /// last argument.
     ///
     /// Every entry must be written, zeros too.
-    pub fn with_parameters<K>(self, parameters: usize, parameter_jacobian: K) -> FnField<R, J, S, V, K, C>
+    pub fn with_parameters<K>(self, parameters: usize, parameter_jacobian: K) -> FnField<R, J, S, V, K, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     {
         let field = FnField { shape: Shape { parameters, ..self.shape }, ..self };
-        with!(field, parameter_jacobian = parameter_jacobian, jacobian, sparse_jacobian, jvp, projection)
+        with!(field, parameter_jacobian = parameter_jacobian, jacobian, sparse_jacobian, jvp, projection, vjp)
     }
 
     /// The same field with a closure that moves its last argument to the surface of the states at time t.
     ///
     /// It reports where none is near as [`VectorField::project`] does.
-    pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K>
+    pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K, W>
     where
         K: FnMut(f64, &mut [f64]) -> Result<(), Failure>,
     {
-        with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian)
+        with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian, vjp)
     }
 
     /// The same field, which does not depend on t explicitly: an integrator need not look for what t alone may do to it.
@@ -159,7 +169,7 @@ impl<R, J, S, V, P, C> FnField<R, J, S, V, P, C> {
     }
 }
 
-impl<R, J, S, V, P, C> VectorField for FnField<R, J, S, V, P, C>
+impl<R, J, S, V, P, C, W> VectorField for FnField<R, J, S, V, P, C, W>
 where
     R: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     J: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -167,6 +177,7 @@ where
     V: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
     P: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     C: FnMut(f64, &mut [f64]) -> Result<(), Failure>,
+    W: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
 {
     fn dim(&self) -> usize {
         self.shape.dim
@@ -219,6 +230,17 @@ where
         match &mut self.jvp {
             Some(evaluate) => evaluate(t, y, v, product),
             None => Err(Failure::fatal(Missing("product with its Jacobian"))),
+        }
+    }
+
+    fn has_vjp(&self) -> bool {
+        self.vjp.is_some()
+    }
+
+    fn vjp(&mut self, t: f64, y: &[f64], w: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        match &mut self.vjp {
+            Some(evaluate) => evaluate(t, y, w, product),
+            None => Err(Failure::fatal(Missing("product with its transposed Jacobian"))),
         }
     }
 

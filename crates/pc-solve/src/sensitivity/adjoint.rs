@@ -1,14 +1,16 @@
 //! Gradients of functionals of a motion.
 
-use std::ops::ControlFlow;
+use pc_expr::{Events, Failure, VectorField};
 
-use pc_expr::{Failure, VectorField};
-
-use crate::cvode::cvode::Cvode;
-use crate::error::{InputError, IntegrationError, Reason, SolveError};
-use crate::integration::options::{Options, Tolerance, positive};
+use crate::error::{InputError, SolveError};
+use crate::events::events::FnEvents;
+use crate::integration::options::{NonlinearSolver, Options, Tolerance, positive};
 use crate::integration::statistics::Statistics;
-use crate::sensitivity::adjoint_field::{AdjointField, not_finite};
+use crate::linear::linear::{Krylov, LinearSolver};
+use crate::sensitivity::adjoint_pass;
+
+/// Largest dimension of the Krylov subspaces of the way back, unless a solver is chosen.
+const SUBSPACE: u32 = 30;
 
 /// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its derivatives.
 ///
@@ -49,6 +51,27 @@ pub trait Functional {
     }
 }
 
+impl<G: Functional + ?Sized> Functional for Box<G> {
+    fn density(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        by_state: &mut [f64],
+        by_parameters: &mut [f64],
+    ) -> Result<f64, Failure> {
+        (**self).density(t, y, by_state, by_parameters)
+    }
+    fn end(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        by_state: &mut [f64],
+        by_parameters: &mut [f64],
+    ) -> Result<f64, Failure> {
+        (**self).end(t, y, by_state, by_parameters)
+    }
+}
+
 /// A functional and its derivatives.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -72,6 +95,7 @@ pub struct AdjointOptions {
     pub(crate) relative_tolerance: f64,
     pub(crate) absolute_tolerance: f64,
     pub(crate) checkpoint_interval: u32,
+    linear_solver: Option<LinearSolver>,
 }
 
 impl AdjointOptions {
@@ -83,7 +107,13 @@ impl AdjointOptions {
             Tolerance::Vector(atol) => atol.iter().copied().fold(f64::INFINITY, f64::min),
         };
         let relative_tolerance = motion.relative_tolerance;
-        AdjointOptions { motion, relative_tolerance, absolute_tolerance, checkpoint_interval: 200 }
+        AdjointOptions {
+            motion,
+            relative_tolerance,
+            absolute_tolerance,
+            checkpoint_interval: 200,
+            linear_solver: None,
+        }
     }
 
     /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p, positive.
@@ -99,17 +129,30 @@ impl AdjointOptions {
         AdjointOptions { checkpoint_interval: steps, ..self }
     }
 
-    /// For the adjoint equations.
-    fn back(&self) -> Options {
+    /// How the linear systems of the way back are solved, by matrices that are transposed to those of the motion: unless given,
+    /// as [usual](LinearSolver) for what the field offers, and by [Krylov's method](LinearSolver::Krylov) where that is nothing
+    /// but [products](VectorField::vjp).
+    pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
+        AdjointOptions { linear_solver: Some(linear_solver), ..self }
+    }
+
+    /// For the adjoint equations of a field with entries of its Jacobian, or `products_only`.
+    pub(crate) fn back(&self, products_only: bool) -> Options {
         let Options { method, nonlinear_solver, max_steps, .. } = self.motion;
-        Options::new(method)
+        let options = Options::new(method)
             .nonlinear_solver(nonlinear_solver)
             .max_steps(max_steps)
             .relative_tolerance(self.relative_tolerance)
-            .absolute_tolerance(self.absolute_tolerance)
+            .absolute_tolerance(self.absolute_tolerance);
+        let by_products = products_only && nonlinear_solver == NonlinearSolver::Newton;
+        match &self.linear_solver {
+            Some(choice) => options.linear_solver(choice.clone()),
+            None if by_products => options.linear_solver(LinearSolver::Krylov(Krylov::new(SUBSPACE))),
+            None => options,
+        }
     }
 
-    fn validate(&self) -> Result<(), InputError> {
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
         positive("the relative tolerance of the adjoint equations", self.relative_tolerance)?;
         positive("the absolute tolerance of the adjoint equations", self.absolute_tolerance)?;
         positive("the number of steps between checkpoints", f64::from(self.checkpoint_interval))
@@ -125,9 +168,14 @@ impl AdjointOptions {
 /// ```
 /// the cost does not grow with the number of parameters, but for those integrals [Cao, Li, Petzold, Serban, SIAM J. Sci.
 /// Comput. 24 (2003) 1076]. The motion is integrated to t₁ and, from one checkpoint to the next, once again on the way
-/// back, where it is looked up by the polynomials of the method. Each evaluation of λ̇ takes the field's
-/// [Jacobian](VectorField::jacobian), dense. If it has none it is put together from as many
-/// [products](VectorField::jvp), or pairs of evaluations of f, as there are components.
+/// back, where it is looked up by the polynomials of the method. Each evaluation of λ̇ takes a
+/// [product](VectorField::vjp) with (∂f/∂y)ᵀ if the field has these, else its Jacobian:
+/// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. If it has none that is put together
+/// from [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the pattern, or for each
+/// component.
+///
+/// What is held of n components are the states at checkpoints, and up to 13 vectors for each step of one
+/// [interval](AdjointOptions::checkpoint_interval) between them: for large n an interval of few steps takes less.
 ///
 /// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is not projected itself:
 /// ∂G/∂y₀ is that of the field in all of space, and its part tangent to the surface what starts on it feel. Where motions
@@ -158,7 +206,7 @@ impl AdjointOptions {
 ///
 /// # Errors
 /// [`SolveError::Input`] if the problem or an option is not valid; [`SolveError::Integration`] if the motion fails, and
-/// with [`Reason::Adjoint`] if the way back does.
+/// with [`Reason::Adjoint`](crate::Reason::Adjoint) if the way back does.
 pub fn adjoint_gradient<F: VectorField, G: Functional>(
     field: F,
     functional: G,
@@ -167,76 +215,52 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     t1: f64,
     options: &AdjointOptions,
 ) -> Result<Gradient, SolveError> {
-    options.validate()?;
-    let mut motion = options.motion.clone();
-    motion.stop_time = motion.stop_time.or(Some(t1).filter(|t| t.is_finite()));
-    let mut adjoint = AdjointField::new(field, functional, &motion);
-    let mut there = Cvode::new(&mut adjoint.field, t0, y0, &motion)?;
-    let checkpoints = checkpoints(&mut there, t1, options.checkpoint_interval)?;
-    let (statistics, y1) = (there.statistics(), there.state().to_vec());
-    drop(there);
-
-    let (end, by_state, mut by_parameters) = adjoint.end(t1, &y1).map_err(|failure| {
-        let (reason, failure) = (Reason::Functional, Some(failure));
-        SolveError::Integration(Box::new(IntegrationError { reason, time: t1, state: y1, failure }))
-    })?;
-    let mut back = Cvode::new(adjoint, t1, &by_state, &options.back())?;
-    back.begin_quadratures(options.relative_tolerance, options.absolute_tolerance)?;
-    let mut to = t1;
-    for (t, y) in checkpoints.into_iter().rev() {
-        back.field_mut().record(t, &y, to, &motion)?;
-        back.set_stop_time(Some(t))?;
-        let result = back.advance_to(t).map(|_| ());
-        result.map_err(|error| of_motion(error, back.field_mut()))?;
-        to = t;
-    }
-    let mut integrals = back.quadratures()?;
-    if let Some(j) = not_finite(&integrals) {
-        let component = format!("integral number {j} (from 0) of the gradient");
-        let overflow = Reason::Overflow { component, value: integrals[j], t: t0 };
-        let reason = Reason::Adjoint(Box::new(overflow));
-        let error = IntegrationError { reason, time: t0, state: y0.to_vec(), failure: None };
-        return Err(SolveError::Integration(Box::new(error)));
-    }
-    let value = end + integrals.pop().unwrap_or(0.0);
-    for (sum, integral) in by_parameters.iter_mut().zip(integrals) {
-        *sum += integral;
-    }
-    Ok(Gradient { value, by_start: back.state().to_vec(), by_parameters, statistics })
+    let gradients = adjoint_gradients(field, [functional], t0, y0, t1, options)?;
+    let first = gradients.into_iter().next();
+    first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// Takes the motion to `t1`; the start and each `interval`th step on the way.
-fn checkpoints<F: VectorField>(
-    motion: &mut Cvode<F>,
+/// As [`adjoint_gradient`], of several functionals, [boxed](Box) if of several kinds: they share the motion there, the
+/// checkpoints, and the motion from one to the next on the way back, on which each has its adjoint equations. Each
+/// gradient is that of its functional alone.
+///
+/// # Errors
+/// As there; [`InputError::NoFunctional`]
+pub fn adjoint_gradients<F: VectorField, G: Functional>(
+    field: F,
+    functionals: impl IntoIterator<Item = G>,
+    t0: f64,
+    y0: &[f64],
     t1: f64,
-    interval: u32,
-) -> Result<Vec<(f64, Vec<f64>)>, SolveError> {
-    let mut checkpoints = vec![(motion.time(), motion.state().to_vec())];
-    let mut steps = 0;
-    let direction = 1.0_f64.copysign(t1 - motion.time());
-    let keep = |t: f64, y: &[f64]| {
-        steps += 1;
-        if steps == interval && (t1 - t) * direction > 0.0 {
-            steps = 0;
-            checkpoints.push((t, y.to_vec()));
-        }
-        ControlFlow::Continue(())
-    };
-    motion.run_observed(&[t1], |_, _| ControlFlow::Continue(()), keep)?;
-    Ok(checkpoints)
+    options: &AdjointOptions,
+) -> Result<Vec<Gradient>, SolveError> {
+    adjoint_gradients_with_events(field, FnEvents::new(), functionals, t0, y0, t1, options)
 }
 
-/// An error of the adjoint equations, with the state of the motion where they stopped.
-fn of_motion<F: VectorField, G: Functional>(
-    error: SolveError,
-    adjoint: &mut AdjointField<F, G>,
-) -> SolveError {
-    match error {
-        SolveError::Integration(error) => {
-            let IntegrationError { reason, time, failure, .. } = *error;
-            let (reason, state) = (Reason::Adjoint(Box::new(reason)), adjoint.motion(time).to_vec());
-            SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure }))
-        }
-        other => other,
+/// As [`adjoint_gradients`], of a motion with events. At a reset y⁺ = R(t, y⁻) where the function γ of an event vanishes, λ
+/// goes back by the transposed saltation matrix,
+/// ```text
+/// λ⁻ = R_yᵀ λ⁺ − κ γ_y,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + g⁻ − g⁺)/(γ_t + γ_y f⁻),
+/// ```
+/// and ∂G/∂p grows by R_pᵀ λ⁺ − κ γ_p: what is written for [sensitivities](crate::Sensitivities), read from the left. The
+/// [derivatives](Events::by_parameter) of the events by parameters are asked for if the field has such.
+///
+/// # Errors
+/// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1, [`Reason::Together`](crate::Reason::Together) where several events reset the state
+/// at once, [`Reason::Grazing`](crate::Reason::Grazing) where one is met at no speed, and [`InputError::EventParameters`].
+pub fn adjoint_gradients_with_events<F: VectorField, E: Events, G: Functional>(
+    field: F,
+    events: E,
+    functionals: impl IntoIterator<Item = G>,
+    t0: f64,
+    y0: &[f64],
+    t1: f64,
+    options: &AdjointOptions,
+) -> Result<Vec<Gradient>, SolveError> {
+    options.validate()?;
+    let functionals: Vec<G> = functionals.into_iter().collect();
+    if functionals.is_empty() {
+        return Err(InputError::NoFunctional.into());
     }
+    adjoint_pass::gradients(field, events, functionals, (t0, y0), t1, options)
 }

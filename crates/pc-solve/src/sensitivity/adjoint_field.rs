@@ -1,6 +1,9 @@
 //! The adjoint equations of a motion as a vector field.
 
-use pc_expr::{Failure, VectorField};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use pc_expr::{Failure, Pattern, VectorField};
 
 use crate::cvode::cvode::Quadratures;
 use crate::error::{NonFinite, SolveError};
@@ -8,40 +11,27 @@ use crate::integration::motion_record::MotionRecord;
 use crate::integration::options::Options;
 use crate::sensitivity::adjoint::Functional;
 use crate::sensitivity::linearisation::Linearisation;
+use crate::sensitivity::transpose::Transpose;
 
-/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals that the gradient takes.
-pub(crate) struct AdjointField<F, G> {
+/// What the adjoint equations of all functionals of a motion have in common.
+pub(crate) struct Path<F> {
     pub(crate) field: F,
-    functional: G,
+    /// For derivatives by parameters.
     linearisation: Linearisation,
+    transpose: Transpose,
     motion: MotionRecord,
-    /// y(t)
-    state: Vec<f64>,
-    by_state: Vec<f64>,
-    by_parameters: Vec<f64>,
 }
 
-/// The two terms of a functional.
-#[derive(Clone, Copy)]
-enum Term {
-    Density,
-    End,
-}
-
-impl<F: VectorField, G: Functional> AdjointField<F, G> {
-    pub(crate) fn new(field: F, functional: G, options: &Options) -> Self {
+impl<F: VectorField> Path<F> {
+    pub(crate) fn new(field: F, options: &Options) -> Path<F> {
         let linearisation = Linearisation::new(&field, options);
-        let parameters = if field.has_parameter_jacobian() { field.parameters_len() } else { 0 };
-        let dim = field.dim();
-        AdjointField {
-            field,
-            functional,
-            linearisation,
-            motion: MotionRecord::default(),
-            state: vec![0.0; dim],
-            by_state: vec![0.0; dim],
-            by_parameters: vec![0.0; parameters],
-        }
+        let transpose = Transpose::new(&field, options);
+        Path { field, linearisation, transpose, motion: MotionRecord::default() }
+    }
+
+    /// Whether nothing but products with (∂f/∂y)ᵀ is to be had.
+    pub(crate) fn has_products_only(&self) -> bool {
+        !self.transpose.has_entries(&self.field)
     }
 
     /// Records the motion from y(t0) = y0 to `t1`.
@@ -55,10 +45,53 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         self.motion = MotionRecord::of(&mut self.field, t0, y0, t1, options)?;
         Ok(())
     }
+}
+
+/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals that the gradient takes.
+pub(crate) struct AdjointField<F, G> {
+    path: Rc<RefCell<Path<F>>>,
+    functional: G,
+    /// y(t)
+    state: Vec<f64>,
+    by_state: Vec<f64>,
+    by_parameters: Vec<f64>,
+    // What the field says of itself, which it cannot be asked for by reference.
+    pattern: Option<Pattern>,
+    breaks: Vec<f64>,
+    has_entries: bool,
+}
+
+/// The two terms of a functional.
+#[derive(Clone, Copy)]
+enum Term {
+    Density,
+    End,
+}
+
+impl<F: VectorField, G: Functional> AdjointField<F, G> {
+    pub(crate) fn new(path: Rc<RefCell<Path<F>>>, functional: G) -> Self {
+        let of = path.borrow();
+        let field = &of.field;
+        let parameters = if field.has_parameter_jacobian() { field.parameters_len() } else { 0 };
+        let dim = field.dim();
+        let (pattern, breaks) = (of.transpose.pattern().cloned(), field.breaks().to_vec());
+        let has_entries = !of.has_products_only();
+        drop(of);
+        AdjointField {
+            path,
+            functional,
+            state: vec![0.0; dim],
+            by_state: vec![0.0; dim],
+            by_parameters: vec![0.0; parameters],
+            pattern,
+            breaks,
+            has_entries,
+        }
+    }
 
     /// y(t) of the recorded motion.
     pub(crate) fn motion(&mut self, t: f64) -> &[f64] {
-        self.motion.state(t, &mut self.state);
+        self.path.borrow().motion.state(t, &mut self.state);
         &self.state
     }
 
@@ -69,9 +102,15 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         Ok((value, self.by_state.clone(), self.by_parameters.clone()))
     }
 
+    /// g(t, y)
+    pub(crate) fn density(&mut self, t: f64, y: &[f64]) -> Result<f64, Failure> {
+        self.state.copy_from_slice(y);
+        self.term(Term::Density, t)
+    }
+
     /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its derivatives.
     fn term(&mut self, term: Term, t: f64) -> Result<f64, Failure> {
-        let AdjointField { field, functional, state, by_state, by_parameters, .. } = self;
+        let AdjointField { path, functional, state, by_state, by_parameters, .. } = self;
         by_state.fill(f64::NAN);
         by_parameters.fill(f64::NAN);
         let (value, name) = match term {
@@ -81,7 +120,7 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         let (what, value) = if !value.is_finite() {
             (format!("the {name} of the functional"), value)
         } else if let Some(i) = not_finite(by_state) {
-            let component = field.component_name(i);
+            let component = path.borrow().field.component_name(i);
             (format!("the derivative by {component} of the {name} of the functional"), by_state[i])
         } else if let Some(j) = not_finite(by_parameters) {
             let what = format!("the derivative by parameter {j} (from 0) of the {name} of the functional");
@@ -99,44 +138,60 @@ impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
     }
 
     fn rhs(&mut self, t: f64, adjoint: &[f64], rate: &mut [f64]) -> Result<(), Failure> {
-        self.motion.state(t, &mut self.state);
+        self.motion(t);
         self.term(Term::Density, t)?;
-        let jacobian = self.linearisation.jacobian(&mut self.field, t, &self.state)?;
-        for ((rate, column), by_state) in
-            rate.iter_mut().zip(jacobian.chunks_exact(adjoint.len())).zip(&self.by_state)
-        {
-            *rate = -dot(column, adjoint) - by_state;
+        let Path { field, transpose, .. } = &mut *self.path.borrow_mut();
+        transpose.product(field, (t, &self.state), adjoint, rate)?;
+        for (rate, by_state) in rate.iter_mut().zip(&self.by_state) {
+            *rate = -*rate - by_state;
         }
         Ok(())
     }
 
     fn has_jacobian(&self) -> bool {
-        true
+        self.has_entries
     }
 
     /// −(∂f/∂y)ᵀ
-    fn jacobian(&mut self, t: f64, adjoint: &[f64], matrix: &mut [f64]) -> Result<(), Failure> {
-        self.motion.state(t, &mut self.state);
-        let jacobian = self.linearisation.jacobian(&mut self.field, t, &self.state)?;
-        let dim = adjoint.len();
-        for (j, column) in matrix.chunks_exact_mut(dim).enumerate() {
-            for (i, entry) in column.iter_mut().enumerate() {
-                *entry = -jacobian[j + i * dim];
-            }
-        }
+    fn jacobian(&mut self, t: f64, _adjoint: &[f64], matrix: &mut [f64]) -> Result<(), Failure> {
+        self.motion(t);
+        let Path { field, transpose, .. } = &mut *self.path.borrow_mut();
+        transpose.negative(field, (t, &self.state), matrix)
+    }
+
+    fn sparsity(&self) -> Option<&Pattern> {
+        self.pattern.as_ref()
+    }
+
+    fn sparse_jacobian(&mut self, t: f64, _adjoint: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.motion(t);
+        let Path { field, transpose, .. } = &mut *self.path.borrow_mut();
+        transpose.negative_entries(field, (t, &self.state), values)
+    }
+
+    fn has_jvp(&self) -> bool {
+        true
+    }
+
+    /// −(∂f/∂y)ᵀ v
+    fn jvp(&mut self, t: f64, _adjoint: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        self.motion(t);
+        let Path { field, transpose, .. } = &mut *self.path.borrow_mut();
+        transpose.product(field, (t, &self.state), v, product)?;
+        product.iter_mut().for_each(|product| *product = -*product);
         Ok(())
     }
 
     fn breaks(&self) -> &[f64] {
-        self.field.breaks()
+        &self.breaks
     }
 
     fn enter(&mut self, t: f64, end: f64) -> bool {
-        self.field.enter(t, end)
+        self.path.borrow_mut().field.enter(t, end)
     }
 
     fn component_name(&self, i: usize) -> String {
-        format!("the adjoint of {}", self.field.component_name(i))
+        format!("the adjoint of {}", self.path.borrow().field.component_name(i))
     }
 }
 
@@ -147,14 +202,15 @@ impl<F: VectorField, G: Functional> Quadratures for AdjointField<F, G> {
     }
 
     fn integrands(&mut self, t: f64, adjoint: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
-        self.motion.state(t, &mut self.state);
+        self.motion(t);
         let density = self.term(Term::Density, t)?;
         let parameters = self.by_parameters.len();
         rates[parameters] = -density;
         if parameters == 0 {
             return Ok(());
         }
-        let by_parameters = self.linearisation.parameter_jacobian(&mut self.field, t, &self.state)?;
+        let Path { field, linearisation, .. } = &mut *self.path.borrow_mut();
+        let by_parameters = linearisation.parameter_jacobian(field, t, &self.state)?;
         for ((rate, column), of_density) in
             rates.iter_mut().zip(by_parameters.chunks_exact(adjoint.len())).zip(&self.by_parameters)
         {

@@ -20,7 +20,7 @@ pub(crate) struct Forward {
     /// Referred to by CVODES.
     _nonlinear_iteration: NonlinearIteration,
     /// Where CVODES writes the columns.
-    columns: Vec<Vector>,
+    pub(crate) columns: Vec<Vector>,
     /// S(`time`) when asked for, S(t0) before; column-major.
     matrix: Vec<f64>,
     correction: Correction,
@@ -30,7 +30,7 @@ pub(crate) struct Forward {
 
 impl Forward {
     /// The vectors as CVODES takes them.
-    fn raw(&self) -> Vec<sys::N_Vector> {
+    pub(crate) fn raw(&self) -> Vec<sys::N_Vector> {
         self.columns.iter().map(Vector::raw).collect()
     }
 }
@@ -157,18 +157,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// S at `t` in the last internal step; none where there is nothing but a start.
     pub(crate) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
-        let Some(forward) = self.sensitivity.as_ref().filter(|_| self.direction.is_some() && !self.restarted)
-        else {
-            return Ok(None);
-        };
-        let mut raw = forward.raw();
-        // SAFETY: a step has been taken with sensitivities; there are as many vectors as columns, which nobody looks at.
-        let code = unsafe { sys::CVodeGetSensDky(self.memory.raw(), t, 0, raw.as_mut_ptr()) };
-        if code != sys::CV_SUCCESS {
-            let message = format!("the sensitivities at t = {t} cannot be interpolated");
-            return Err(self.error(Reason::Cvode { code: code.into(), message }, None));
-        }
-        Ok(Some(forward.columns.iter().flat_map(Vector::as_slice).copied().collect()))
+        self.sensitivities_by_time(t, 0)
     }
 
     /// The parameter of each column.

@@ -4,10 +4,12 @@ use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
 
-use pc_expr::VectorField;
+use pc_expr::{Events, VectorField};
 
 use crate::cvode::cvode::{Cvode, Ending};
 use crate::error::SolveError;
+use crate::events::events::Occurrence;
+use crate::integration::dense_output::DenseOutput;
 use crate::integration::options::Options;
 use crate::integration::trajectory::Trajectory;
 use crate::sensitivity::options::Sensitivities;
@@ -113,4 +115,82 @@ impl Error for SensitivityFailure {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         self.error.source()
     }
+}
+
+/// A motion with events and the derivatives of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HybridSensitivities {
+    /// The states and S at the output times, y⁺ and S⁺ at those of events; a terminal event is the last.
+    pub trajectory: SensitivityTrajectory,
+    /// What occurred, in order.
+    pub occurrences: Vec<Occurrence>,
+    /// How it ended; none if it failed.
+    pub ending: Option<Ending>,
+}
+
+/// As [`solve_with_sensitivities`], with events: S jumps where a reset does, by
+/// [its derivatives](Events::by_parameter). `output` sees each output time with its state, and may stop the integration.
+///
+/// # Errors
+/// The error, with what was reached before.
+pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
+    field: F,
+    t0: f64,
+    y0: &[f64],
+    times: &[f64],
+    options: &Options,
+    sensitivities: &Sensitivities,
+    events: E,
+    mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> Result<HybridSensitivities, (Box<HybridSensitivities>, SolveError)> {
+    let trajectory = SensitivityTrajectory::new(field.dim(), sensitivities.len());
+    let mut reached = HybridSensitivities { trajectory, occurrences: Vec::new(), ending: None };
+    let mut options = options.clone();
+    options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
+    let start = Cvode::with_sensitivities(field, t0, y0, &options, sensitivities);
+    let mut hybrid = match start.and_then(|cvode| cvode.with_events(events)) {
+        Ok(hybrid) => hybrid,
+        Err(error) => return Err((Box::new(reached), error)),
+    };
+    let keep = |t: f64, y: &[f64], matrix: &[f64]| {
+        reached.trajectory.motion.push(t, y);
+        reached.trajectory.matrices.extend_from_slice(matrix);
+        output(t, y)
+    };
+    let occurred = |occurrence: &Occurrence| {
+        reached.occurrences.push(occurrence.clone());
+        ControlFlow::Continue(())
+    };
+    let result = hybrid.run_with_sensitivities(times, keep, occurred);
+    let complete = matches!(result, Ok(Ending::Completed));
+    reached.trajectory.motion.finish(complete, hybrid.statistics());
+    match result {
+        Ok(ending) => Ok(HybridSensitivities { ending: Some(ending), ..reached }),
+        Err(error) => Err((Box::new(reached), error)),
+    }
+}
+
+/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion and S as functions of time, the
+/// entries of S column-major.
+///
+/// # Errors
+/// As for [`Cvode::run_dense_with_sensitivities`], which also gives what was reached.
+pub fn solve_dense_with_sensitivities<F: VectorField>(
+    field: F,
+    t0: f64,
+    y0: &[f64],
+    end: f64,
+    options: &Options,
+    sensitivities: &Sensitivities,
+) -> Result<(DenseOutput, DenseOutput), SolveError> {
+    let mut options = options.clone();
+    options.stop_time = options.stop_time.or(Some(end).filter(|t| t.is_finite()));
+    let (mut motion, mut matrix) = (DenseOutput::default(), DenseOutput::default());
+    let mut cvode = Cvode::with_sensitivities(field, t0, y0, &options, sensitivities)?;
+    cvode.run_dense_with_sensitivities(end, |of_state, of_matrix| {
+        motion.extend([of_state]);
+        matrix.extend([of_matrix]);
+        ControlFlow::Continue(())
+    })?;
+    Ok((motion, matrix))
 }

@@ -144,6 +144,14 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         self.engine.sensitivities()
     }
 
+    /// The integrals from the start to [`time`](Hybrid::time), over what occurred, as [`Cvode::integrals`] gives them.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
+        self.engine.integrals()
+    }
+
     /// The vector field.
     pub fn field(&self) -> &F {
         self.engine.field()

@@ -139,6 +139,44 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         }
     }
 
+    /// As [`run_dense`](Hybrid::run_dense), with the segment of S of the same span, whose components are its entries,
+    /// column-major: from S⁺ to S⁻.
+    ///
+    /// # Errors
+    /// As there; [`InputError::NoSensitivities`] if there are none.
+    pub fn run_dense_with_sensitivities(
+        &mut self,
+        end: f64,
+        mut segments: impl FnMut(Segment, Segment) -> ControlFlow<()>,
+        mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.engine.check_times(&[end])?;
+        let mut steps = 0;
+        loop {
+            let (from, state) = (self.time(), self.state().to_vec());
+            let next = if self.is_before_front(end) { end } else { self.front.t };
+            if next != from {
+                self.stand_at(next)?;
+                let reached = self.state().to_vec();
+                let of_state = self.engine.segment((from, &state), (next, &reached))?;
+                let of_matrix = self.engine.segment_of_sensitivities(from, next)?;
+                if segments(of_state, of_matrix).is_break() {
+                    return Ok(Ending::Stopped);
+                }
+            } else if !self.due.is_empty() && from == self.front.t {
+                if let Some(ending) = self.occur(&mut occurred)? {
+                    return Ok(ending);
+                }
+            } else if from == end {
+                return Ok(Ending::Completed);
+            } else {
+                self.check_steps(steps, end)?;
+                self.go_on(end)?;
+                steps += 1;
+            }
+        }
+    }
+
     /// That one more step may be taken after so many on the way to `t`.
     fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.engine.max_steps {

@@ -14,8 +14,8 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
     /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000) 204, eqs. (37)–(43)]. The
-    /// derivatives by (t, y) are central difference quotients along the columns and along the motion, those by parameters
-    /// the events' own.
+    /// derivatives by parameters are the events' own, and those by (t, y) too where [there are such](Events::has_derivatives),
+    /// else central difference quotients along the columns and along the motion.
     pub(super) fn jump_of_sensitivities(
         &mut self,
         event: usize,
@@ -50,6 +50,47 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok(jumped)
     }
 
+    /// λ⁻, and what ∂G/∂p grows by, from λ⁺ at such an event, for each of so many parameters p,
+    /// ```text
+    /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
+    /// ```
+    /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied by λ⁺ from the left.
+    pub(crate) fn transposed_jump(
+        &mut self,
+        event: usize,
+        t: f64,
+        before: &[f64],
+        after: &[f64],
+        (adjoint, density_step): (&[f64], f64),
+        parameters: usize,
+    ) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let rates_before = self.rates_at(t, before)?;
+        let rates_after = self.rates_at(t, after)?;
+        let (along, size, reset_along) = self.derivative_along(event, (t, before), (1.0, &rates_before))?;
+        if along.abs() <= GRAZING * size {
+            return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
+        }
+        let shift = (dot(adjoint, &reset_along) - dot(adjoint, &rates_after) + density_step) / along;
+        let mut jumped = Vec::with_capacity(before.len());
+        let mut unit = vec![0.0; before.len()];
+        for i in 0..before.len() {
+            unit[i] = 1.0;
+            let (function, _, reset) = self.derivative_along(event, (t, before), (0.0, &unit))?;
+            unit[i] = 0.0;
+            jumped.push(dot(adjoint, &reset) - shift * function);
+        }
+        let mut by_parameters = Vec::with_capacity(parameters);
+        for j in 0..parameters {
+            let mut reset = vec![f64::NAN; before.len()];
+            match self.events.by_parameter(event, j, t, before, &mut reset) {
+                Ok(function) => by_parameters.push(dot(adjoint, &reset) - shift * function),
+                Err(failure) => return Err(self.event_error(event, t, failure)),
+            }
+        }
+        Ok((jumped, by_parameters))
+    }
+
     fn rates_at(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         let mut rates = vec![f64::NAN; state.len()];
         let outcome = self.engine.callbacks.field_mut().rhs(t, state, &mut rates);
@@ -71,6 +112,9 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         if length == 0.0 {
             return Ok((0.0, 0.0, vec![0.0; state.len()]));
         }
+        if self.events.has_derivatives() {
+            return self.own_derivative_along(event, (t, state), (in_time, v));
+        }
         // As for products with ∂f/∂y: truncation and rounding are alike.
         let least = self.engine.foresight.least_size();
         let step = f64::EPSILON.cbrt() * largest(state).max(least) / length;
@@ -87,5 +131,25 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             states[0].iter().zip(&states[1]).map(|(ahead, behind)| quotient(*ahead, *behind)).collect();
         let size = (values[0].abs() + values[1].abs()) / (2.0 * step);
         Ok((quotient(values[0], values[1]), size, reset))
+    }
+
+    /// The same by the derivatives that the events have.
+    fn own_derivative_along(
+        &mut self,
+        event: usize,
+        (t, state): (f64, &[f64]),
+        (in_time, v): (f64, &[f64]),
+    ) -> Result<(f64, f64, Vec<f64>), SolveError> {
+        let mut by_state = vec![f64::NAN; state.len()];
+        let mut reset = vec![f64::NAN; state.len()];
+        let by_time = self.events.gradient(event, t, state, &mut by_state);
+        let along = self.events.reset_along(event, t, state, (in_time, v), &mut reset);
+        match by_time.and_then(|by_time| along.map(|()| by_time)) {
+            Ok(by_time) => {
+                let terms = || by_state.iter().zip(v).map(|(g, v)| g * v).chain([by_time * in_time]);
+                Ok((terms().sum(), terms().map(f64::abs).sum(), reset))
+            }
+            Err(failure) => Err(self.event_error(event, t, failure)),
+        }
     }
 }

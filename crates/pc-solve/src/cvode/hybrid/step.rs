@@ -54,4 +54,19 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         self.engine.time = time;
         interpolated.map(|()| self.engine.work.as_slice())
     }
+
+    /// The derivative of S of the given order at `t` in the last internal step, as
+    /// [`Cvode::interpolate_sensitivities`](crate::Cvode::interpolate_sensitivities) gives it, up to where it is known what
+    /// occurs.
+    ///
+    /// # Errors
+    /// As there, and as for [`interpolate`](Hybrid::interpolate).
+    pub fn interpolate_sensitivities(&mut self, t: f64, order: u32) -> Result<Vec<f64>, SolveError> {
+        finite("the time", t)?;
+        if self.direction.is_none() || self.engine.restarted {
+            return Err(InputError::NoStep.into());
+        }
+        self.engine.check_inside(t, order, self.front.t)?;
+        self.engine.sensitivities_by_time(t, order)?.ok_or_else(|| InputError::NoSensitivities.into())
+    }
 }

@@ -1,0 +1,94 @@
+//! `pc run --sensitivities`: derivatives of the columns of a motion by parameters.
+
+use std::ops::ControlFlow;
+
+use pc_model::{Flow, Model, UnknownParameter};
+use pc_solve::{
+    HybridMotion, HybridSensitivities, Options, Sensitivities, SolveError,
+    solve_with_sensitivities_and_events,
+};
+
+use crate::args::args::RunForm;
+use crate::error::CliError;
+
+/// The parameters of these names, by their numbers.
+///
+/// # Errors
+/// [`CliError::Sensitivities`]
+pub(crate) fn parameters(model: &Model, names: &[String]) -> Result<Vec<usize>, CliError> {
+    let known: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    let place = |name: &String| {
+        known.iter().position(|known| known == name).ok_or_else(|| {
+            CliError::Sensitivities(UnknownParameter { name: name.clone(), known: known.clone() })
+        })
+    };
+    names.iter().map(place).collect()
+}
+
+/// Derivatives by parameters to be integrated with a motion, and those that were found.
+pub(crate) struct Derivatives {
+    parameters: Vec<usize>,
+    names: Vec<String>,
+    wanted: Sensitivities,
+    /// Of each output, column-major.
+    matrices: Vec<Vec<f64>>,
+}
+
+impl Derivatives {
+    /// The derivatives by these parameters of the motion of a model, whose start may depend on them.
+    ///
+    /// # Errors
+    /// [`CliError::Model`] where the start has no derivative.
+    pub(crate) fn new(model: &Model, form: RunForm, parameters: &[usize]) -> Result<Derivatives, CliError> {
+        let mut wanted = Sensitivities::new();
+        for &j in parameters {
+            wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(model, form.into(), j)?);
+        }
+        let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+        let names = parameters.iter().map(|&j| names[j].clone()).collect();
+        Ok(Derivatives { parameters: parameters.to_vec(), names, wanted, matrices: Vec::new() })
+    }
+
+    /// The motion as far as it can be computed, and why not further; `output` sees each output and may stop it.
+    pub(crate) fn follow(
+        &mut self,
+        flow: &mut Flow,
+        t_start: f64,
+        times: &[f64],
+        options: &Options,
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> (HybridMotion, Option<SolveError>) {
+        let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
+        let solved = solve_with_sensitivities_and_events(
+            motion,
+            t_start,
+            start,
+            times,
+            options,
+            &self.wanted,
+            events,
+            output,
+        );
+        let (reached, error) = match solved {
+            Ok(reached) => (reached, None),
+            Err((reached, error)) => (*reached, Some(error)),
+        };
+        let HybridSensitivities { trajectory, occurrences, ending } = reached;
+        self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
+        (HybridMotion { trajectory: trajectory.motion().clone(), occurrences, ending }, error)
+    }
+
+    /// Names of the columns: ∂x/∂p for each x of a motion, then for the next p.
+    pub(crate) fn columns(&self, flow: &Flow) -> Vec<String> {
+        self.names
+            .iter()
+            .flat_map(|parameter| flow.names.iter().map(move |x| format!("∂{x}/∂{parameter}")))
+            .collect()
+    }
+
+    /// What stands in these columns at output number `i`, which is y at time t.
+    pub(crate) fn row(&self, flow: &Flow, i: usize, t: f64, y: &[f64]) -> Vec<f64> {
+        let columns = self.matrices[i].chunks_exact(y.len()).zip(&self.parameters);
+        columns.flat_map(|(column, &j)| flow.derivative(t, y, column, j)).collect()
+    }
+}

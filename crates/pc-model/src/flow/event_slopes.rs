@@ -1,0 +1,124 @@
+//! Derivatives of events and of their resets by time, state and parameters.
+
+use pc_expr::{Backend, Evaluator, Expr, Program};
+use pc_mech::MechError;
+
+use crate::diagnostics::error::ModelError;
+use crate::flow::flow::inputs;
+use crate::model::model::{Assembly, Model};
+
+/// Of each event the derivatives of its function, and of what its reset writes, by (t, y, p), where y = (x, η, z) with the free
+/// η, of which the others are functions.
+#[derive(Clone, Debug)]
+pub(super) struct EventSlopes {
+    dim: usize,
+    /// Number of symbols in (t, y, p).
+    symbols: usize,
+    events: Vec<Compiled>,
+}
+
+/// The components of the state that a reset gives new values, and the rows of the function and of these.
+#[derive(Clone, Debug)]
+struct Compiled {
+    places: Vec<usize>,
+    rows: Evaluator,
+    values: Vec<f64>,
+}
+
+/// Derivatives of one event at one state.
+pub(super) struct Slopes<'a> {
+    dim: usize,
+    symbols: usize,
+    compiled: &'a Compiled,
+}
+
+/// Derivatives of one function by (t, y, p).
+#[derive(Clone, Copy)]
+pub(super) struct Row<'a> {
+    dim: usize,
+    values: &'a [f64],
+}
+
+impl EventSlopes {
+    /// The derivatives for these free quasi-velocities, `all` of them as functions of (t, x, free η, z).
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be compiled.
+    pub(super) fn new<'g>(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        free: &[Expr<'g>],
+        all: &[Expr<'g>],
+    ) -> Result<EventSlopes, ModelError> {
+        let (system, graph) = (&assembly.system, assembly.system.graph());
+        let (x, eta) = (system.frame().coordinates(), system.quasi_velocities());
+        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
+        let inputs = inputs(system, &[x, free, &states].concat());
+        let symbols: Vec<Expr<'g>> =
+            inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
+        let follow: Vec<_> =
+            eta.iter().copied().zip(all.iter().copied()).filter(|(eta, value)| eta != value).collect();
+        let everything: Vec<Expr<'g>> = [x, eta, &states].concat();
+        let events = assembly.events.iter().map(|event| {
+            let written = event.resets.iter().filter_map(|&(place, value)| {
+                let state = inputs.state.iter().position(|y| *y == everything[place])?;
+                Some((state, value))
+            });
+            let (places, values): (Vec<usize>, Vec<Expr<'g>>) = written.unzip();
+            let functions: Vec<Expr<'g>> = [event.when].into_iter().chain(values).collect();
+            let functions = graph.substitute(&functions, &follow);
+            let rows: Vec<Expr<'g>> =
+                functions.iter().flat_map(|&function| graph.gradient(function, &symbols)).collect();
+            let program = Program::new(graph, &inputs, &rows);
+            let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;
+            let rows_len = rows.len();
+            let rows = Evaluator::new(program, Backend::Interpreter);
+            Ok(Compiled { places, rows, values: vec![f64::NAN; rows_len] })
+        });
+        let events = events.collect::<Result<_, ModelError>>()?;
+        Ok(EventSlopes { dim: inputs.state.len(), symbols: symbols.len(), events })
+    }
+
+    /// The derivatives of one event.
+    pub(super) fn at(&mut self, event: usize, t: f64, y: &[f64], parameters: &[f64]) -> Slopes<'_> {
+        let compiled = &mut self.events[event];
+        compiled.rows.eval(t, y, parameters, &mut compiled.values);
+        Slopes { dim: self.dim, symbols: self.symbols, compiled }
+    }
+}
+
+impl<'a> Slopes<'a> {
+    fn row(&self, i: usize) -> Row<'a> {
+        Row { dim: self.dim, values: &self.compiled.values[i * self.symbols..(i + 1) * self.symbols] }
+    }
+
+    /// Of the function.
+    pub(super) fn function(&self) -> Row<'a> {
+        self.row(0)
+    }
+
+    /// What `of` takes of the derivatives of each component that the reset writes, with its place in the state.
+    pub(super) fn resets(&self, of: impl Fn(Row<'a>) -> f64) -> impl Iterator<Item = (usize, f64)> {
+        self.compiled.places.iter().enumerate().map(move |(i, &place)| (place, of(self.row(i + 1))))
+    }
+}
+
+impl<'a> Row<'a> {
+    pub(super) fn by_time(self) -> f64 {
+        self.values[0]
+    }
+
+    pub(super) fn by_state(self) -> &'a [f64] {
+        &self.values[1..=self.dim]
+    }
+
+    pub(super) fn by_parameter(self, j: usize) -> f64 {
+        self.values[1 + self.dim + j]
+    }
+
+    /// Along (τ, v) of time and state.
+    pub(super) fn along(self, in_time: f64, v: &[f64]) -> f64 {
+        let by_state = self.by_state().iter().zip(v).map(|(slope, v)| slope * v);
+        self.by_time() * in_time + by_state.sum::<f64>()
+    }
+}

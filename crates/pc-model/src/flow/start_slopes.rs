@@ -1,0 +1,86 @@
+//! Derivatives by parameters of a start, and of what is shown of a state.
+
+use pc_mech::Graph;
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::fault::Fault;
+use crate::flow::flow::Flow;
+use crate::flow::variables::Variables;
+use crate::model::model::Model;
+
+/// A central difference over so much of the size of a parameter is good for ten digits: truncation and rounding are alike.
+fn step(value: f64) -> f64 {
+    let size = if value == 0.0 { 1.0 } else { value.abs() };
+    f64::EPSILON.cbrt() * size
+}
+
+impl Flow {
+    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of
+    /// sensitivities, by central differences of starts: these may be expressions in parameters, or moved to constraints that
+    /// have parameters.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the model has no start with the parameter a little larger or smaller, as where the start does not
+    /// follow constraints that depend on it; for an input with a table; for a parameter that others are expressions in.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
+    pub fn start_by_parameter(model: &Model, variables: Variables, j: usize) -> Result<Vec<f64>, ModelError> {
+        let values = model.parameter_values();
+        let refused = |why: &str, help| {
+            let name = model.parameters().nth(j).map_or("", |(name, _)| name);
+            let message = format!("there are no sensitivities by `{name}`: {why}");
+            model.error(&model.parameter_place(j), Fault::NoForm { message, help })
+        };
+        if values.is_table(j) {
+            return Err(refused("it is a function of time", "take them by parameters that are numbers"));
+        }
+        let value = values.values()[j];
+        let mut ends = Vec::new();
+        for end in [value + step(value), value - step(value)] {
+            let mut moved = model.clone();
+            moved.set_parameter(j, end);
+            let others = moved.parameter_values().values().iter().zip(values.values()).enumerate();
+            if others.into_iter().any(|(i, (moved, held))| i != j && moved != held) {
+                return Err(refused(
+                    "other parameters are expressions in it",
+                    "give those numbers, by --set say, or put them into the expressions of the model",
+                ));
+            }
+            let graph = Graph::new();
+            moved.differentiate_by_parameters(false);
+            ends.push(Flow::new(&moved, &moved.assemble(&graph)?, variables)?.start);
+        }
+        let length = (value + step(value)) - (value - step(value));
+        Ok(ends[0].iter().zip(&ends[1]).map(|(ahead, behind)| (ahead - behind) / length).collect())
+    }
+
+    /// The derivatives of what [`names`](Flow::names) says of a state, coordinates, quasi-velocities and first-order states,
+    /// where that moves along `column` with parameter number j. Those that are no components of the state are central
+    /// differences, good for ten digits.
+    ///
+    /// # Panics
+    /// If there is no such parameter, or `column` has not the length of the state.
+    pub fn derivative(&self, t: f64, state: &[f64], column: &[f64], j: usize) -> Vec<f64> {
+        assert_eq!(column.len(), state.len(), "length of the state");
+        let components = self.motion.names();
+        let place = |name: &String| components.iter().position(|component| component == name);
+        if let Some(places) = self.names.iter().map(place).collect::<Option<Vec<usize>>>() {
+            return places.into_iter().map(|place| column[place]).collect();
+        }
+        let parameters = self.reading.parameters().to_vec();
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        // Neither the parameter nor the state is to move by more than that part of itself.
+        let step = step(parameters[j]).min(step(largest(state)) / largest(column));
+        let shown = |sign: f64| {
+            let mut moved = parameters.clone();
+            moved[j] += sign * step;
+            let state: Vec<f64> = state.iter().zip(column).map(|(y, s)| y + sign * step * s).collect();
+            let mut row = self.with_values(&moved, state.clone()).row(t, &state);
+            row.truncate(self.names.len());
+            row
+        };
+        let (ahead, behind) = (shown(1.0), shown(-1.0));
+        ahead.iter().zip(behind).map(|(ahead, behind)| (ahead - behind) / (2.0 * step)).collect()
+    }
+}

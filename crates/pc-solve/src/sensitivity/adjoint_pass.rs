@@ -1,0 +1,257 @@
+//! The motion there, and the adjoint equations back.
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+
+use pc_expr::{Event, Events, Failure, VectorField};
+
+use crate::cvode::cvode::{Cvode, Ending};
+use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::options::Options;
+use crate::integration::statistics::Statistics;
+use crate::sensitivity::adjoint::{AdjointOptions, Functional, Gradient};
+use crate::sensitivity::adjoint_field::{AdjointField, Path, not_finite};
+
+/// A state that a piece of the motion begins at, and the event and the state before it where it is one after a reset.
+struct Mark {
+    t: f64,
+    y: Vec<f64>,
+    jump: Option<(usize, Vec<f64>)>,
+}
+
+/// The gradients of functionals of the motion from y(t0) = y0 to t1.
+pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
+    field: F,
+    mut events: E,
+    functionals: Vec<G>,
+    (t0, y0): (f64, &[f64]),
+    t1: f64,
+    options: &AdjointOptions,
+) -> Result<Vec<Gradient>, SolveError> {
+    let mut motion = options.motion.clone();
+    motion.stop_time = motion.stop_time.or(Some(t1).filter(|t| t.is_finite()));
+    let mut path = Path::new(field, &motion);
+    let resets = events.events().iter().any(Event::resets);
+    let by_parameters = path.field.has_parameter_jacobian() && path.field.parameters_len() > 0;
+    if resets && by_parameters && !events.has_parameter_derivatives() {
+        return Err(InputError::EventParameters.into());
+    }
+    let there = there(&mut path.field, &mut events, (t0, y0), t1, &motion, options.checkpoint_interval)?;
+    let back = options.back(path.has_products_only());
+    let path = Rc::new(RefCell::new(path));
+    let mut ways = Vec::with_capacity(functionals.len());
+    for functional in functionals {
+        let adjoint = AdjointField::new(Rc::clone(&path), functional);
+        ways.push(Way::new(adjoint, (t1, &there.end), back.clone(), options)?);
+    }
+    let mut to = t1;
+    for (i, mark) in there.marks.iter().enumerate().rev() {
+        if mark.t != to {
+            let mut path = path.borrow_mut();
+            if there.has_jumps {
+                // What the field keeps is what it was after the last reset before this.
+                let since = there.marks[..=i].iter().rev().find(|mark| mark.jump.is_some());
+                let since = since.unwrap_or(&there.marks[0]);
+                path.field.restart(since.t, &since.y);
+            }
+            path.record(mark.t, &mark.y, to, &motion)?;
+            drop(path);
+            for way in &mut ways {
+                way.advance_to(mark.t)?;
+            }
+        }
+        if let Some((event, before)) = &mark.jump {
+            for way in &mut ways {
+                way.jump(&path, &mut events, *event, (mark.t, before, &mark.y), &motion)?;
+            }
+        }
+        to = mark.t;
+    }
+    ways.into_iter().map(|way| way.arrive((t0, y0), there.statistics)).collect()
+}
+
+/// What is kept of the motion.
+struct There {
+    marks: Vec<Mark>,
+    has_jumps: bool,
+    end: Vec<f64>,
+    statistics: Statistics,
+}
+
+/// Takes the motion to `t1`; keeps the start, each `interval`th step on the way, and the states after resets.
+fn there<F: VectorField, E: Events>(
+    field: &mut F,
+    events: &mut E,
+    (t0, y0): (f64, &[f64]),
+    t1: f64,
+    options: &Options,
+    interval: u32,
+) -> Result<There, SolveError> {
+    let names: Vec<String> = events.events().iter().map(|event| event.name().to_owned()).collect();
+    let resetting: Vec<bool> = events.events().iter().map(Event::resets).collect();
+    let mut motion = Cvode::new(field, t0, y0, options)?.with_events(events)?;
+    let marks = RefCell::new(vec![Mark { t: t0, y: y0.to_vec(), jump: None }]);
+    let mut together = None;
+    let steps = RefCell::new(0);
+    let direction = 1.0_f64.copysign(t1 - t0);
+    let keep = |t: f64, y: &[f64]| {
+        *steps.borrow_mut() += 1;
+        if *steps.borrow() == interval && (t1 - t) * direction > 0.0 {
+            *steps.borrow_mut() = 0;
+            marks.borrow_mut().push(Mark { t, y: y.to_vec(), jump: None });
+        }
+        ControlFlow::Continue(())
+    };
+    let occurred = |occurrence: &crate::events::events::Occurrence| {
+        if !resetting[occurrence.event] {
+            return ControlFlow::Continue(());
+        }
+        let mut marks = marks.borrow_mut();
+        let last = marks.last().filter(|mark| mark.t == occurrence.time && occurrence.time != t0);
+        match last.map(|mark| mark.jump.as_ref().map(|(event, _)| *event)) {
+            Some(Some(other)) => {
+                together = Some((other, occurrence.clone()));
+                return ControlFlow::Break(());
+            }
+            Some(None) => drop(marks.pop()), // a step that ends here is no place to begin at
+            None => {}
+        }
+        let jump = Some((occurrence.event, occurrence.state_before.clone()));
+        marks.push(Mark { t: occurrence.time, y: occurrence.state_after.clone(), jump });
+        *steps.borrow_mut() = 0;
+        ControlFlow::Continue(())
+    };
+    let ending = motion.run_observed(&[t1], |_, _| ControlFlow::Continue(()), occurred, keep)?;
+    let fail = |reason: Reason, time: f64, state: Vec<f64>| {
+        Err(SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure: None })))
+    };
+    if let Some((other, occurrence)) = together {
+        let events = [other, occurrence.event].map(|event| names[event].clone()).to_vec();
+        let reason = Reason::Together { events, t: occurrence.time };
+        return fail(reason, occurrence.time, occurrence.state_before);
+    }
+    if let Ending::Event { event } = ending
+        && motion.time() != t1
+    {
+        let (t, state) = (motion.time(), motion.state().to_vec());
+        return fail(Reason::EndsEarly { event: names[event].clone(), t }, t, state);
+    }
+    let (end, statistics) = (motion.state().to_vec(), motion.statistics());
+    let marks = marks.into_inner();
+    let has_jumps = marks.iter().any(|mark| mark.jump.is_some());
+    Ok(There { marks, has_jumps, end, statistics })
+}
+
+/// The way back of one functional.
+struct Way<F, G> {
+    back: Option<Cvode<AdjointField<F, G>>>,
+    options: Options,
+    tolerances: (f64, f64),
+    /// h, and what integrals behind the last jump add to it.
+    value: f64,
+    by_parameters: Vec<f64>,
+}
+
+impl<F: VectorField, G: Functional> Way<F, G> {
+    /// From y(t1) = y1 on.
+    fn new(
+        mut adjoint: AdjointField<F, G>,
+        (t1, y1): (f64, &[f64]),
+        options: Options,
+        of: &AdjointOptions,
+    ) -> Result<Self, SolveError> {
+        let (value, by_state, by_parameters) = adjoint.end(t1, y1).map_err(|failure| {
+            let (reason, failure) = (Reason::Functional, Some(failure));
+            let state = y1.to_vec();
+            SolveError::Integration(Box::new(IntegrationError { reason, time: t1, state, failure }))
+        })?;
+        let tolerances = (of.relative_tolerance, of.absolute_tolerance);
+        let mut way = Way { back: None, options, tolerances, value, by_parameters };
+        way.begin(adjoint, t1, &by_state)?;
+        Ok(way)
+    }
+
+    fn begin(&mut self, adjoint: AdjointField<F, G>, t: f64, start: &[f64]) -> Result<(), SolveError> {
+        let mut back = Cvode::new(adjoint, t, start, &self.options)?;
+        back.begin_quadratures(self.tolerances.0, self.tolerances.1)?;
+        self.back = Some(back);
+        Ok(())
+    }
+
+    /// Goes back to `t` along what is recorded.
+    fn advance_to(&mut self, t: f64) -> Result<(), SolveError> {
+        let Some(back) = &mut self.back else { return Ok(()) };
+        back.set_stop_time(Some(t))?;
+        let result = back.advance_to(t).map(|_| ());
+        result.map_err(|error| of_motion(error, back.field_mut()))
+    }
+
+    /// Adds up the integrals, and takes the equations and λ out.
+    fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<(AdjointField<F, G>, Vec<f64>)>, SolveError> {
+        let Some(back) = self.back.take() else { return Ok(None) };
+        let mut integrals = back.quadratures()?;
+        if let Some(j) = not_finite(&integrals) {
+            let component = format!("integral number {j} (from 0) of the gradient");
+            let overflow = Reason::Overflow { component, value: integrals[j], t };
+            return Err(stopped(Reason::Adjoint(Box::new(overflow)), (t, y), None));
+        }
+        self.value += integrals.pop().unwrap_or(0.0);
+        for (sum, integral) in self.by_parameters.iter_mut().zip(integrals) {
+            *sum += integral;
+        }
+        let state = back.state().to_vec();
+        Ok(Some((back.into_field(), state)))
+    }
+
+    /// From λ⁺ to λ⁻ at an event that takes the state from `before` to `after`.
+    fn jump<E: Events>(
+        &mut self,
+        path: &RefCell<Path<F>>,
+        events: &mut E,
+        event: usize,
+        (t, before, after): (f64, &[f64], &[f64]),
+        options: &Options,
+    ) -> Result<(), SolveError> {
+        let Some((mut adjoint, lambda)) = self.pause(t, after)? else { return Ok(()) };
+        let refuse = |failure: Failure| stopped(Reason::Saltation { t }, (t, before), Some(failure));
+        let step = adjoint.density(t, before).map_err(refuse)? - adjoint.density(t, after).map_err(refuse)?;
+        let parameters = self.by_parameters.len();
+        let jumped = {
+            let field = &mut path.borrow_mut().field;
+            // No step is taken.
+            let options = Options { stop_time: None, ..options.clone() };
+            let mut there = Cvode::new(field, t, after, &options)?.with_events(events)?;
+            there.transposed_jump(event, t, before, after, (&lambda, step), parameters)?
+        };
+        for (sum, by_parameter) in self.by_parameters.iter_mut().zip(jumped.1) {
+            *sum += by_parameter;
+        }
+        self.begin(adjoint, t, &jumped.0)
+    }
+
+    /// The gradient, back at the start.
+    fn arrive(mut self, (t0, y0): (f64, &[f64]), statistics: Statistics) -> Result<Gradient, SolveError> {
+        let by_start = self.pause(t0, y0)?.map_or_else(Vec::new, |(_, lambda)| lambda);
+        Ok(Gradient { value: self.value, by_start, by_parameters: self.by_parameters, statistics })
+    }
+}
+
+fn stopped(reason: Reason, (time, state): (f64, &[f64]), failure: Option<Failure>) -> SolveError {
+    SolveError::Integration(Box::new(IntegrationError { reason, time, state: state.to_vec(), failure }))
+}
+
+/// An error of the adjoint equations, with the state of the motion where they stopped.
+fn of_motion<F: VectorField, G: Functional>(
+    error: SolveError,
+    adjoint: &mut AdjointField<F, G>,
+) -> SolveError {
+    match error {
+        SolveError::Integration(error) => {
+            let IntegrationError { reason, time, failure, .. } = *error;
+            let (reason, state) = (Reason::Adjoint(Box::new(reason)), adjoint.motion(time).to_vec());
+            SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure }))
+        }
+        other => other,
+    }
+}
