@@ -118,6 +118,17 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
 
     /// y⁺ of one event, in the place of y⁻.
     pub(super) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
+        self.reset_alone(event, t, state)?;
+        let Some((field, _)) = self.engine.callbacks.projection() else { return Ok(()) };
+        field.restart(t, state);
+        match field.project(t, state) {
+            Ok(()) => Ok(()),
+            Err(failure) => Err(self.failed(Reason::Projection { t }, Some(failure))),
+        }
+    }
+
+    /// The same before the field projects it.
+    pub(super) fn reset_alone(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         let mut result = self.events.reset(event, t, state);
         if let (Ok(()), Some(i)) = (&result, state.iter().position(|value| !value.is_finite())) {
             let component = self.field().component_name(i);
@@ -132,11 +143,6 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             let reason = Reason::Reset { event: self.name(event), t };
             return Err(self.failed(reason, Some(failure)));
         }
-        let Some((field, _)) = self.engine.callbacks.projection() else { return Ok(()) };
-        field.restart(t, state);
-        match field.project(t, state) {
-            Ok(()) => Ok(()),
-            Err(failure) => Err(self.failed(Reason::Projection { t }, Some(failure))),
-        }
+        Ok(())
     }
 }
