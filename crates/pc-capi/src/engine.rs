@@ -4,7 +4,10 @@ use std::ffi::c_void;
 use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
-use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
+use pc_solve::{
+    Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, Sensitivities, SolveError,
+    Statistics,
+};
 
 use crate::error::Fault;
 use crate::field::Field;
@@ -23,16 +26,27 @@ impl Engine {
         from: &Checkpoint,
         options: &Options,
         events: Followed,
+        sensitivities: &Sensitivities,
     ) -> Result<Engine, SolveError> {
         use pc_expr::VectorField;
         // One of another length is refused below.
         if from.state().len() == field.dim() {
             field.restart(from.time(), from.state());
         }
+        // At a start they begin as they say.
+        if !sensitivities.is_empty() && from.sensitivities().is_empty() {
+            let (t, y) = (from.time(), from.state());
+            let cvode = Cvode::with_sensitivities(field, t, y, options, sensitivities)?;
+            return Ok(match events.is_empty() {
+                true => Engine::Smooth(Box::new(cvode)),
+                false => Engine::Hybrid(Box::new(cvode.with_events(events)?)),
+            });
+        }
         Ok(if events.is_empty() {
-            Engine::Smooth(Box::new(Cvode::resume(field, from, options)?))
+            Engine::Smooth(Box::new(Cvode::resume_with_sensitivities(field, from, options, sensitivities)?))
         } else {
-            Engine::Hybrid(Box::new(Hybrid::resume(field, events, from, options)?))
+            let hybrid = Hybrid::resume_with_sensitivities(field, events, from, options, sensitivities)?;
+            Engine::Hybrid(Box::new(hybrid))
         })
     }
 
@@ -121,6 +135,7 @@ pub(crate) struct Integration {
     engine: Engine,
     events: Followed,
     options: Options,
+    sensitivities: Sensitivities,
     /// The work before it began anew at a checkpoint.
     earlier: Statistics,
     pub(crate) record: Record,
@@ -133,9 +148,10 @@ impl Integration {
         options: Options,
         events: Followed,
     ) -> Result<Integration, SolveError> {
-        let engine = Engine::new(field, from, &options, events.clone())?;
+        let sensitivities = Sensitivities::new();
+        let engine = Engine::new(field, from, &options, events.clone(), &sensitivities)?;
         let record = Record::of(events.events().len());
-        Ok(Integration { engine, events, options, earlier: Statistics::default(), record })
+        Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
     }
 
     /// Follows one more event. Where that is refused, nothing has changed.
@@ -150,9 +166,33 @@ impl Integration {
         Ok(())
     }
 
+    /// Integrates one more column of sensitivities. Where that is refused, nothing has changed.
+    pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), Fault> {
+        if self.statistics().steps > 0 {
+            return Err(Fault::Begun { what: "a sensitivity" });
+        }
+        let more = self.sensitivities.clone().by_parameter_from(parameter, start);
+        let before = std::mem::replace(&mut self.sensitivities, more);
+        let begun = self.begin(&Checkpoint::start(self.time(), self.state()), self.events.clone());
+        begun.map_err(|error| {
+            self.sensitivities = before;
+            error.into()
+        })
+    }
+
+    /// S where it stands, column-major, and the number of columns.
+    pub(crate) fn sensitivities(&mut self) -> Result<(&[f64], usize), SolveError> {
+        let matrix = match &mut self.engine {
+            Engine::Smooth(cvode) => cvode.sensitivities()?,
+            Engine::Hybrid(hybrid) => hybrid.sensitivities()?,
+        };
+        Ok((matrix, self.sensitivities.len()))
+    }
+
     /// Begins anew with these events.
     fn begin(&mut self, from: &Checkpoint, events: Followed) -> Result<(), SolveError> {
-        let engine = Engine::new(self.engine.field().clone(), from, &self.options, events.clone())?;
+        let field = self.engine.field().clone();
+        let engine = Engine::new(field, from, &self.options, events.clone(), &self.sensitivities)?;
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
@@ -167,7 +207,11 @@ impl Integration {
 
     /// Begins anew where it stands with these values of the parameters.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), Fault> {
-        let stand = self.stand("a change of parameters")?;
+        let what = "a change of parameters";
+        let stand = self.stand(what)?;
+        if !self.sensitivities.is_empty() {
+            return Err(Fault::Unsupported { what, why: "there are sensitivities by them" });
+        }
         let (mut field, mut events) = (self.engine.field().clone(), self.events.clone());
         let (found, expected) = (values.len(), field.parameters().len());
         if found != expected {
@@ -175,7 +219,7 @@ impl Integration {
         }
         field.parameters_mut().copy_from_slice(values);
         events.set_parameters(values);
-        let engine = Engine::new(field, &stand, &self.options, events.clone())?;
+        let engine = Engine::new(field, &stand, &self.options, events.clone(), &self.sensitivities)?;
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())

@@ -7,7 +7,7 @@ use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
-use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
+use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Sensitivities, Stop};
 
 use crate::engine::Engine;
 use crate::entry::entry;
@@ -145,7 +145,8 @@ impl Plan<'_> {
             field.parameters_mut().copy_from_slice(&values);
             events.set_parameters(&values);
         }
-        Ok(Engine::new(field, &Checkpoint::start(self.t, &start), &self.options, Followed::new(events))?)
+        let (start, events) = (Checkpoint::start(self.t, &start), Followed::new(events));
+        Ok(Engine::new(field, &start, &self.options, events, &Sensitivities::new())?)
     }
 }
 

@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 27] = [
+const FILES: [&str; 28] = [
     "version.rs",
     "status.rs",
     "error.rs",
@@ -72,6 +72,7 @@ const FILES: [&str; 27] = [
     "kernel.rs",
     "solver.rs",
     "occurrences.rs",
+    "sensitivity.rs",
     "dense.rs",
     "checkpoint.rs",
     "statistics.rs",
