@@ -126,8 +126,7 @@ fn derivatives_over_events_are_those_of_whole_motions() {
             let (motion, start) = (&mut differentiated.motion, differentiated.start.clone());
             let run = solve_with_sensitivities_and_events(
                 motion,
-                0.0,
-                &start,
+                (0.0, &start),
                 &[T_END],
                 &options(),
                 &wanted,

@@ -13,24 +13,28 @@ use pc::*;
 
 fn differentiated(name: &str, form: pc_form) -> System {
     let model = Model::named(name);
+    // SAFETY: a live handle, and arrays as long as said.
     call(|error| unsafe { pc_model_differentiate(model.0, 1, error) }).unwrap();
     model.system(form).unwrap()
 }
 
 fn add(solver: &Solver, parameter: usize, start: &[f64]) -> Result<(), Refusal> {
     let data = if start.is_empty() { ptr::null() } else { start.as_ptr() };
+    // SAFETY: a live handle, and arrays as long as said.
     call(|error| unsafe { pc_solver_add_sensitivity(solver.0, parameter, data, start.len(), error) })
 }
 
 fn column(solver: &Solver, number: usize, dim: usize) -> Result<Vec<f64>, Refusal> {
     let mut column = vec![f64::NAN; dim];
     let (data, len) = (column.as_mut_ptr(), column.len());
+    // SAFETY: a live handle, and arrays as long as said.
     call(|error| unsafe { pc_solver_sensitivity(solver.0, number, data, len, error) }).map(|()| column)
 }
 
 fn start_by(system: &System, parameter: usize) -> Result<Vec<f64>, Refusal> {
     let mut column = vec![f64::NAN; system.dim()];
     let (data, len) = (column.as_mut_ptr(), column.len());
+    // SAFETY: a live handle, and arrays as long as said.
     call(|error| unsafe { pc_system_start_by_parameter(system.0, parameter, data, len, error) })
         .map(|()| column)
 }
@@ -86,6 +90,7 @@ fn what_has_no_sensitivities_is_refused() {
     solver.advance(0.1).0.unwrap();
     let refusal = add(&solver, 1, &[]).unwrap_err();
     assert_eq!(refusal.message, "a sensitivity comes before the first step, and there has been one");
+    // SAFETY: a live handle, and arrays as long as said.
     let refusal = call(|error| unsafe { pc_solver_take_parameters(solver.0, system.0, error) }).unwrap_err();
     assert_eq!(refusal.status, PC_UNSUPPORTED);
 
@@ -98,6 +103,7 @@ fn what_has_no_sensitivities_is_refused() {
         "[parameters]\na = 1.0\nb = \"2*a\"\n[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"b*x'^2/2\"\n",
     )
     .unwrap();
+    // SAFETY: a live handle, and arrays as long as said.
     call(|error| unsafe { pc_model_differentiate(followed.0, 1, error) }).unwrap();
     let refusal = start_by(&followed.system(pc_form::PC_POINCARE).unwrap(), 0).unwrap_err();
     assert_eq!((refusal.status, refusal.line), (PC_INCONSISTENT_MODEL, 2));
@@ -115,6 +121,7 @@ fn statistics_tell_what_shortened_the_steps() {
     solver.advance(10.0).0.unwrap();
     let mut work = pc_statistics::default();
     let read = |work: &mut pc_statistics, size| {
+        // SAFETY: a live handle, and arrays as long as said.
         call(|error| unsafe { pc_solver_statistics(solver.0, work, size, error) }).unwrap();
     };
     read(&mut work, size_of::<pc_statistics>());

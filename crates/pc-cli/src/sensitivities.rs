@@ -61,8 +61,7 @@ impl Derivatives {
         let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
         let solved = solve_with_sensitivities_and_events(
             motion,
-            t_start,
-            start,
+            (t_start, start),
             times,
             options,
             &self.wanted,
@@ -71,7 +70,7 @@ impl Derivatives {
         );
         let (reached, error) = match solved {
             Ok(reached) => (reached, None),
-            Err((reached, error)) => (*reached, Some(error)),
+            Err(failure) => (failure.reached, Some(failure.error)),
         };
         let HybridSensitivities { trajectory, occurrences, ending } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();

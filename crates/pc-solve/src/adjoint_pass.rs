@@ -143,6 +143,9 @@ fn there<F: VectorField, E: Events>(
     Ok(There { marks, has_jumps, end, statistics })
 }
 
+/// The equations of one functional, and λ.
+type Paused<F, G> = (AdjointField<F, G>, Vec<f64>);
+
 /// The way back of one functional.
 struct Way<F, G> {
     back: Option<Cvode<AdjointField<F, G>>>,
@@ -188,7 +191,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
     }
 
     /// Adds up the integrals, and takes the equations and λ out.
-    fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<(AdjointField<F, G>, Vec<f64>)>, SolveError> {
+    fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<Paused<F, G>>, SolveError> {
         let Some(back) = self.back.take() else { return Ok(None) };
         let mut integrals = back.quadratures()?;
         if let Some(j) = not_finite(&integrals) {

@@ -76,8 +76,8 @@ pub use options::{Method, NonlinearSolver, Options, Tolerance};
 pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
 pub use sensitivity::{Correction, Sensitivities, SensitivityStatistics};
 pub use sensitivity_trajectory::{
-    HybridSensitivities, SensitivityFailure, SensitivityTrajectory, solve_dense_with_sensitivities,
-    solve_with_sensitivities, solve_with_sensitivities_and_events,
+    HybridSensitivities, HybridSensitivityFailure, SensitivityFailure, SensitivityTrajectory,
+    solve_dense_with_sensitivities, solve_with_sensitivities, solve_with_sensitivities_and_events,
 };
 pub use solve::{
     HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,

@@ -129,20 +129,20 @@ pub struct HybridSensitivities {
 }
 
 /// As [`solve_with_sensitivities`], with events: S jumps where a reset does, by
-/// [its derivatives](Events::by_parameter). `output` sees each output time with its state, and may stop the integration.
+/// [its derivatives](Events::by_parameter). The motion begins at (t0, y0); `output` sees each output time with its state, and
+/// may stop the integration.
 ///
 /// # Errors
-/// The error, with what was reached before.
+/// [`HybridSensitivityFailure`] with what was reached before.
 pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     field: F,
-    t0: f64,
-    y0: &[f64],
+    (t0, y0): (f64, &[f64]),
     times: &[f64],
     options: &Options,
     sensitivities: &Sensitivities,
     events: E,
     mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<HybridSensitivities, (Box<HybridSensitivities>, SolveError)> {
+) -> Result<HybridSensitivities, Box<HybridSensitivityFailure>> {
     let trajectory = SensitivityTrajectory::new(field.dim(), sensitivities.len());
     let mut reached = HybridSensitivities { trajectory, occurrences: Vec::new(), ending: None };
     let mut options = options.clone();
@@ -150,7 +150,7 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     let start = Cvode::with_sensitivities(field, t0, y0, &options, sensitivities);
     let mut hybrid = match start.and_then(|cvode| cvode.with_events(events)) {
         Ok(hybrid) => hybrid,
-        Err(error) => return Err((Box::new(reached), error)),
+        Err(error) => return Err(Box::new(HybridSensitivityFailure { reached, error })),
     };
     let keep = |t: f64, y: &[f64], matrix: &[f64]| {
         reached.trajectory.motion.push(t, y);
@@ -166,7 +166,7 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     reached.trajectory.motion.finish(complete, hybrid.statistics());
     match result {
         Ok(ending) => Ok(HybridSensitivities { ending: Some(ending), ..reached }),
-        Err(error) => Err((Box::new(reached), error)),
+        Err(error) => Err(Box::new(HybridSensitivityFailure { reached, error })),
     }
 }
 
@@ -193,4 +193,26 @@ pub fn solve_dense_with_sensitivities<F: VectorField>(
         ControlFlow::Continue(())
     })?;
     Ok((motion, matrix))
+}
+
+/// A failed [`solve_with_sensitivities_and_events`] with what it had reached.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct HybridSensitivityFailure {
+    /// Outputs and occurrences before the failure.
+    pub reached: HybridSensitivities,
+    /// What went wrong.
+    pub error: SolveError,
+}
+
+impl fmt::Display for HybridSensitivityFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl Error for HybridSensitivityFailure {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.error.source()
+    }
 }

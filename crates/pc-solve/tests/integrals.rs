@@ -1,7 +1,5 @@
 //! Integrals along motions against closed forms.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
