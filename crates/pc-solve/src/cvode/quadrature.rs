@@ -37,6 +37,8 @@ impl<F: VectorField> Cvode<F> {
     /// They may be had together with [sensitivities](Cvode::with_sensitivities): then
     /// [`and_integrals`](Cvode::and_integrals) adds them.
     ///
+    /// A [checkpoint](Cvode::checkpoint) has none of them: what goes on from one is asked for integrals anew, which begin at 0.
+    ///
     /// # Errors
     /// As for [`new`](Cvode::new); [`SolveError::Input`] if what is asked for is not valid.
     pub fn with_integrals(
