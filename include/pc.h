@@ -491,6 +491,11 @@ typedef struct {
    * End of the last step, which may lie beyond the time of the solver.
    */
   double step_time;
+  /**
+   * Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
+   * does not let expect: the beginning of a pulse, a jump.
+   */
+  uint64_t limited_steps;
 } pc_statistics;
 
 /**
@@ -662,10 +667,18 @@ pc_status pc_model_observe_reactions(pc_model *model,
                                      pc_error **error);
 
 /**
+ * Whether systems of the model are derived with their derivatives by parameters, which pc_solver_add_sensitivity takes. Not 0
+ * is yes.
+ */
+pc_status pc_model_differentiate(pc_model *model,
+                                 int yes,
+                                 pc_error **error);
+
+/**
  * The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
  * wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
  * pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
- * pc_model_add_external_force.
+ * pc_model_differentiate, pc_model_add_external_force.
  */
 pc_status pc_model_text(const pc_model *model,
                         char **text,
@@ -1684,6 +1697,40 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
 pc_status pc_solver_terminal_event(const pc_solver *solver,
                                    size_t *event,
                                    pc_error **error);
+
+/**
+ * Writes the derivative of the start of the model by parameter number `parameter`, from 0: its start values may be expressions
+ * in parameters. It derives the equations twice. PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input
+ * with a table, and for a parameter in whose expression others are.
+ */
+pc_status pc_system_start_by_parameter(const pc_system *system,
+                                       size_t parameter,
+                                       double *column,
+                                       size_t column_length,
+                                       pc_error **error);
+
+/**
+ * Has a solver integrate one more sensitivity with the motion, before the first step: the derivative of the state by parameter
+ * number `parameter`, from 0, of a start with the derivative `start`, as pc_system_start_by_parameter gives it for that of the
+ * model; NULL, of length 0, for a start that does not depend on the parameter. The model has to be one of pc_model_differentiate.
+ * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an event of the program does. By an
+ * input with a table they are the change when all its values are raised alike.
+ */
+pc_status pc_solver_add_sensitivity(pc_solver *solver,
+                                    size_t parameter,
+                                    const double *start,
+                                    size_t start_length,
+                                    pc_error **error);
+
+/**
+ * Writes sensitivity number `number`, from 0 in the order in which they were added, where the integration stands, as long as the
+ * state.
+ */
+pc_status pc_solver_sensitivity(const pc_solver *solver,
+                                size_t number,
+                                double *column,
+                                size_t column_length,
+                                pc_error **error);
 
 /**
  * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal step, from the

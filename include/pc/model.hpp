@@ -188,6 +188,7 @@ public:
     model &keep(const std::string &integral) { return say(pc_model_keep, integral.c_str()); }
     model &project_start(bool yes = true) { return say(pc_model_project_start, yes); }
     model &observe_reactions(bool yes = true) { return say(pc_model_observe_reactions, yes); }
+    model &differentiate(bool yes = true) { return say(pc_model_differentiate, yes); }
 
     /// How the program `pc` runs the model; a solver has its own options.
     model &end_time(double t) { return say(pc_model_set_end_time, t); }

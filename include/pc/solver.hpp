@@ -72,6 +72,19 @@ public:
     /// Goes on with the parameters and inputs of the system as they are now.
     void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
 
+    /// Integrates the derivative of the state by a parameter too, of a start that has this derivative, or 0 if it is empty.
+    void add_sensitivity(std::size_t parameter, const vector &start = {})
+    {
+        detail::call(pc_solver_add_sensitivity, get(), parameter, start.empty() ? nullptr : start.data(), start.size());
+    }
+    /// Such a derivative where the integration stands.
+    vector sensitivity(std::size_t number) const
+    {
+        vector column(dim_);
+        detail::call(pc_solver_sensitivity, get(), number, column.data(), column.size());
+        return column;
+    }
+
     /// The state at t, or where an event or its observer ended the call: ended_by() and time() tell.
     vector advance(double t)
     {

@@ -92,6 +92,13 @@ public:
         detail::call(pc_system_start, get(), &start.first, start.second.data(), start.second.size());
         return start;
     }
+    /// The derivative of that state by a parameter.
+    vector start_by_parameter(std::size_t parameter) const
+    {
+        vector column(dim());
+        detail::call(pc_system_start_by_parameter, get(), parameter, column.data(), column.size());
+        return column;
+    }
     vector parameters() const
     {
         vector values(parameter_count());

@@ -4,7 +4,7 @@
 
 use pc_mech::{Graph, Motion, VectorField};
 use pc_model::{Builtin, Model};
-use pc_solve::{Cvode, Method, Options, solve};
+use pc_solve::{Integration, Method, Options, solve};
 
 /// The motion of a built-in model in which these integrals are kept and no others, and its start.
 fn motion(name: &str, kept: &[&str]) -> (Motion, Vec<f64>) {
@@ -27,10 +27,10 @@ fn drift(name: &str, kept: &[&str], observable: &str, method: Method) -> (f64, f
     let level = motion.observe(0.0, &start)[j];
     let mut watch = motion.clone();
     let options = Options::new(method).relative_tolerance(1e-9).absolute_tolerance(1e-9);
-    let mut cvode = Cvode::new(&mut motion, 0.0, &start, &options).unwrap();
+    let mut cvode = Integration::new(&mut motion, 0.0, &start, &options).unwrap();
     let (mut worst, mut residual): (f64, f64) = (0.0, 0.0);
     for step in 0..100_000 {
-        let t = cvode.step(1e9).unwrap();
+        let t = cvode.step_towards(1e9).unwrap();
         if step % 10 == 0 {
             worst = worst.max((watch.observe(t, cvode.state())[j] - level).abs());
             residual =

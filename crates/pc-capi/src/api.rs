@@ -20,6 +20,7 @@ pub(crate) mod observe;
 pub(crate) mod occurrences;
 pub(crate) mod options;
 pub(crate) mod rates;
+pub(crate) mod sensitivity;
 pub(crate) mod settings;
 pub(crate) mod solver;
 pub(crate) mod source;

@@ -32,6 +32,7 @@ pub use api::observe::*;
 pub use api::occurrences::*;
 pub use api::options::*;
 pub use api::rates::*;
+pub use api::sensitivity::*;
 pub use api::settings::*;
 pub use api::solver::*;
 pub use api::source::*;

@@ -49,7 +49,7 @@ fn members_stand_where_the_interface_says() {
         }
         pc_statistics {
             steps, rhs_evaluations, jacobian_evaluations, error_test_failures, nonlinear_iterations, nonlinear_failures,
-            linear_setups, linear_iterations, last_order, last_step, next_step, step_time,
+            linear_setups, linear_iterations, last_order, last_step, next_step, step_time, limited_steps,
         }
         pc_member { number, status, message, times, states, rows, dim }
     };

@@ -125,7 +125,8 @@ fn the_integration_is_that_of_the_solver_below() {
     for name in ["heavy-top-lagrange", "rod"] {
         let (system, (motion, t, start)) = (System::of(name), motion(name));
         let times = [1.0, 2.0, 5.0];
-        let mut expected = pc_solve::Cvode::new(motion, t, &start, &pc_solve::Options::default()).unwrap();
+        let mut expected =
+            pc_solve::Integration::new(motion, t, &start, &pc_solve::Options::default()).unwrap();
         let mut solver = ptr::null_mut();
         // SAFETY: live handles, arrays as said; the solver is freed once.
         unsafe {
@@ -136,7 +137,7 @@ fn the_integration_is_that_of_the_solver_below() {
             for time in times {
                 call(|error| pc_solver_advance(solver, time, y.as_mut_ptr(), y.len(), error)).unwrap();
                 // The same operations in the same order.
-                assert_eq!(y, expected.advance_to(time).unwrap(), "{name}");
+                assert_eq!(y, expected.state_at(time).unwrap(), "{name}");
             }
             let mut counts = pc_statistics::default();
             call(|error| pc_solver_statistics(solver, &raw mut counts, size_of::<pc_statistics>(), error))

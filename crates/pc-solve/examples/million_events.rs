@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow::Continue;
 
-use pc_solve::{Cvode, Event, FnEvents, Method, Options, from_fn};
+use pc_solve::{Event, FnEvents, Integration, Method, Options, from_fn};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let clock = from_fn(1, |_, _: &[f64], ydot: &mut [f64]| {
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         },
     );
     let options = Options::new(Method::Adams).relative_tolerance(1e-6).absolute_tolerance(1e-6);
-    let mut saw = Cvode::new(clock, 0.0, &[0.0], &options)?.with_events(events)?;
+    let mut saw = Integration::new(clock, 0.0, &[0.0], &options)?.with_events(events)?;
     let mut count = 0_u64;
     saw.advance_to(500_000.25, |_| {
         count += 1;

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
-use pc_solve::{Method, Options, Trajectory, VectorField, from_fn, solve_observed};
+use pc_solve::{Method, Options, Solve, Trajectory, VectorField, from_fn};
 
 const MU: f64 = 1000.0;
 
@@ -51,13 +51,13 @@ fn main() -> ExitCode {
         }
         ControlFlow::Continue(())
     };
-    match solve_observed(van_der_pol(), 0.0, &[2.0, 0.0], &times, &options, progress) {
-        Ok(motion) => {
-            print(&motion);
+    match Solve::new(van_der_pol(), 0.0, &[2.0, 0.0]).method(&options).run_observed(&times, progress) {
+        Ok(solution) => {
+            print(&solution.trajectory);
             ExitCode::SUCCESS
         }
         Err(failure) => {
-            print(&failure.reached); // What was reached is not lost.
+            print(&failure.reached.trajectory); // What was reached is not lost.
             eprintln!("{failure}");
             if let Some(cause) = failure.source() {
                 eprintln!("because {cause}");

@@ -86,6 +86,7 @@ impl Reason {
             | Reason::EndsEarly { .. }
             | Reason::Collapsed { .. }
             | Reason::Stalled
+            | Reason::Rates { .. }
             | Reason::Event { .. }
             | Reason::Reset { .. }
             | Reason::Accumulation { .. }
@@ -122,6 +123,9 @@ impl Reason {
                 "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
             ),
             Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+            Reason::Rates { t } => {
+                write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")
+            }
             Reason::Event { event, t } => {
                 write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
             }
@@ -204,6 +208,12 @@ pub enum Reason {
     /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
     /// wall it in.
     Stalled,
+
+    /// The vector field could not be evaluated, by a method that has no shorter step to try.
+    Rates {
+        /// Time of the state at which it was evaluated.
+        t: f64,
+    },
 
     /// The function of an event, or of one together with it, could not be evaluated.
     Event {
@@ -671,23 +681,29 @@ pub enum InputError {
     NoStep,
 }
 
-/// A failed [`solve`](crate::integration::solve()) with the outputs it had reached.
+/// A failed integration, such as [`solve`](crate::solve()), with what it had reached.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct SolveFailure {
+pub struct SolveFailure<R = Trajectory> {
     /// The outputs before the failure.
-    pub reached: Trajectory,
+    pub reached: R,
     /// What went wrong.
     pub error: SolveError,
 }
 
-impl fmt::Display for SolveFailure {
+impl<R> SolveFailure<R> {
+    pub(crate) fn map<T>(self, part: impl FnOnce(R) -> T) -> SolveFailure<T> {
+        SolveFailure { reached: part(self.reached), error: self.error }
+    }
+}
+
+impl<R> fmt::Display for SolveFailure<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.error.fmt(f)
     }
 }
 
-impl Error for SolveFailure {
+impl<R: fmt::Debug> Error for SolveFailure<R> {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         self.error.source()
     }

@@ -18,7 +18,8 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`Options`] chooses method and tolerances; [`Cvode`] is the integration itself, to take it step by step.
+//! [`Options`] chooses method and tolerances; [`Solve`] adds events and other methods, and [`Integration`] is the integration
+//! itself, to take it step by step.
 //!
 //! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
 //! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
@@ -33,36 +34,36 @@ mod events;
 mod integration;
 mod linear;
 mod lyapunov;
+mod runge_kutta;
 mod sensitivity;
 
-pub use checkpoint::checkpoint::{
-    Checkpoint, CheckpointError, solve_checkpointed, solve_with_events_checkpointed,
-};
-pub use cvode::cvode::{Cvode, Ending};
-pub use cvode::hybrid::hybrid::Hybrid;
+pub use checkpoint::checkpoint::{Checkpoint, CheckpointError, solve_checkpointed};
+pub use cvode::cvode::Cvode;
 pub use cvode::return_code::Code;
 pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
 pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
-pub use events::events::{Accumulation, FnEvents, Occurrence};
+pub use events::events::{Accumulation, FnEvents, NoEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};
 pub use integration::inequality::Inequality;
 pub use integration::integrals::{Integrals, solve_with_integrals};
+pub use integration::integration::{Ending, Integration};
+pub use integration::limits::Limits;
+pub use integration::observer::{Observed, Observer};
 pub use integration::options::{Method, NonlinearSolver, Options, Tolerance};
-pub use integration::solve::{
-    HybridFailure, HybridMotion, solve, solve_dense, solve_observed, solve_with_events,
-    solve_with_events_observed,
-};
+pub use integration::solve::{IntegrationMethod, Solution, Solve, solve};
 pub use integration::statistics::Statistics;
+pub use integration::stepper::{LastStep, Stepper};
 pub use integration::trajectory::Trajectory;
 pub use linear::linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
+pub use runge_kutta::{FixedStep, RungeKutta4};
 pub use sensitivity::adjoint::{
     AdjointOptions, Functional, Gradient, adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events,
 };
 pub use sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
 pub use sensitivity::trajectory::{
-    HybridSensitivities, SensitivityFailure, SensitivityTrajectory, solve_dense_with_sensitivities,
-    solve_with_sensitivities, solve_with_sensitivities_and_events,
+    SensitivitySolution, SensitivityTrajectory, solve_dense_with_sensitivities, solve_with_sensitivities,
+    solve_with_sensitivities_and_events,
 };

@@ -4,6 +4,8 @@
 //! coming out. `adjoint` goes backwards for a gradient, with `adjoint_field`. `linearisation` is ∂f/∂y by whatever the
 //! field offers.
 
+pub(crate) mod saltation;
+
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;
 pub(crate) mod adjoint_pass;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use pc_expr::{Failure, VectorField};
-use pc_solve::{Cvode, Method, Options, solve};
+use pc_solve::{Integration, Method, Observed, Options, solve};
 
 /// ẏ = a y with the factor of the leg between two breaks, which it is told.
 #[derive(Clone)]
@@ -74,13 +74,13 @@ fn each_leg_is_integrated_by_itself() {
 
 #[test]
 fn steps_end_at_breaks() {
-    let mut cvode = Cvode::new(Legs::new(), 0.0, &[1.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(Legs::new(), 0.0, &[1.0], &Options::default()).unwrap();
     let mut ends = Vec::new();
     let step = |t, _: &[f64]| {
         ends.push(t);
         ControlFlow::Continue(())
     };
-    cvode.run_observed(&[5.0], |_, _| ControlFlow::Continue(()), step).unwrap();
+    cvode.run_observed(&[5.0], Observed::new(|_, _| ControlFlow::Continue(())).steps(step)).unwrap();
     for at in Legs::new().breaks {
         assert!(ends.contains(&at), "{at}");
     }
@@ -93,8 +93,8 @@ fn backward_likewise() {
     let mut field = Legs::new();
     field.leg = 3;
     let start = field.exact(4.0);
-    let mut cvode = Cvode::new(field, 4.0, &[start], &options).unwrap();
-    let end = cvode.advance_to(0.0).unwrap()[0];
+    let mut cvode = Integration::new(field, 4.0, &[start], &options).unwrap();
+    let end = cvode.state_at(0.0).unwrap()[0];
     assert!((end - 1.0).abs() < 1e-7, "{end}");
 }
 
@@ -111,20 +111,20 @@ fn a_field_is_changed_where_the_integration_stands() {
             Ok(())
         }
     }
-    let mut cvode = Cvode::new(Input(2.0), 0.0, &[0.0], &Options::default()).unwrap();
-    assert!((cvode.advance_to(1.0).unwrap()[0] - 2.0).abs() < 1e-12);
+    let mut cvode = Integration::new(Input(2.0), 0.0, &[0.0], &Options::default()).unwrap();
+    assert!((cvode.state_at(1.0).unwrap()[0] - 2.0).abs() < 1e-12);
     cvode.change(|field| field.0 = -3.0).unwrap();
     assert_eq!(cvode.time(), 1.0);
-    assert!((cvode.advance_to(3.0).unwrap()[0] + 4.0).abs() < 1e-12);
+    assert!((cvode.state_at(3.0).unwrap()[0] + 4.0).abs() < 1e-12);
 }
 
 /// A step that may go beyond where it leads does not cross the break there, nor one behind.
 #[test]
 fn targets_at_and_before_breaks_are_reached_within_the_leg() {
     let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-14);
-    let mut cvode = Cvode::new(Legs::new(), 0.0, &[1.0], &options).unwrap();
+    let mut cvode = Integration::new(Legs::new(), 0.0, &[1.0], &options).unwrap();
     for t in [0.999, 1.0, 1.2, 1.25, 2.999, 3.0, 3.5] {
-        let y = cvode.advance_to(t).unwrap()[0];
+        let y = cvode.state_at(t).unwrap()[0];
         let exact = cvode.field().exact(t);
         assert!((y / exact - 1.0).abs() < 1e-7, "y({t}) = {y}, not {exact}");
     }

@@ -6,7 +6,9 @@
 mod model;
 
 use model::Chain;
-use pc_solve::{Cvode, Krylov, LinearSolver, Method, Options, Statistics, Trajectory, VectorField, solve};
+use pc_solve::{
+    Integration, Krylov, LinearSolver, Method, Options, Statistics, Trajectory, VectorField, solve,
+};
 
 fn motion(chain: Chain, end: f64, solver: LinearSolver) -> Trajectory {
     let options =
@@ -92,6 +94,6 @@ fn quotients_find_the_same_motion_by_few_evaluations() {
 fn the_chain_is_found_to_be_sparse() {
     let chain = Chain::new(200);
     let start = chain.start();
-    let cvode = Cvode::new(chain, 0.0, &start, &Options::new(Method::Bdf)).unwrap();
+    let cvode = Integration::new(chain, 0.0, &start, &Options::new(Method::Bdf)).unwrap();
     assert_eq!(cvode.linear_solver(), Some(&LinearSolver::Sparse));
 }

@@ -5,8 +5,8 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
 use pc_solve::{
-    Checkpoint, CheckpointError, Code, Cvode, Failure, Method, Options, SolveError, Trajectory, VectorField,
-    from_fn, solve, solve_checkpointed,
+    Checkpoint, CheckpointError, Code, Failure, Integration, Method, NoEvents, Options, SolveError,
+    Trajectory, VectorField, from_fn, solve, solve_checkpointed,
 };
 
 /// Van der Pol's equation with μ = 20, and its Jacobian.
@@ -55,7 +55,7 @@ const GO_ON: fn(f64, &[f64]) -> ControlFlow<()> = |_, _| ControlFlow::Continue((
 
 /// The motion with all its checkpoints, as bytes.
 fn undisturbed<F: VectorField>(
-    field: impl FnMut() -> F,
+    mut field: impl FnMut() -> F,
     times: &[f64],
     options: &Options,
     steps: u64,
@@ -66,8 +66,9 @@ fn undisturbed<F: VectorField>(
         checkpoints.push(checkpoint.to_bytes("a label"));
     };
     let from = Checkpoint::start(0.0, &[2.0_f64.sqrt().recip(), 2.0_f64.sqrt().recip()]);
-    let motion = solve_checkpointed(field, from, times, options, every(steps), keep, GO_ON).unwrap();
-    (motion, checkpoints)
+    let motion =
+        solve_checkpointed(options, || (field(), NoEvents), from, times, every(steps), keep, GO_ON).unwrap();
+    (motion.trajectory, checkpoints)
 }
 
 fn goes_on<F: VectorField>(field: impl Fn() -> F, options: &Options) {
@@ -80,10 +81,18 @@ fn goes_on<F: VectorField>(field: impl Fn() -> F, options: &Options) {
             for bytes in checkpoints.iter().step_by(stride).chain(checkpoints.last()) {
                 let (from, label) = Checkpoint::from_bytes(bytes).unwrap();
                 assert_eq!(label, "a label");
-                let resumed =
-                    solve_checkpointed(&field, from, times, options, every(steps), |_, _| (), GO_ON).unwrap();
+                let resumed = solve_checkpointed(
+                    options,
+                    || (field(), NoEvents),
+                    from,
+                    times,
+                    every(steps),
+                    |_, _| (),
+                    GO_ON,
+                )
+                .unwrap();
                 // Outputs, times and work: equal numbers that are not zero are the same bits.
-                assert_eq!(resumed, motion);
+                assert_eq!(resumed.trajectory, motion);
             }
         }
     }
@@ -129,13 +138,16 @@ fn a_stopped_motion_leaves_its_last_checkpoint() {
         steps += 1;
         if steps == 100 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let part = solve_checkpointed(|| Turning, from, &times, &options, every(30), keep, stop).unwrap();
+    let part = solve_checkpointed(&options, || (Turning, NoEvents), from, &times, every(30), keep, stop)
+        .unwrap()
+        .trajectory;
     let last = last.unwrap();
     assert!(!part.is_complete() && part.states() == &motion.states()[..part.states().len()]);
     assert!(last.outputs().len() <= part.len() && last.statistics().steps == 90);
     let resumed =
-        solve_checkpointed(|| Turning, last, &times, &options, every(30), |_, _| (), GO_ON).unwrap();
-    assert_eq!(resumed, motion);
+        solve_checkpointed(&options, || (Turning, NoEvents), last, &times, every(30), |_, _| (), GO_ON)
+            .unwrap();
+    assert_eq!(resumed.trajectory, motion);
 }
 
 #[test]
@@ -150,23 +162,41 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
     for steps in [20, 100] {
         let from = Checkpoint::start(0.0, &[1.0]);
         let options = Options::default().max_steps(1_000_000);
-        let failure = solve_checkpointed(field, from, &[0.5, 2.0], &options, every(steps), |_, _| (), GO_ON)
-            .unwrap_err();
-        assert_eq!(failure.reached.len(), 1);
+        let failure = solve_checkpointed(
+            &options,
+            || (field(), NoEvents),
+            from,
+            &[0.5, 2.0],
+            every(steps),
+            |_, _| (),
+            GO_ON,
+        )
+        .unwrap_err();
+        assert_eq!(failure.reached.trajectory.len(), 1);
         let (t, _) = failure.error.reached().unwrap();
         assert!((t - 1.0).abs() < 1e-6, "{t}");
     }
     let from = Checkpoint::start(0.0, &[1.0]);
     let options = Options::default().max_steps(35);
     let times = [0.01, 0.9];
-    let failure = solve_checkpointed(field, from, &times, &options, every(10), |_, _| (), GO_ON).unwrap_err();
+    let failure =
+        solve_checkpointed(&options, || (field(), NoEvents), from, &times, every(10), |_, _| (), GO_ON)
+            .unwrap_err();
     assert_eq!(failure.error.code(), Some(Code::TooMuchWork));
     assert!(
         failure.error.to_string().contains("35 internal steps taken before reaching t = 0.9"),
         "{failure}"
     );
     let wrong = Checkpoint::start(0.0, &[1.0, 2.0]);
-    let failure = solve_checkpointed(field, wrong, &[1.0], &Options::default(), every(1), |_, _| (), GO_ON);
+    let failure = solve_checkpointed(
+        &Options::default(),
+        || (field(), NoEvents),
+        wrong,
+        &[1.0],
+        every(1),
+        |_, _| (),
+        GO_ON,
+    );
     assert!(matches!(failure.unwrap_err().error, SolveError::Input(_)), "two numbers for one component");
 }
 
@@ -181,8 +211,8 @@ fn numbers_keep_their_bits() {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let mut cvode = Cvode::new(Turning, 0.0, &[1.0, 0.0], &Options::default()).unwrap();
-    cvode.advance_to(1.0).unwrap();
+    let mut cvode = Integration::new(Turning, 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    cvode.state_at(1.0).unwrap();
     let bytes = cvode.checkpoint().to_bytes("model");
     assert_eq!(Checkpoint::from_bytes(&bytes).unwrap().0.state(), cvode.state());
     for length in 0..bytes.len() {
@@ -219,11 +249,19 @@ fn the_step_limit_is_that_of_a_run_without_checkpoints() {
     for steps in [50, 60, 70, 79] {
         let run = |most| {
             let from = Checkpoint::start(0.0, &[1.0, 0.0]);
-            solve_checkpointed(circle, from, &times, &options(most), every(steps), |_, _| (), GO_ON)
+            solve_checkpointed(
+                &options(most),
+                || (circle(), NoEvents),
+                from,
+                &times,
+                every(steps),
+                |_, _| (),
+                GO_ON,
+            )
         };
-        assert!(run(80).unwrap().is_complete(), "{steps}");
+        assert!(run(80).unwrap().trajectory.is_complete(), "{steps}");
         let failure = run(40).unwrap_err();
         assert_eq!(failure.error.code(), Some(Code::TooMuchWork));
-        assert!(failure.reached.is_empty());
+        assert!(failure.reached.trajectory.is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! Vector fields given by closures.
 
-use pc_solve::{Cvode, Failure, Options, Pattern, VectorField, from_fn};
+use pc_solve::{Failure, Integration, Options, Pattern, VectorField, from_fn};
 
 fn still(_t: f64, _y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
     ydot.fill(0.0);
@@ -96,7 +96,7 @@ fn integrations_of_closures_can_be_sent() {
         product.fill(0.0);
         Ok(())
     });
-    let mut cvode = Cvode::new(field, 0.0, &[0.0], &Options::default()).unwrap();
-    let end = std::thread::spawn(move || cvode.advance_to(1.0).map(|y| y[0]).unwrap());
+    let mut cvode = Integration::new(field, 0.0, &[0.0], &Options::default()).unwrap();
+    let end = std::thread::spawn(move || cvode.state_at(1.0).map(|y| y[0]).unwrap());
     assert!((end.join().unwrap() - 1.0).abs() < 1e-9);
 }

@@ -6,8 +6,8 @@ use std::cell::Cell;
 use std::ops::ControlFlow::{Break, Continue};
 
 use pc_solve::{
-    Cvode, DenseOutput, Ending, Event, Failure, FnEvents, InputError, Method, Options, Segment, VectorField,
-    from_fn, solve_dense,
+    DenseOutput, Ending, Event, Failure, FnEvents, InputError, Integration, Method, Options, Segment, Solve,
+    VectorField, from_fn,
 };
 
 fn oscillator() -> impl VectorField {
@@ -18,7 +18,7 @@ fn oscillator() -> impl VectorField {
 }
 
 fn circle(end: f64, options: &Options) -> DenseOutput {
-    solve_dense(oscillator(), 0.0, &[1.0, 0.0], end, options).unwrap()
+    Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(options).dense(end).unwrap()
 }
 
 /// Each segment begins exactly where the one before ends, and reaches its state there but for the rounding of a sum of
@@ -121,7 +121,7 @@ fn a_time_outside_is_refused() {
 /// between change nothing.
 #[test]
 fn segments_as_they_come() {
-    let mut cvode = Cvode::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut motion = DenseOutput::default();
     let mut spans = Vec::new();
     for end in [0.5, 1.0, 1.0001, 3.0] {
@@ -130,14 +130,14 @@ fn segments_as_they_come() {
             motion.extend([segment]);
             Continue(())
         };
-        assert_eq!(cvode.run_dense(end, keep).unwrap(), Ending::Completed);
+        assert_eq!(cvode.run_dense(end, keep, |_| Continue(())).unwrap(), Ending::Completed);
         assert_eq!(cvode.time(), end);
         assert_eq!(cvode.state(), motion.evaluate(end).unwrap());
     }
     assert_eq!(motion.span(), Some((0.0, 3.0)));
     assert!(spans.windows(2).all(|pair| pair[0].1 == pair[1].0));
     assert!(spans.contains(&(1.0, 1.0001)));
-    assert_eq!(cvode.run_dense(4.0, |_| Break(())).unwrap(), Ending::Stopped);
+    assert_eq!(cvode.run_dense(4.0, |_| Break(()), |_| Continue(())).unwrap(), Ending::Stopped);
     assert!(cvode.time() > 3.0 && cvode.time() <= 4.0);
 }
 
@@ -160,7 +160,8 @@ fn dense_output_with_resets() {
             )
             .with(Event::new("mark"), |t, _| Ok(t - 0.5));
         let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
-        let mut hybrid = Cvode::new(ball, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce).unwrap();
+        let mut hybrid =
+            Integration::new(ball, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce).unwrap();
         let (mut motion, mut events) = (DenseOutput::default(), Vec::new());
         let keep = |segment: Segment| {
             motion.extend([segment]);
@@ -216,7 +217,7 @@ fn segments_of_projected_states_fit_together() {
         }
     }
     let options = Options::default().relative_tolerance(1e-6).absolute_tolerance(1e-6);
-    let motion = solve_dense(Circle, 0.0, &[1.0, 0.0], 10.0, &options).unwrap();
+    let motion = Solve::new(Circle, 0.0, &[1.0, 0.0]).method(&options).dense(10.0).unwrap();
     let (mut before, mut after) = ([0.0; 2], [0.0; 2]);
     for pair in motion.segments().windows(2) {
         let t = pair[0].span().1;
@@ -228,8 +229,9 @@ fn segments_of_projected_states_fit_together() {
 
 #[test]
 fn the_step_limit_holds() {
-    let failed =
-        solve_dense(oscillator(), 0.0, &[1.0, 0.0], 1.0, &Options::default().max_steps(10).max_step(1e-3));
+    let failed = Solve::new(oscillator(), 0.0, &[1.0, 0.0])
+        .method(&Options::default().max_steps(10).max_step(1e-3))
+        .dense(1.0);
     let error = failed.unwrap_err();
     assert_eq!(error.code(), Some(pc_solve::Code::TooMuchWork));
     assert!(error.to_string().contains("10 internal steps taken before reaching t = 1"), "{error}");
@@ -243,11 +245,11 @@ fn an_interpolation_that_fails_moves_nothing() {
         Ok(())
     })
     .with_projection(|_, _| if broken.get() { Err(Failure::recoverable(std::fmt::Error)) } else { Ok(()) });
-    let mut motion = Cvode::new(field, 0.0, &[0.0], &Options::default().initial_step(0.4)).unwrap();
-    let here = motion.advance_to(0.3).unwrap().to_vec();
+    let mut motion = Integration::new(field, 0.0, &[0.0], &Options::default().initial_step(0.4)).unwrap();
+    let here = motion.state_at(0.3).unwrap().to_vec();
     broken.set(true);
     assert!(motion.interpolate(0.1, 0).is_err());
     assert_eq!((motion.time(), motion.state()), (0.3, &here[..]));
     broken.set(false);
-    assert!((motion.advance_to(0.35).unwrap()[0] - 0.35).abs() < 1e-15); // not behind the end of the step
+    assert!((motion.state_at(0.35).unwrap()[0] - 0.35).abs() < 1e-15); // not behind the end of the step
 }

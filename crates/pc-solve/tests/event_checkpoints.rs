@@ -5,9 +5,9 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow::{self, Break, Continue};
 
 use pc_solve::{
-    Checkpoint, CheckpointError, Code, Cvode, Ending, Event, Failure, FnEvents, Hybrid, HybridFailure,
-    HybridMotion, InputError, Method, Occurrence, Options, Reason, SolveError, VectorField, from_fn,
-    solve_checkpointed, solve_with_events, solve_with_events_checkpointed,
+    Checkpoint, CheckpointError, Code, Cvode, Ending, Event, Failure, FnEvents, InputError, Integration,
+    Method, NoEvents, Observed, Occurrence, Options, Reason, Solution, Solve, SolveError, SolveFailure,
+    VectorField, from_fn, solve_checkpointed,
 };
 
 type Rates = fn(f64, &[f64], &mut [f64]);
@@ -88,15 +88,15 @@ fn solve(
     options: &Options,
     steps: u64,
     save: impl FnMut(&Checkpoint, bool),
-) -> Result<HybridMotion, Box<HybridFailure>> {
+) -> Result<Solution, Box<SolveFailure<Solution>>> {
     let dim = from.state().len();
     let parts = || (field(rates, dim), events());
-    solve_with_events_checkpointed(parts, from, times, options, every(steps), save, GO_ON)
+    solve_checkpointed(options, parts, from, times, every(steps), save, GO_ON)
 }
 
 /// Up to 16 checkpoints of a motion, as bytes and back, lead to the same motion; how many there are.
 #[track_caller]
-fn goes_on(parts: Parts, y0: &[f64], times: &[f64], options: &Options, steps: u64) -> (HybridMotion, usize) {
+fn goes_on(parts: Parts, y0: &[f64], times: &[f64], options: &Options, steps: u64) -> (Solution, usize) {
     let mut kept = Vec::new();
     let keep = |checkpoint: &Checkpoint, last: bool| {
         assert!(!last);
@@ -144,8 +144,11 @@ fn a_motion_with_events_goes_on_from_any_checkpoint_with_the_same_bits() {
 fn checkpoints_leave_occurrences_where_they_are() {
     let options = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-14);
     for (parts, y0) in [(BALL, &[1.0, 0.0][..]), (BLOCK, &[-1.0, 0.0, 1.0]), (WATCHED, &[1.0, 0.0, 0.0])] {
-        let plain =
-            solve_with_events(field(parts.0, y0.len()), 0.0, y0, &[12.0], &options, (parts.1)()).unwrap();
+        let plain = Solve::new(field(parts.0, y0.len()), 0.0, y0)
+            .method(&options)
+            .events((parts.1)())
+            .run(&[12.0])
+            .unwrap();
         for steps in [20, 40] {
             let motion =
                 solve(parts, Checkpoint::start(0.0, y0), &[12.0], &options, steps, |_, _| ()).unwrap();
@@ -164,7 +167,7 @@ fn occurrences_accumulate_over_checkpoints() {
         let from = Checkpoint::start(0.0, &[1.0, 0.0]);
         *solve(BALL, from, &[1.0, 100.0], &Options::default(), steps, |_, _| ()).unwrap_err()
     };
-    let reason = |failure: HybridFailure| match failure.error {
+    let reason = |failure: SolveFailure<Solution>| match failure.error {
         SolveError::Integration(error) => (error.reason, failure.reached),
         other => panic!("{other}"),
     };
@@ -187,12 +190,21 @@ fn occurrences_accumulate_over_checkpoints() {
 fn an_integration_goes_on_from_wherever_it_stands() {
     let options = Options::default();
     let start = |parts: Parts, y0: &[f64]| {
-        Cvode::new(field(parts.0, y0.len()), 0.0, y0, &options).unwrap().with_events((parts.1)()).unwrap()
+        Integration::new(field(parts.0, y0.len()), 0.0, y0, &options)
+            .unwrap()
+            .with_events((parts.1)())
+            .unwrap()
     };
     let (landing, end) = (2.0_f64.sqrt(), 8.0);
-    let plain = solve_with_events(field(BALL.0, 2), 0.0, &[1.0, 0.0], &[end], &options, (BALL.1)()).unwrap();
+    let plain = Solve::new(field(BALL.0, 2), 0.0, &[1.0, 0.0])
+        .method(&options)
+        .events((BALL.1)())
+        .run(&[end])
+        .unwrap();
     let rest = |from: &Checkpoint, met: usize| {
-        let mut hybrid = Hybrid::resume(field(BALL.0, 2), (BALL.1)(), from, &options).unwrap();
+        let mut hybrid = Integration::resume(field(BALL.0, 2), from, &options)
+            .and_then(|resumed| resumed.with_events_of((BALL.1)(), from))
+            .unwrap();
         assert_eq!((hybrid.time(), hybrid.state()), (from.time(), from.state()));
         let mut seen = Vec::new();
         let ending = hybrid.advance_to(end, |occurrence| {
@@ -215,7 +227,10 @@ fn an_integration_goes_on_from_wherever_it_stands() {
     let mut due = 0;
     loop {
         // Step by step.
-        let ending = hybrid.run_observed(&[end], |_, _| Continue(()), |_| Continue(()), |_, _| Break(()));
+        let ending = hybrid.run_observed(
+            &[end],
+            Observed::new(|_, _| Continue(())).occurrences(|_| Continue(())).steps(|_, _| Break(())),
+        );
         if ending.unwrap() == Ending::Completed || hybrid.time() > 3.0 {
             break;
         }
@@ -243,9 +258,9 @@ fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
     };
     // One step to the end.
     let (still, options) = (|| field(|_, _, ydot| ydot.fill(0.0), 1), Options::default().initial_step(1.0));
-    let start = || Cvode::new(still(), 0.0, &[1.0], &options).unwrap().with_events(events()).unwrap();
+    let start = || Integration::new(still(), 0.0, &[1.0], &options).unwrap().with_events(events()).unwrap();
     let (mut found, mut hybrid) = ([Vec::new(), Vec::new()], start());
-    let mut to = |hybrid: &mut Hybrid<_, _>, t, part: usize| {
+    let mut to = |hybrid: &mut Integration<Cvode<_>, _>, t, part: usize| {
         let see = |occurrence: &Occurrence| {
             found[part].push((1e12 * occurrence.time).round() / 1e12);
             Break(())
@@ -253,11 +268,15 @@ fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
         hybrid.advance_to(t, see).unwrap()
     };
     while to(&mut hybrid, 1.0, 0) == Ending::Stopped {
-        hybrid = Hybrid::resume(still(), events(), &hybrid.checkpoint(), &options).unwrap();
+        hybrid = Integration::resume(still(), &hybrid.checkpoint(), &options)
+            .and_then(|resumed| resumed.with_events_of(events(), &hybrid.checkpoint()))
+            .unwrap();
     }
     let mut hybrid = start();
     while to(&mut hybrid, 0.55, 1) == Ending::Stopped {}
-    let mut hybrid = Hybrid::resume(still(), events(), &hybrid.checkpoint(), &options).unwrap();
+    let mut hybrid = Integration::resume(still(), &hybrid.checkpoint(), &options)
+        .and_then(|resumed| resumed.with_events_of(events(), &hybrid.checkpoint()))
+        .unwrap();
     while to(&mut hybrid, 1.0, 1) == Ending::Stopped {}
     found
 }
@@ -292,7 +311,7 @@ fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
         };
         let parts = || (field(BALL.0, 2), (BALL.1)());
         let from = Checkpoint::start(0.0, &[1.0, 0.0]);
-        let part = solve_with_events_checkpointed(parts, from, &times, &options, every(10), keep, step);
+        let part = solve_checkpointed(&options, parts, from, &times, every(10), keep, step);
         let (part, last) = (part.unwrap(), last.unwrap());
         assert_eq!(part.ending, Some(Ending::Stopped));
         assert_eq!(part.occurrences[..], whole.occurrences[..part.occurrences.len()]);
@@ -351,7 +370,9 @@ fn a_step_that_ends_where_it_began_is_no_leg() {
     let decay = || field(|_, y, ydot| ydot[0] = -1e4 * y[0], 1);
     let keep = |checkpoint: &Checkpoint, _| kept.push(checkpoint.time());
     let times = [1e6 + 1e-4];
-    let motion = solve_checkpointed(decay, from, &times, &options, every(1), keep, step).unwrap();
+    let motion = solve_checkpointed(&options, || (decay(), NoEvents), from, &times, every(1), keep, step)
+        .unwrap()
+        .trajectory;
     assert!(idle > 100 && motion.is_complete(), "{idle}");
     assert!(kept.windows(2).all(|pair| pair[0] < pair[1]), "each checkpoint is ahead of the last");
     // Steps of about 5e-9, as the tolerance has them, are rounded by up to 1.2e-10: by 1/40.

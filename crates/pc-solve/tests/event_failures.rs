@@ -7,8 +7,8 @@ use std::ops::ControlFlow::Continue;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use pc_solve::{
-    Cvode, Event, Failure, FnEvents, Hybrid, IntegrationError, Options, Reason, SolveError, VectorField,
-    from_fn, solve_with_events,
+    Cvode, Event, Failure, FnEvents, Integration, IntegrationError, Options, Reason, Solve, SolveError,
+    VectorField, from_fn,
 };
 
 #[derive(Debug, thiserror::Error)]
@@ -24,8 +24,10 @@ fn clock() -> impl VectorField {
     .with_names(["clock", "spare"])
 }
 
-fn hybrid(events: FnEvents<'_>) -> Result<Hybrid<impl VectorField, FnEvents<'_>>, SolveError> {
-    Cvode::new(clock(), 0.0, &[0.0, 0.0], &Options::default().max_step(0.1)).unwrap().with_events(events)
+fn hybrid(events: FnEvents<'_>) -> Result<Integration<Cvode<impl VectorField>, FnEvents<'_>>, SolveError> {
+    Integration::new(clock(), 0.0, &[0.0, 0.0], &Options::default().max_step(0.1))
+        .unwrap()
+        .with_events(events)
 }
 
 /// The error of an integration towards 3, which leaves it where the error says.
@@ -154,8 +156,11 @@ fn a_field_that_fails() {
         Ok(())
     });
     let events = FnEvents::new().with(Event::new("half"), |t, _| Ok(t - 0.5));
-    let failure =
-        solve_with_events(fails, 0.0, &[0.0], &[0.25, 2.0], &Options::default(), events).unwrap_err();
+    let failure = Solve::new(fails, 0.0, &[0.0])
+        .method(&Options::default())
+        .events(events)
+        .run(&[0.25, 2.0])
+        .unwrap_err();
     assert_eq!((failure.reached.trajectory.len(), failure.reached.occurrences.len()), (1, 1));
     let (time, state) = failure.error.reached().unwrap();
     assert!(time <= 1.0 && time > 0.9 && (state[0] - time).abs() < 1e-9);

@@ -5,8 +5,8 @@
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Accumulation, Cvode, Event, FnEvents, Method, Options, Reason, SolveError, VectorField, from_fn,
-    solve_with_events,
+    Accumulation, Event, FnEvents, Integration, Method, Options, Reason, Solve, SolveError, VectorField,
+    from_fn,
 };
 use proptest::prelude::*;
 
@@ -21,7 +21,7 @@ fn clock() -> impl VectorField {
 /// The zeros that are found of a function of the clock, which shows `start` at time `start`.
 fn passages(function: impl Fn(f64) -> f64, start: f64, end: f64, options: &Options) -> Vec<f64> {
     let events = FnEvents::new().with(Event::new("zero"), move |_, y| Ok(function(y[0])));
-    let motion = solve_with_events(clock(), start, &[start], &[end], options, events).unwrap();
+    let motion = Solve::new(clock(), start, &[start]).method(options).events(events).run(&[end]).unwrap();
     motion.occurrences.iter().map(|occurrence| occurrence.time).collect()
 }
 
@@ -84,7 +84,8 @@ fn a_touch_hides_no_passage() {
         .with(Event::new("touch"), |_, y| Ok((y[0] - 5.0).abs()))
         .with(Event::new("pass"), |_, y| Ok(y[0] - 5.0))
         .with(Event::new("later"), |_, y| Ok(5.001 - y[0]));
-    let motion = solve_with_events(clock(), 0.0, &[0.0], &[10.0], &Options::default(), events).unwrap();
+    let motion =
+        Solve::new(clock(), 0.0, &[0.0]).method(&Options::default()).events(events).run(&[10.0]).unwrap();
     let found: Vec<usize> = motion.occurrences.iter().map(|occurrence| occurrence.event).collect();
     assert_eq!(found, [1, 2]);
 }
@@ -100,7 +101,9 @@ fn a_step_shows_as_much_as_is_asked_for() {
     assert!(is_near(&found, &expected, 1e-12), "{}", found.len());
     let few = passages(wave, 0.0, 9.9, &options(1));
     assert!(few.len() < expected.len() && (expected.len() - few.len()).is_multiple_of(2), "{}", few.len());
-    assert!(solve_with_events(clock(), 0.0, &[0.0], &[1.0], &options(0), FnEvents::new()).is_err());
+    assert!(
+        Solve::new(clock(), 0.0, &[0.0]).method(&options(0)).events(FnEvents::new()).run(&[1.0]).is_err()
+    );
 }
 
 proptest! {
@@ -140,7 +143,10 @@ fn passages_are_located_to_rounding() {
         for k in 0..50 {
             let at = scale * (0.1 + (0.618_033_988_749_894_8 * f64::from(k)).fract());
             let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(t - at));
-            let motion = solve_with_events(clock(), 0.0, &[0.0], &[2.0 * scale], &Options::default(), events);
+            let motion = Solve::new(clock(), 0.0, &[0.0])
+                .method(&Options::default())
+                .events(events)
+                .run(&[2.0 * scale]);
             let found = motion.unwrap().occurrences[0].time;
             assert!((found - at).abs() <= 1e-15 * at, "{found} for {at}");
         }
@@ -172,7 +178,8 @@ fn ball() -> impl VectorField {
 fn bounces_that_are_kicked_on_do_not_accumulate() {
     let start = 2e4;
     for t0 in [0.0, -start] {
-        let cvode = Cvode::new(ball(), t0, &[1.0, 0.0], &Options::default().max_steps(u64::MAX)).unwrap();
+        let cvode =
+            Integration::new(ball(), t0, &[1.0, 0.0], &Options::default().max_steps(u64::MAX)).unwrap();
         let mut hybrid = cvode.with_events(kicked(0.01)).unwrap();
         let mut bounces = 0_u32;
         hybrid
@@ -196,7 +203,8 @@ fn bounces_that_are_kicked_on_do_not_accumulate() {
             },
         );
         let options = Options::default().relative_tolerance(1e-13).absolute_tolerance(1e-15);
-        let failure = solve_with_events(ball(), 0.0, &[1.0, 0.0], &[1e6], &options, events).unwrap_err();
+        let failure =
+            Solve::new(ball(), 0.0, &[1.0, 0.0]).method(&options).events(events).run(&[1e6]).unwrap_err();
         let SolveError::Integration(error) = failure.error else { panic!("{}", failure.error) };
         let Reason::Accumulation { t, .. } = error.reason else { panic!("{error}") };
         let limit = 2.0_f64.sqrt() * (3.0 + 2.0 * f64::from(flights));
@@ -211,7 +219,7 @@ fn the_accumulation_is_chosen() {
     let run = |within| {
         let accumulation = Accumulation { within, ..Accumulation::default() };
         let options = Options::default().accumulation(accumulation);
-        solve_with_events(ball(), 0.0, &[1.0, 0.0], &[30.0], &options, kicked(1e-4))
+        Solve::new(ball(), 0.0, &[1.0, 0.0]).method(&options).events(kicked(1e-4)).run(&[30.0])
     };
     assert!(run(0.1).is_err() && run(1e-5).is_ok() && run(0.0).is_ok());
     assert!(run(1.0).is_err() && run(-1.0).is_err() && run(f64::NAN).is_err());
@@ -232,8 +240,11 @@ fn an_event_does_not_occur_again_before_it_has_left() {
                     Ok(())
                 },
             );
-            let motion =
-                solve_with_events(ball(), 0.0, &[1.0, 0.0], &[2.0], &Options::default(), events).unwrap();
+            let motion = Solve::new(ball(), 0.0, &[1.0, 0.0])
+                .method(&Options::default())
+                .events(events)
+                .run(&[2.0])
+                .unwrap();
             assert_eq!(motion.occurrences.len(), expected, "{off} {restitution}");
         }
     }

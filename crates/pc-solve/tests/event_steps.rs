@@ -3,12 +3,12 @@
 use std::ops::ControlFlow::{Break, Continue};
 
 use pc_solve::{
-    Cvode, DenseOutput, Ending, Event, FnEvents, Hybrid, InputError, Occurrence, Options, Segment,
-    SolveError, VectorField, from_fn,
+    Cvode, DenseOutput, Ending, Event, FnEvents, InputError, Integration, Observed, Occurrence, Options,
+    Segment, SolveError, VectorField, from_fn,
 };
 
 /// A ball that falls from height 1 with acceleration 1 and bounces without loss: at √2, 3√2, …
-fn ball() -> Hybrid<impl VectorField, FnEvents<'static>> {
+fn ball() -> Integration<Cvode<impl VectorField>, FnEvents<'static>> {
     let rates = |_: f64, y: &[f64], ydot: &mut [f64]| {
         ydot.copy_from_slice(&[y[1], -1.0]);
         Ok(())
@@ -21,7 +21,7 @@ fn ball() -> Hybrid<impl VectorField, FnEvents<'static>> {
         .with_reset(Event::new("bounce").falling(), |_, y| Ok(y[0]), turn)
         .with(Event::new("top"), |_, y| Ok(y[1]));
     let sharp = Options::default().relative_tolerance(1e-13).absolute_tolerance(1e-15);
-    let cvode = Cvode::new(from_fn(2, rates), 0.0, &[1.0, 0.0], &sharp).expect("a start");
+    let cvode = Integration::new(from_fn(2, rates), 0.0, &[1.0, 0.0], &sharp).expect("a start");
     cvode.with_events(events).expect("events")
 }
 
@@ -142,7 +142,7 @@ fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
             let events = names.into_iter().fold(FnEvents::new(), |events, name| {
                 events.with(Event::new(name).terminal(name.ends_with("end")), |_, y| Ok(y[0] - 0.5))
             });
-            let cvode = Cvode::new(clock(), 0.0, &[0.0], &Options::default()).expect("a start");
+            let cvode = Integration::new(clock(), 0.0, &[0.0], &Options::default()).expect("a start");
             cvode.with_events(events).expect("events")
         };
         let told = std::cell::RefCell::new(Vec::new());
@@ -160,7 +160,7 @@ fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
             outputs.push(t);
             Continue(())
         };
-        ended(start().run(&[0.25, 1.0], output, stop));
+        ended(start().run_observed(&[0.25, 1.0], Observed::new(output).occurrences(stop)));
         assert!(outputs.len() == 2 && (outputs[1] - 0.5).abs() < 1e-15, "it is the last output: {outputs:?}");
         let mut segments = 0;
         let segment = |_| {
@@ -193,7 +193,7 @@ fn the_event_that_fails_is_named() {
             if t > 0.5 { Err(pc_solve::Failure::fatal(late)) } else { Ok(y[0] + 1.0) }
         },
     );
-    let cvode = Cvode::new(still, 0.0, &[0.0], &Options::default()).expect("a start");
+    let cvode = Integration::new(still, 0.0, &[0.0], &Options::default()).expect("a start");
     let mut hybrid = cvode.with_events(events).expect("events");
     let error = hybrid.advance_to(1.0, |_| Continue(())).expect_err("late");
     assert!(error.to_string().starts_with("the event second cannot be evaluated"), "{error}");

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::ops::ControlFlow::{Break, Continue};
 
 use pc_solve::{
-    Accumulation, Code, Cvode, Ending, Event, Events, Failure, FnEvents, Hybrid, Method, Occurrence, Options,
-    Reason, SolveError, VectorField, from_fn, solve_with_events,
+    Accumulation, Code, Cvode, Ending, Event, Events, Failure, FnEvents, Integration, Method, Observed,
+    Occurrence, Options, Reason, Solve, SolveError, VectorField, from_fn,
 };
 
 /// Tolerances at which the error of the integration is below what is asked of the times.
@@ -57,9 +57,11 @@ fn a_ball_bounces_when_it_should() {
     for method in [Method::Adams, Method::Bdf] {
         for restitution in [0.5_f64, 0.9] {
             let outputs: Vec<f64> = (1..=40).map(|i| f64::from(i) * 0.1).collect();
-            let motion =
-                solve_with_events(falling(), 0.0, &[1.0, 0.0], &outputs, &sharp(method), bounce(restitution))
-                    .unwrap();
+            let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
+                .method(&sharp(method))
+                .events(bounce(restitution))
+                .run(&outputs)
+                .unwrap();
             assert_eq!(motion.ending, Some(Ending::Completed));
             let mut landing = 2.0_f64.sqrt();
             let mut flight = 2.0 * landing * restitution;
@@ -96,15 +98,11 @@ fn a_ball_bounces_when_it_should() {
 #[test]
 fn bounces_that_accumulate_are_an_error_with_their_limit() {
     for restitution in [0.1, 0.5, 0.9] {
-        let failure = solve_with_events(
-            falling(),
-            0.0,
-            &[1.0, 0.0],
-            &[1.0, 100.0],
-            &sharp(Method::Adams),
-            bounce(restitution),
-        )
-        .unwrap_err();
+        let failure = Solve::new(falling(), 0.0, &[1.0, 0.0])
+            .method(&sharp(Method::Adams))
+            .events(bounce(restitution))
+            .run(&[1.0, 100.0])
+            .unwrap_err();
         let limit = 2.0_f64.sqrt() * (1.0 + 2.0 * restitution / (1.0 - restitution));
         assert_eq!(failure.reached.trajectory.times(), [1.0]);
         assert!(failure.reached.occurrences.len() > 5);
@@ -119,7 +117,7 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
         assert!(text.starts_with("the event bounce occurs without end near t = "), "{text}");
     }
     // A limit of the user's own.
-    let hybrid = Cvode::new(falling(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    let hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut hybrid =
         hybrid.with_events(bounce(0.5)).unwrap().accumulation(Accumulation { occurrences: 4, within: 0.25 });
     let error = hybrid.advance_to(5.0, |_| Continue(())).unwrap_err();
@@ -136,8 +134,11 @@ fn zeros_are_found_once_in_their_direction() {
                 .with(Event::new("both"), |_, y| Ok(y[0]))
                 .with(Event::new("rising").rising(), |_, y| Ok(y[0]))
                 .with(Event::new("falling").falling(), |_, y| Ok(y[0]));
-            let motion =
-                solve_with_events(oscillator(), 0.0, &[1.0, 0.0], &[end], &sharp(method), events).unwrap();
+            let motion = Solve::new(oscillator(), 0.0, &[1.0, 0.0])
+                .method(&sharp(method))
+                .events(events)
+                .run(&[end])
+                .unwrap();
             let of = |event| motion.occurrences.iter().filter(move |o| o.event == event).collect::<Vec<_>>();
             let expected: Vec<f64> = (0..10).map(|n| (f64::from(2 * n + 1) * half).copysign(end)).collect();
             for (event, from, by) in [(0, 0, 1), (1, 1, 2), (2, 0, 2)] {
@@ -169,8 +170,11 @@ fn a_time_is_located_to_rounding() {
             ] {
                 let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(function(t)));
                 let still = field(|_, _| vec![0.0], 1);
-                let motion =
-                    solve_with_events(still, 0.0, &[1.0], &[end], &Options::default(), events).unwrap();
+                let motion = Solve::new(still, 0.0, &[1.0])
+                    .method(&Options::default())
+                    .events(events)
+                    .run(&[end])
+                    .unwrap();
                 let found = times(&motion.occurrences);
                 assert_eq!(found.len(), 1, "{end} {part}");
                 assert!((found[0] - at).abs() <= 1e-12 * at, "{} is not {at}", found[0]);
@@ -183,14 +187,20 @@ fn a_time_is_located_to_rounding() {
 fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
     // sin t leaves zero at once and is back at π.
     let events = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
-    let motion =
-        solve_with_events(oscillator(), 0.0, &[0.0, 1.0], &[4.0], &sharp(Method::Adams), events).unwrap();
+    let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+        .method(&sharp(Method::Adams))
+        .events(events)
+        .run(&[4.0])
+        .unwrap();
     let found = times(&motion.occurrences);
     assert!(found.len() == 1 && (found[0] - std::f64::consts::PI).abs() < 1e-11, "{found:?}");
     // What is zero all the time never occurs.
     let events = FnEvents::new().with(Event::new("nothing"), |_, _| Ok(0.0));
-    let motion =
-        solve_with_events(oscillator(), 0.0, &[0.0, 1.0], &[4.0], &Options::default(), events).unwrap();
+    let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+        .method(&Options::default())
+        .events(events)
+        .run(&[4.0])
+        .unwrap();
     assert!(motion.occurrences.is_empty());
 }
 
@@ -202,7 +212,8 @@ fn grazing() {
             let f: f64 = depth;
             let events = FnEvents::new().with(Event::new("graze"), move |_, y| Ok(y[0] - f));
             let parabola = field(|t, _| vec![2.0 * (t - 1.0)], 1);
-            let motion = solve_with_events(parabola, 0.0, &[1.0], &[3.0], &sharp(method), events).unwrap();
+            let motion =
+                Solve::new(parabola, 0.0, &[1.0]).method(&sharp(method)).events(events).run(&[3.0]).unwrap();
             let found = times(&motion.occurrences);
             assert_eq!(found.len(), expected, "{method}: {depth} {found:?}");
             for (found, expected) in found.iter().zip([1.0 - depth.abs().sqrt(), 1.0 + depth.abs().sqrt()]) {
@@ -232,8 +243,11 @@ fn simultaneous_events_are_dealt_with_in_order() {
         .with_reset(Event::new("c").rising(), |_, y| Ok((y[0] - 0.3).powi(3)), add(3.0))
         .with_reset(Event::new("not").falling(), |_, y| Ok(y[0] - 0.3), add(5.0));
     let clock = field(|_, _| vec![1.0, 0.0], 2);
-    let motion =
-        solve_with_events(clock, 0.0, &[0.0, 0.0], &[0.3, 1.0], &Options::default(), events).unwrap();
+    let motion = Solve::new(clock, 0.0, &[0.0, 0.0])
+        .method(&Options::default())
+        .events(events)
+        .run(&[0.3, 1.0])
+        .unwrap();
     let order: Vec<usize> = motion.occurrences.iter().map(|occurrence| occurrence.event).collect();
     assert_eq!(order, [0, 2, 3, 1]);
     assert_eq!(*seen.borrow(), [0.0, 1.0, 12.0, 123.0]);
@@ -260,8 +274,11 @@ fn outputs_at_events() {
         let outputs = [0.5 - 1e-9 * direction, 0.5, 0.5 + 1e-9 * direction, end];
         let clock = field(|_, _| vec![1.0], 1);
         let start = 1.0 - end;
-        let motion =
-            solve_with_events(clock, start, &[start], &outputs, &Options::default(), jump()).unwrap();
+        let motion = Solve::new(clock, start, &[start])
+            .method(&Options::default())
+            .events(jump())
+            .run(&outputs)
+            .unwrap();
         let at = motion.occurrences[0].time;
         assert!((at - 0.5).abs() < 1e-15, "{at}");
         let shift: Vec<f64> = motion.trajectory.iter().map(|(t, y)| y[0] - t).collect();
@@ -272,7 +289,8 @@ fn outputs_at_events() {
     }
     // A jump at the very end is part of it.
     let clock = field(|_, _| vec![1.0], 1);
-    let motion = solve_with_events(clock, 0.0, &[0.0], &[0.25, 0.5], &Options::default(), jump()).unwrap();
+    let motion =
+        Solve::new(clock, 0.0, &[0.0]).method(&Options::default()).events(jump()).run(&[0.25, 0.5]).unwrap();
     assert_eq!((motion.occurrences.len(), motion.trajectory.state(1)[0]), (1, 10.5));
 }
 
@@ -281,9 +299,11 @@ fn a_terminal_event_is_the_last_output() {
     let events = FnEvents::new()
         .with(Event::new("other"), |t, _| Ok(t - 0.5))
         .with(Event::new("floor").falling().terminal(true), |_, y| Ok(y[0]));
-    let motion =
-        solve_with_events(falling(), 0.0, &[1.0, 0.0], &[0.0, 1.0, 2.0, 3.0], &sharp(Method::Adams), events)
-            .unwrap();
+    let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
+        .method(&sharp(Method::Adams))
+        .events(events)
+        .run(&[0.0, 1.0, 2.0, 3.0])
+        .unwrap();
     assert_eq!(motion.ending, Some(Ending::Event { event: 1 }));
     assert!(!motion.trajectory.is_complete());
     let landing = 2.0_f64.sqrt();
@@ -293,8 +313,10 @@ fn a_terminal_event_is_the_last_output() {
 
     // It can go on from there, and does not meet the event again.
     let events = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
-    let mut hybrid =
-        Cvode::new(falling(), 0.0, &[1.0, 0.0], &sharp(Method::Bdf)).unwrap().with_events(events).unwrap();
+    let mut hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &sharp(Method::Bdf))
+        .unwrap()
+        .with_events(events)
+        .unwrap();
     assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Event { event: 0 });
     assert!((hybrid.time() - landing).abs() < 1e-12);
     assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Completed);
@@ -303,7 +325,7 @@ fn a_terminal_event_is_the_last_output() {
 
 #[test]
 fn who_watches_may_stop() {
-    let mut hybrid = Cvode::new(falling(), 0.0, &[1.0, 0.0], &Options::default())
+    let mut hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default())
         .unwrap()
         .with_events(bounce(0.9))
         .unwrap();
@@ -312,12 +334,10 @@ fn who_watches_may_stop() {
     let mut steps = 0;
     let ending = hybrid.run_observed(
         &[3.0],
-        |_, _| Continue(()),
-        |_| Continue(()),
-        |t, _| {
+        Observed::new(|_, _| Continue(())).occurrences(|_| Continue(())).steps(|t, _| {
             steps += 1;
             if t > 2.0 { Break(()) } else { Continue(()) }
-        },
+        }),
     );
     assert_eq!(ending.unwrap(), Ending::Stopped);
     assert!(steps > 1 && hybrid.time() > 2.0);
@@ -336,8 +356,11 @@ fn statistics_go_on_over_restarts() {
             ydot.copy_from_slice(&[y[1], -1.0]);
             Ok(())
         });
-        let motion =
-            solve_with_events(counted, 0.0, &[1.0, 0.0], &[4.0], &Options::new(method), bounce(0.5)).unwrap();
+        let motion = Solve::new(counted, 0.0, &[1.0, 0.0])
+            .method(&Options::new(method))
+            .events(bounce(0.5))
+            .run(&[4.0])
+            .unwrap();
         assert_eq!(motion.trajectory.statistics().rhs_evaluations, calls.get());
     }
 }
@@ -352,18 +375,17 @@ fn options_stay_over_restarts() {
         Ok(())
     });
     let options = Options::new(Method::Adams).initial_step(1e-6).max_step(0.01).stop_time(3.0);
-    let mut hybrid = Cvode::new(fall, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce(0.5)).unwrap();
+    let mut hybrid =
+        Integration::new(fall, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce(0.5)).unwrap();
     let mut ends = vec![0.0];
     let landing = 2.0_f64.sqrt();
     hybrid
         .run_observed(
             &[3.0],
-            |_, _| Continue(()),
-            |_| Continue(()),
-            |t, _| {
+            Observed::new(|_, _| Continue(())).occurrences(|_| Continue(())).steps(|t, _| {
                 ends.push(t);
                 Continue(())
-            },
+            }),
         )
         .unwrap();
     let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -414,8 +436,11 @@ fn projected_states() {
         },
     );
     let options = Options::default();
-    let motion =
-        solve_with_events(Circle, 0.0, &[1.0, 0.0, 0.0, 0.0], &[10.0, 20.0, 30.0], &options, wall).unwrap();
+    let motion = Solve::new(Circle, 0.0, &[1.0, 0.0, 0.0, 0.0])
+        .method(&options)
+        .events(wall)
+        .run(&[10.0, 20.0, 30.0])
+        .unwrap();
     assert!(worst.get() < 1e-15);
     assert!(motion.occurrences.len() > 5);
     assert!(motion.occurrences.iter().all(|o| off(&o.state_after) < 1e-15 && o.state_after[2] > 0.0));
@@ -444,12 +469,13 @@ fn events_are_given_back() {
     }
     let mut count = Count(vec![Event::new("one"), Event::new("two").resetting(true)], 0);
     let clock = field(|_, _| vec![1.0], 1);
-    let motion = solve_with_events(clock, 0.0, &[0.0], &[1.0], &Options::default(), &mut count).unwrap();
+    let motion =
+        Solve::new(clock, 0.0, &[0.0]).method(&Options::default()).events(&mut count).run(&[1.0]).unwrap();
     assert_eq!(motion.occurrences.len(), 2);
     assert!(count.1 > 10);
     let hybrid =
-        |events| Cvode::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default())?.with_events(events);
-    let hybrid: Hybrid<_, FnEvents<'_>> = hybrid(bounce(0.5)).unwrap();
+        |events| Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default())?.with_events(events);
+    let hybrid: Integration<Cvode<_>, FnEvents<'_>> = hybrid(bounce(0.5)).unwrap();
     assert!(format!("{hybrid:?}").contains("bounce"));
     assert_eq!(hybrid.events().events().len(), 1);
     let (_, events) = hybrid.into_parts();
@@ -468,7 +494,8 @@ fn many_events() {
             Ok(())
         },
     );
-    let mut saw = Cvode::new(clock, 0.0, &[0.0], &Options::default()).unwrap().with_events(tooth).unwrap();
+    let mut saw =
+        Integration::new(clock, 0.0, &[0.0], &Options::default()).unwrap().with_events(tooth).unwrap();
     let mut count = 0;
     let check = |occurrence: &Occurrence| {
         count += 1;
@@ -486,7 +513,7 @@ fn events_do_not_lift_the_limit_of_steps() {
     let zeros = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
     let options = Options::default().max_steps(200);
     let mut motion =
-        Cvode::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap().with_events(zeros).unwrap();
+        Integration::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap().with_events(zeros).unwrap();
     let error = motion.advance_to(1e12, |_| Continue(())).unwrap_err();
     assert_eq!(error.code(), Some(Code::TooMuchWork));
     let reached = motion.time();
@@ -505,7 +532,11 @@ fn passages_before_time_zero_are_located() {
         });
         let events =
             FnEvents::default().with(Event::new("noon"), move |t: f64, _y: &[f64]| Ok((t - at).sin()));
-        let found = solve_with_events(clock, start, &[start], &[0.0], &Options::default(), events).unwrap();
+        let found = Solve::new(clock, start, &[start])
+            .method(&Options::default())
+            .events(events)
+            .run(&[0.0])
+            .unwrap();
         assert_eq!(found.occurrences.len(), passages, "{start}");
         let last = found.occurrences.last().unwrap().time;
         assert!((last - at).abs() < 1e-12 * start.abs().max(1.0), "{last} for {at}");
@@ -526,7 +557,7 @@ fn another_event_hides_no_passages() {
             events = events.with(Event::new("once"), |_t: f64, y: &[f64]| Ok(y[0] - 40.0));
         }
         let options = Options::default().initial_step(1.0);
-        let found = solve_with_events(clock, 0.0, &[0.0], &[100.0], &options, events).unwrap();
+        let found = Solve::new(clock, 0.0, &[0.0]).method(&options).events(events).run(&[100.0]).unwrap();
         found.occurrences.iter().map(|o| (o.time * 1e6).round() / 1e6).collect::<Vec<_>>()
     };
     assert_eq!(times(false), [28.0, 32.0]);

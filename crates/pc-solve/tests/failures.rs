@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::error::Error;
 
 use pc_solve::{
-    Code, Cvode, Failure, Method, NonFinite, NonlinearSolver, Options, Reason, SolveError, SolveFailure,
-    Trajectory, from_fn, solve,
+    Code, Failure, Integration, Method, NonFinite, NonlinearSolver, Options, Reason, SolveError,
+    SolveFailure, Trajectory, from_fn, solve,
 };
 
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -47,8 +47,8 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
             Ok(())
         });
         let options = options.relative_tolerance(1e-4).absolute_tolerance(1e-6).initial_step(0.999);
-        let mut cvode = Cvode::new(fall, 0.0, &[1.0], &options).unwrap();
-        let y = cvode.advance_to(0.9).unwrap()[0];
+        let mut cvode = Integration::new(fall, 0.0, &[1.0], &options).unwrap();
+        let y = cvode.state_at(0.9).unwrap()[0];
         assert!((y - 0.01).abs() < 1e-3, "{y}");
         assert!(failures.get() > 0, "{options:?}");
     }
@@ -264,9 +264,9 @@ fn a_step_limit_ends_the_work_and_allows_more() {
         )
     );
 
-    let mut cvode = Cvode::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap();
+    let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap();
     let mut failures = 0;
-    while let Err(error) = cvode.advance_to(20.0) {
+    while let Err(error) = cvode.state_at(20.0) {
         assert_eq!(error.code(), Some(Code::TooMuchWork));
         assert_eq!(error.reached(), Some((cvode.time(), cvode.state())));
         failures += 1;

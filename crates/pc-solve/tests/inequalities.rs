@@ -3,7 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_solve::{
-    Code, Cvode, Inequality, LinearSolver, Method, NonlinearSolver, Options, Pattern, SolveError, from_fn,
+    Code, Inequality, Integration, LinearSolver, Method, NonlinearSolver, Options, Pattern, SolveError,
+    from_fn,
 };
 
 /// The least y over the ends of steps of ẏ = −100 y.
@@ -13,10 +14,10 @@ fn least(options: &Options) -> f64 {
         Ok(())
     })
     .with_sparsity(Pattern::full(1, 1));
-    let mut cvode = Cvode::new(decay, 0.0, &[1.0], options).unwrap();
+    let mut cvode = Integration::new(decay, 0.0, &[1.0], options).unwrap();
     let mut least = f64::INFINITY;
     while cvode.time() < 2.0 {
-        cvode.step(2.0).unwrap();
+        cvode.step_towards(2.0).unwrap();
         least = least.min(cvode.state()[0]);
     }
     least
@@ -48,8 +49,8 @@ fn what_cannot_be_kept_ends_the_integration() {
             ydot[0] = -1.0;
             Ok(())
         });
-        let mut cvode = Cvode::new(fall, 0.0, &[1.0], &options).unwrap();
-        let error = cvode.advance_to(2.0).unwrap_err();
+        let mut cvode = Integration::new(fall, 0.0, &[1.0], &options).unwrap();
+        let error = cvode.state_at(2.0).unwrap_err();
         let (t, y) = error.reached().unwrap();
         assert!(t > 0.99 && t <= 1.0 && y[0] >= 0.0, "{t} {y:?}: {error}");
         assert_eq!(error.code(), Some(Code::Nonlinear), "{error}"); // as CVODES calls it
@@ -69,8 +70,8 @@ fn quotients_keep_to_their_side() {
         Ok(())
     })
     .with_sparsity(Pattern::full(1, 1));
-    let mut cvode = Cvode::new(field, 0.0, &[0.0], &options).unwrap();
-    cvode.advance_to(1.0).unwrap();
+    let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+    cvode.state_at(1.0).unwrap();
     assert!(cvode.statistics().jacobian_evaluations > 0);
     assert!(!crossed.get());
 }
@@ -83,7 +84,7 @@ fn starts_that_do_not_satisfy_them_are_refused() {
             Ok(())
         });
         let options = Options::default().inequalities(inequalities);
-        match Cvode::new(field.with_names(["x"]), 0.0, y0, &options) {
+        match Integration::new(field.with_names(["x"]), 0.0, y0, &options) {
             Ok(_) => "taken".to_owned(),
             Err(error) => error.to_string(),
         }
@@ -110,7 +111,7 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     })
     .with_projection(|_t, _y| Ok(()));
     let options = Options::default().inequalities(vec![Free]);
-    let error = Cvode::new(projected, 0.0, &[0.0], &options).unwrap_err();
+    let error = Integration::new(projected, 0.0, &[0.0], &options).unwrap_err();
     assert!(matches!(error, SolveError::Input(_)));
     assert_eq!(error.to_string(), "inequalities cannot be kept for a vector field that projects its states");
 }
@@ -125,8 +126,8 @@ fn a_new_start_is_checked() {
         })
     };
     let options = Options::default().inequalities(vec![Inequality::NotNegative]);
-    let mut cvode = Cvode::new(falling(), 0.0, &[1.0], &options).unwrap();
-    cvode.advance_to(0.1).unwrap();
+    let mut cvode = Integration::new(falling(), 0.0, &[1.0], &options).unwrap();
+    cvode.state_at(0.1).unwrap();
     let refused = cvode.restart(0.1, &[-1.0]).unwrap_err();
     assert!(
         matches!(refused, SolveError::Input(pc_solve::InputError::Inequality { value: -1.0, .. })),
@@ -142,7 +143,8 @@ fn a_new_start_is_checked() {
             Ok(())
         },
     );
-    let failure = pc_solve::solve_with_events(falling(), 0.0, &[1.0], &[0.9], &options, events).unwrap_err();
+    let failure =
+        pc_solve::Solve::new(falling(), 0.0, &[1.0]).method(&options).events(events).run(&[0.9]).unwrap_err();
     assert!(
         failure.error.to_string().starts_with("the event half cannot reset the state"),
         "{}",

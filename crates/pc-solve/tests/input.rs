@@ -1,6 +1,6 @@
 //! Input that is not valid.
 
-use pc_solve::{Cvode, Failure, FnField, Method, Options, VectorField, from_fn, solve};
+use pc_solve::{Failure, FnField, Integration, Method, Options, VectorField, from_fn, solve};
 
 type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
 
@@ -13,7 +13,7 @@ fn drift(dim: usize) -> FnField<Rhs> {
 
 #[track_caller]
 fn assert_refused(options: &Options, expected: &str) {
-    let error = Cvode::new(drift(2), 0.0, &[0.0, 0.0], options).expect_err("must be refused");
+    let error = Integration::new(drift(2), 0.0, &[0.0, 0.0], options).expect_err("must be refused");
     assert_eq!(error.to_string(), expected);
     assert_eq!(error.reached(), None);
     assert_eq!(error.code(), None);
@@ -52,7 +52,7 @@ fn options() {
 #[test]
 fn start() {
     let refusal = |field: FnField<Rhs>, t0: f64, y0: &[f64]| {
-        Cvode::new(field, t0, y0, &Options::default()).expect_err("must be refused").to_string()
+        Integration::new(field, t0, y0, &Options::default()).expect_err("must be refused").to_string()
     };
     assert_eq!(refusal(drift(0), 0.0, &[]), "the vector field has no components");
     assert_eq!(refusal(drift(2), 0.0, &[0.0]), "the start: 1 numbers for 2 components");
@@ -89,12 +89,12 @@ fn times() {
 
 #[test]
 fn directions() {
-    let mut cvode = Cvode::new(drift(1), 0.0, &[0.0], &Options::default()).unwrap();
-    assert_eq!(cvode.step(0.0).unwrap_err().to_string(), "the end is the start, t = 0");
-    cvode.advance_to(1.0).unwrap();
-    assert_eq!(cvode.advance_to(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
-    assert_eq!(cvode.step(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
-    assert_eq!(cvode.advance_to(f64::NAN).unwrap_err().to_string(), "the time is NaN");
+    let mut cvode = Integration::new(drift(1), 0.0, &[0.0], &Options::default()).unwrap();
+    assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end is the start, t = 0");
+    cvode.state_at(1.0).unwrap();
+    assert_eq!(cvode.state_at(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
+    assert_eq!(cvode.step_towards(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
+    assert_eq!(cvode.state_at(f64::NAN).unwrap_err().to_string(), "the time is NaN");
     assert_eq!(cvode.interpolate(f64::NAN, 0).unwrap_err().to_string(), "the time is NaN");
     let reached = cvode.statistics().current_time;
     assert_eq!(
@@ -103,11 +103,11 @@ fn directions() {
     );
     // None of this changed anything.
     assert_eq!(cvode.time(), 1.0);
-    assert!((cvode.advance_to(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
+    assert!((cvode.state_at(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
 
-    let mut behind = Cvode::new(drift(1), 0.0, &[0.0], &Options::default().stop_time(-1.0)).unwrap();
-    assert_eq!(behind.advance_to(1.0).unwrap_err().to_string(), "t = 1 lies beyond the stop time -1");
-    behind.advance_to(-1.0).unwrap();
+    let mut behind = Integration::new(drift(1), 0.0, &[0.0], &Options::default().stop_time(-1.0)).unwrap();
+    assert_eq!(behind.state_at(1.0).unwrap_err().to_string(), "t = 1 lies beyond the stop time -1");
+    behind.state_at(-1.0).unwrap();
 }
 
 #[test]

@@ -1,11 +1,9 @@
 //! Integrals along motions against closed forms.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Cvode, Event, Failure, FnEvents, InputError, Integrals, Method, NonFinite, Options, Sensitivities,
+    Event, Failure, FnEvents, InputError, Integrals, Integration, Method, NonFinite, Options, Sensitivities,
     SolveError, VectorField, from_fn, solve, solve_with_integrals,
 };
 
@@ -66,8 +64,8 @@ fn error_control() {
     };
     let options = Options::new(Method::Adams).relative_tolerance(1e-8).absolute_tolerance(1e-10);
     let run = |integrals: Integrals| {
-        let mut cvode = Cvode::with_integrals(still(), 0.0, &[1.0], &options, integrals).unwrap();
-        cvode.advance_to(2.0).unwrap();
+        let mut cvode = Integration::with_integrals(still(), 0.0, &[1.0], &options, integrals).unwrap();
+        cvode.state_at(2.0).unwrap();
         (cvode.integrals().unwrap()[0], cvode.statistics().steps)
     };
     let (found, steps) = run(wave());
@@ -98,7 +96,7 @@ fn over_events() {
     });
     let options = Options::new(Method::Adams).relative_tolerance(1e-10).absolute_tolerance(1e-12);
     let columns = Sensitivities::new().by_start(0);
-    let cvode = Cvode::with_sensitivities(ball, 0.0, &[h, 0.0], &options, &columns).unwrap();
+    let cvode = Integration::with_sensitivities(ball, 0.0, &[h, 0.0], &options, &columns).unwrap();
     let mut hybrid = cvode.and_integrals(height, &options).unwrap().with_events(bounce).unwrap();
     let w = (2.0 * g * h).sqrt();
     let (first, second) = (w / g, 2.0 * e * w / g);
@@ -129,13 +127,13 @@ fn over_events() {
 #[test]
 fn a_restart_goes_on_with_the_integrals() {
     let options = Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-12);
-    let mut cvode = Cvode::with_integrals(decay(), 0.0, &[1.0], &options, moments()).unwrap();
+    let mut cvode = Integration::with_integrals(decay(), 0.0, &[1.0], &options, moments()).unwrap();
     assert_eq!(cvode.integrals().unwrap(), [0.0, 0.0]);
-    cvode.advance_to(0.77).unwrap(); // inside a step
+    cvode.state_at(0.77).unwrap(); // inside a step
     let first = cvode.integrals().unwrap()[0];
     cvode.restart(0.77, &[3.0]).unwrap();
     assert_eq!(cvode.integrals().unwrap()[0], first);
-    cvode.advance_to(1.5).unwrap();
+    cvode.state_at(1.5).unwrap();
     let expected = 1.0 - (-0.77_f64).exp() + 3.0 * (1.0 - (-0.73_f64).exp());
     assert!((cvode.integrals().unwrap()[0] - expected).abs() < 1e-8);
 }
@@ -156,30 +154,31 @@ fn of_projected_states() {
         rates[0] = y[0] * y[0] + y[1] * y[1];
         Ok(())
     });
-    let mut cvode = Cvode::with_integrals(circle, 0.0, &[1.0, 0.0], &Options::default(), radius).unwrap();
-    cvode.advance_to(20.0).unwrap();
+    let mut cvode =
+        Integration::with_integrals(circle, 0.0, &[1.0, 0.0], &Options::default(), radius).unwrap();
+    cvode.state_at(20.0).unwrap();
     assert!((cvode.integrals().unwrap()[0] - 20.0).abs() < 1e-6);
 }
 
 #[test]
 fn what_cannot_be_integrated_is_refused() {
     let options = Options::default();
-    let begin = |integrals: Integrals| Cvode::with_integrals(decay(), 0.0, &[1.0], &options, integrals);
+    let begin = |integrals: Integrals| Integration::with_integrals(decay(), 0.0, &[1.0], &options, integrals);
     let none = Integrals::new(0, |_, _, _| Ok(()));
     assert_eq!(begin(none).unwrap_err().to_string(), "the number of integrals is 0, but must be positive");
     assert!(begin(moments().tolerances(0.0, 1.0)).is_err());
     let mut cvode = begin(moments()).unwrap();
-    cvode.advance_to(1.0).unwrap();
+    cvode.state_at(1.0).unwrap();
     let error = cvode.and_integrals(moments(), &options).unwrap_err();
     assert!(matches!(error, SolveError::Input(InputError::NoIntegrals)));
-    let mut plain = Cvode::new(decay(), 0.0, &[1.0], &options).unwrap();
+    let mut plain = Integration::new(decay(), 0.0, &[1.0], &options).unwrap();
     assert!(matches!(plain.integrals().unwrap_err(), SolveError::Input(InputError::NoIntegrals)));
 
     let unwritten = Integrals::new(2, |_, _, rates| {
         rates[0] = 1.0;
         Ok(())
     });
-    let error = begin(unwritten).unwrap().advance_to(1.0).unwrap_err();
+    let error = begin(unwritten).unwrap().state_at(1.0).unwrap_err();
     let SolveError::Integration(error) = error else { panic!("it began") };
     let cause = error.failure.as_ref().map(Failure::cause).unwrap().to_string();
     assert!(cause.starts_with("the rate of integral number 1 (from 0) is NaN at t = "), "{cause}");

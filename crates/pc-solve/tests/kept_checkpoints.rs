@@ -5,8 +5,8 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Checkpoint, Cvode, Event, Failure, FnEvents, Hybrid, HybridMotion, Method, Options, VectorField,
-    solve_with_events_checkpointed,
+    Checkpoint, Event, Failure, FnEvents, Integration, Method, Options, Solution, VectorField,
+    solve_checkpointed,
 };
 
 /// A ball under gravity 1, y = (h, v), whose energy v²/2 + h is kept at a level.
@@ -69,10 +69,10 @@ fn solve(
     options: &Options,
     steps: u64,
     save: impl FnMut(&Checkpoint, bool),
-) -> HybridMotion {
+) -> Solution {
     let parts = || (Ball { level }, bounce());
     let every = NonZeroU64::new(steps).unwrap();
-    solve_with_events_checkpointed(parts, from, times, options, every, save, |_, _| Continue(())).unwrap()
+    solve_checkpointed(options, parts, from, times, every, save, |_, _| Continue(())).unwrap()
 }
 
 /// The energy is 0.81 of what it was after each bounce, and what the field was made with before the first, which need not
@@ -110,28 +110,31 @@ fn what_is_kept_goes_on_from_a_jump() {
     let near = |y: &[f64], level: f64| assert!((energy(y) - level).abs() < 1e-14, "{} {level}", energy(y));
     let again = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes("")).unwrap().0;
 
-    let mut cvode = Cvode::new(Ball { level: 1.0 }, 0.0, &START, &options).unwrap();
-    cvode.advance_to(0.25).unwrap();
+    let mut cvode = Integration::new(Ball { level: 1.0 }, 0.0, &START, &options).unwrap();
+    cvode.state_at(0.25).unwrap();
     let before = again(cvode.checkpoint());
     cvode.restart(0.25, &[1.0, 1.0]).unwrap();
     let at = again(cvode.checkpoint());
-    near(cvode.advance_to(0.5).unwrap(), 1.5);
+    near(cvode.state_at(0.5).unwrap(), 1.5);
     let after = again(cvode.checkpoint());
     for (from, level) in [(&before, 1.0), (&at, 1.5), (&after, 1.5)] {
-        let mut later = Cvode::resume(Ball { level: 1.0 }, from, &options).unwrap();
-        near(later.advance_to(0.75).unwrap(), level);
+        let mut later = Integration::resume(Ball { level: 1.0 }, from, &options).unwrap();
+        near(later.state_at(0.75).unwrap(), level);
         // And from there.
-        let mut later = Cvode::resume(Ball { level: 1.0 }, &again(later.checkpoint()), &options).unwrap();
-        near(later.advance_to(1.0).unwrap(), level);
+        let mut later =
+            Integration::resume(Ball { level: 1.0 }, &again(later.checkpoint()), &options).unwrap();
+        near(later.state_at(1.0).unwrap(), level);
     }
 
     let mut hybrid =
-        Cvode::new(Ball { level: 1.0 }, 0.0, &START, &options).unwrap().with_events(bounce()).unwrap();
+        Integration::new(Ball { level: 1.0 }, 0.0, &START, &options).unwrap().with_events(bounce()).unwrap();
     for (end, level) in [(1.0, 1.0), (2.0, 0.81), (5.0, 0.6561)] {
         hybrid.advance_to(end, |_| Continue(())).unwrap();
         near(hybrid.state(), level);
         let from = again(hybrid.checkpoint());
-        let mut later = Hybrid::resume(Ball { level: 1.0 }, bounce(), &from, &options).unwrap();
+        let mut later = Integration::resume(Ball { level: 1.0 }, &from, &options)
+            .and_then(|resumed| resumed.with_events_of(bounce(), &from))
+            .unwrap();
         later.advance_to(end + 0.3, |_| Continue(())).unwrap();
         near(later.state(), level);
     }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use pc_solve::{
-    Cvode, Failure, FnField, InputError, Krylov, LinearSolver, Method, NonlinearSolver, Options, Pattern,
-    Preconditioner, Side, SolveError, Statistics, VectorField, from_fn, solve,
+    Failure, FnField, InputError, Integration, Krylov, LinearSolver, Method, NonlinearSolver, Options,
+    Pattern, Preconditioner, Side, SolveError, Statistics, VectorField, from_fn, solve,
 };
 
 /// Heat in a rod of n cells: ẏᵢ = κ (yᵢ₋₁ − 2 yᵢ + yᵢ₊₁), y₀ = yₙ₊₁ = 0.
@@ -282,7 +282,7 @@ fn the_choice_is_made_by_size_and_pattern() {
             Some(pattern) => field.with_sparsity(pattern),
             None => field,
         };
-        Cvode::new(field, 0.0, &vec![0.0; n], options).map(|cvode| cvode.linear_solver().cloned())
+        Integration::new(field, 0.0, &vec![0.0; n], options).map(|cvode| cvode.linear_solver().cloned())
     };
     let bdf = Options::new(Method::Bdf);
     let rod = |n| Some(Rod::new(n).pattern());
@@ -336,14 +336,14 @@ fn weights_and_errors_are_those_of_the_test() {
     let rod = Rod::new(5);
     let calls = Arc::new(AtomicU64::new(0));
     let mut cvode =
-        Cvode::new(analytic(rod, &calls), 0.0, &rod.exact(0.0), &options(LinearSolver::Dense)).unwrap();
+        Integration::new(analytic(rod, &calls), 0.0, &rod.exact(0.0), &options(LinearSolver::Dense)).unwrap();
     assert!(matches!(cvode.error_weights(), Err(SolveError::Input(InputError::NoStep))));
     assert!(matches!(cvode.local_errors(), Err(SolveError::Input(InputError::NoStep))));
     let start = cvode.statistics();
     assert_eq!((start.current_order, start.first_step, start.current_step), (0, 0.0, 0.0));
     for step in 0..100 {
         let before = cvode.state().to_vec();
-        let t = cvode.step(1.0).unwrap();
+        let t = cvode.step_towards(1.0).unwrap();
         let weights = cvode.error_weights().unwrap().to_vec();
         let errors = cvode.local_errors().unwrap().to_vec();
         // Those of the step just made, from the state before it.

@@ -6,8 +6,8 @@ use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use pc_solve::{
-    Code, Cvode, Failure, Krylov, LinearSolver, Method, NonFinite, Options, Pattern, Preconditioner, Side,
-    SolveError, VectorField,
+    Code, Cvode, Failure, Integration, Krylov, LinearSolver, Method, NonFinite, Options, Pattern,
+    Preconditioner, Side, SolveError, VectorField,
 };
 
 /// Which call goes wrong.
@@ -112,7 +112,7 @@ impl Preconditioner for Scale {
     }
 }
 
-fn start(place: Place, mishap: Mishap, solver: &LinearSolver) -> Cvode<Fragile> {
+fn start(place: Place, mishap: Mishap, solver: &LinearSolver) -> Integration<Cvode<Fragile>> {
     let pattern = Pattern::from_columns(2, [[0], [1]]);
     // Steps so small that the prediction satisfies Newton's iteration at once would need no products.
     let options = Options::new(Method::Bdf)
@@ -122,7 +122,7 @@ fn start(place: Place, mishap: Mishap, solver: &LinearSolver) -> Cvode<Fragile> 
         .min_step(1e-3)
         .max_step(5e-3)
         .linear_solver(solver.clone());
-    Cvode::new(Fragile { place, mishap, pattern }, 0.0, &[-1e-3; 2], &options).unwrap()
+    Integration::new(Fragile { place, mishap, pattern }, 0.0, &[-1e-3; 2], &options).unwrap()
 }
 
 fn cases() -> Vec<(Place, Mishap, LinearSolver)> {
@@ -157,8 +157,8 @@ fn mishaps_are_named_and_leave_the_last_state() {
     for (place, mishap, solver) in cases() {
         let mut cvode = start(place, mishap, &solver);
         let case = format!("{place:?} {mishap:?} {solver:?}");
-        cvode.advance_to(0.5).unwrap();
-        let run = catch_unwind(AssertUnwindSafe(|| cvode.advance_to(4.0).map(<[f64]>::len)));
+        cvode.state_at(0.5).unwrap();
+        let run = catch_unwind(AssertUnwindSafe(|| cvode.state_at(4.0).map(<[f64]>::len)));
         let error = match run {
             Err(panic) => {
                 assert_eq!(mishap, Mishap::Panic, "{case}");
@@ -225,8 +225,8 @@ fn failures_inside_quotients() {
             .absolute_tolerance(1e-8)
             .max_step(0.005)
             .linear_solver(LinearSolver::Sparse);
-        let mut cvode = Cvode::new(field, 0.0, &[0.0, 0.0], &options).unwrap();
-        let error = cvode.advance_to(4.0).unwrap_err();
+        let mut cvode = Integration::new(field, 0.0, &[0.0, 0.0], &options).unwrap();
+        let error = cvode.state_at(4.0).unwrap_err();
         assert_reached(cvode.time(), cvode.state());
         let code = if recoverable { Code::ConvergenceFailure } else { Code::LinearSetup };
         assert_eq!(error.code(), Some(code));
@@ -317,8 +317,8 @@ fn callbacks_are_given_states() {
             .max_step(0.1)
             .linear_solver(solver.clone());
         let line = Line { pattern: Pattern::from_columns(2, [vec![0], vec![]]), worst: 0.0 };
-        let mut cvode = Cvode::new(line, 0.0, &[1.0, 0.0], &options).unwrap();
-        cvode.advance_to(10.0).unwrap();
+        let mut cvode = Integration::new(line, 0.0, &[1.0, 0.0], &options).unwrap();
+        cvode.state_at(10.0).unwrap();
         let worst = cvode.field().worst;
         // The length of a step; without projection it would be that of the time.
         assert!(worst > 0.0 && worst < 0.1 + 1e-6, "{solver:?}: {worst:e}");

@@ -5,7 +5,7 @@
 use std::fs;
 use std::ops::ControlFlow::Continue;
 
-use pc_solve::{Cvode, Ending, Event, FnEvents, Options, from_fn};
+use pc_solve::{Ending, Event, FnEvents, Integration, Options, from_fn};
 
 /// Memory of this process that is in use, in kB.
 fn resident() -> u64 {
@@ -32,7 +32,7 @@ fn a_million_events_leave_no_trace() {
     );
     // One step to a tooth.
     let options = Options::default().initial_step(1.25).max_steps(1_000_000);
-    let mut saw = Cvode::new(clock, 0.0, &[0.0], &options).unwrap().with_events(tooth).unwrap();
+    let mut saw = Integration::new(clock, 0.0, &[0.0], &options).unwrap().with_events(tooth).unwrap();
     let mut events = 0_u64;
     let mut run_to = |t| {
         let count = |_: &_| {

@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::ops::ControlFlow::{self, Break, Continue};
 
 use pc_solve::{
-    Cvode, Ending, Failure, InputError, Method, NonlinearSolver, Options, SolveError, VectorField, from_fn,
-    solve, solve_observed,
+    Cvode, Ending, Failure, InputError, Integration, Method, NonlinearSolver, Observed, Options, Solve,
+    SolveError, VectorField, from_fn, solve,
 };
 
 fn pendulum(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -14,8 +14,8 @@ fn pendulum(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn pendulum_at(t0: f64, options: &Options) -> Cvode<impl VectorField + use<>> {
-    Cvode::new(from_fn(2, pendulum), t0, &[1.0, 0.0], options).expect("valid input")
+fn pendulum_at(t0: f64, options: &Options) -> Integration<Cvode<impl VectorField + use<>>> {
+    Integration::new(from_fn(2, pendulum), t0, &[1.0, 0.0], options).expect("valid input")
 }
 
 /// Outputs are read off the polynomials of the internal steps, which depend on the last output time only: exactly
@@ -43,9 +43,9 @@ fn advancing_piecewise_gives_the_same_motion() {
     let options = Options::default();
     let mut at_once = pendulum_at(0.0, &options);
     let mut piecewise = pendulum_at(0.0, &options);
-    let end = at_once.advance_to(10.0).unwrap().to_vec();
+    let end = at_once.state_at(10.0).unwrap().to_vec();
     for i in 1..=100 {
-        piecewise.advance_to(f64::from(i) / 10.0).unwrap();
+        piecewise.state_at(f64::from(i) / 10.0).unwrap();
         assert_eq!(piecewise.time(), f64::from(i) / 10.0);
     }
     for (a, b) in piecewise.state().iter().zip(&end) {
@@ -53,7 +53,7 @@ fn advancing_piecewise_gives_the_same_motion() {
     }
     // Standing still and going on are both possible.
     let here = piecewise.state().to_vec();
-    assert_eq!(piecewise.advance_to(10.0).unwrap(), here);
+    assert_eq!(piecewise.state_at(10.0).unwrap(), here);
     assert_eq!(piecewise.run(&[10.0, 11.0], |_, _| Continue(())).unwrap(), Ending::Completed);
     assert_eq!(piecewise.time(), 11.0);
 }
@@ -68,7 +68,7 @@ fn steps_and_interpolation() {
     let mut before = 0.0;
     while cvode.time() < 5.0 {
         let state_before = cvode.state().to_vec();
-        let t = cvode.step(5.0).unwrap();
+        let t = cvode.step_towards(5.0).unwrap();
         assert!(t > before);
         assert_eq!((t, cvode.statistics().current_time), (cvode.time(), t));
         let state = cvode.state().to_vec();
@@ -88,10 +88,10 @@ fn steps_and_interpolation() {
 
     // Going on inside the last step takes no new one, and a step then goes to its end.
     let mut cvode = pendulum_at(0.0, &Options::default());
-    cvode.advance_to(5.0).unwrap();
+    cvode.state_at(5.0).unwrap();
     let steps = cvode.statistics().steps;
     assert!(cvode.statistics().current_time > 5.0);
-    let end = cvode.step(10.0).unwrap();
+    let end = cvode.step_towards(10.0).unwrap();
     assert_eq!(end, cvode.statistics().current_time);
     assert_eq!(cvode.statistics().steps, steps);
     assert_eq!((end, end - cvode.statistics().last_step), (to, from));
@@ -102,7 +102,7 @@ fn steps_and_interpolation() {
 fn what_cannot_be_interpolated_is_told() {
     for end in [5.0, -5.0] {
         let mut cvode = pendulum_at(0.0, &Options::default());
-        cvode.advance_to(end).unwrap();
+        cvode.state_at(end).unwrap();
         let statistics = cvode.statistics();
         let (to, length, order) = (statistics.current_time, statistics.last_step, statistics.last_order);
         assert!((to - end) * end > 0.0 && length * end > 0.0 && order > 1, "the step goes on beyond {end}");
@@ -147,27 +147,23 @@ fn an_output_observer_stops() {
     assert_eq!(ending, Ending::Stopped);
     assert_eq!(seen, [0.0, 1.0, 2.0]);
     assert_eq!(cvode.time(), 2.0);
-    cvode.advance_to(3.0).unwrap();
+    cvode.state_at(3.0).unwrap();
 }
 
 #[test]
 fn a_step_observer_stops() {
     let interrupted = Cell::new(false);
     let mut steps = 0;
-    let motion = solve_observed(
-        from_fn(2, pendulum),
-        0.0,
-        &[1.0, 0.0],
-        &[1.0, 2.0, 50.0],
-        &Options::default(),
-        |t, y| {
+    let motion = Solve::new(from_fn(2, pendulum), 0.0, &[1.0, 0.0])
+        .method(&Options::default())
+        .run_observed(&[1.0, 2.0, 50.0], |t, y| {
             assert_eq!(y.len(), 2);
             steps += 1;
             interrupted.set(t > 10.0);
             if interrupted.get() { Break(()) } else { Continue(()) }
-        },
-    )
-    .unwrap();
+        })
+        .unwrap()
+        .trajectory;
     assert!(!motion.is_complete());
     assert_eq!(motion.times(), [1.0, 2.0]);
     assert_eq!(motion.statistics().steps, steps);
@@ -182,14 +178,14 @@ fn a_step_observer_sees_every_step() {
     let ending = cvode
         .run_observed(
             &[1.0, 1.001, 1.002, 20.0],
-            |_, _| {
+            Observed::new(|_, _| {
                 outputs += 1;
                 Continue(())
-            },
-            |_, _| {
+            })
+            .steps(|_, _| {
                 steps += 1;
                 Continue(())
-            },
+            }),
         )
         .unwrap();
     assert_eq!((ending, outputs, steps), (Ending::Completed, 4, cvode.statistics().steps));
@@ -218,22 +214,22 @@ fn nothing_is_evaluated_beyond_the_stop_time() {
             assert!(farthest.get() <= 1.0, "{}", farthest.get());
 
             farthest.set(0.0);
-            let mut cvode = Cvode::new(field(), 0.0, &[0.0], &options).unwrap();
-            cvode.advance_to(end).unwrap();
+            let mut cvode = Integration::new(field(), 0.0, &[0.0], &options).unwrap();
+            cvode.state_at(end).unwrap();
             assert!(farthest.get() > 1.0);
 
             farthest.set(0.0);
-            let mut cvode = Cvode::new(field(), 0.0, &[0.0], &options.stop_time(end)).unwrap();
-            cvode.advance_to(0.5 * end).unwrap();
-            cvode.advance_to(end).unwrap();
+            let mut cvode = Integration::new(field(), 0.0, &[0.0], &options.stop_time(end)).unwrap();
+            cvode.state_at(0.5 * end).unwrap();
+            cvode.state_at(end).unwrap();
             assert!(farthest.get() <= 1.0);
             assert_eq!(cvode.statistics().current_time, end);
-            let error = cvode.advance_to(1.5 * end).unwrap_err().to_string();
+            let error = cvode.state_at(1.5 * end).unwrap_err().to_string();
             assert_eq!(error, format!("t = {} lies beyond the stop time {end}", 1.5 * end));
             cvode.set_stop_time(Some(2.0 * end)).unwrap();
-            cvode.advance_to(1.5 * end).unwrap();
+            cvode.state_at(1.5 * end).unwrap();
             cvode.set_stop_time(None).unwrap();
-            cvode.advance_to(3.0 * end).unwrap();
+            cvode.state_at(3.0 * end).unwrap();
         }
     }
 }
@@ -242,17 +238,17 @@ fn nothing_is_evaluated_beyond_the_stop_time() {
 fn limits_of_step_and_order_are_kept() {
     let options = Options::default().max_step(0.01).initial_step(1e-5).max_order(2);
     let mut cvode = pendulum_at(0.0, &options);
-    assert_eq!(cvode.step(1.0).unwrap(), 1e-5); // short enough for the error test
+    assert_eq!(cvode.step_towards(1.0).unwrap(), 1e-5); // short enough for the error test
     let mut before = cvode.time();
     while cvode.time() < 1.0 {
-        let t = cvode.step(1.0).unwrap();
+        let t = cvode.step_towards(1.0).unwrap();
         assert!(t - before <= 0.01 * (1.0 + 1e-12));
         assert!(cvode.statistics().last_order <= 2);
         before = t;
     }
     // The first step has the given length backwards too.
     let mut backwards = pendulum_at(0.0, &options);
-    assert_eq!(backwards.step(-1.0).unwrap(), -1e-5);
+    assert_eq!(backwards.step_towards(-1.0).unwrap(), -1e-5);
 }
 
 #[test]
@@ -291,7 +287,9 @@ fn debug_shows_where_it_stands() {
     let cvode = pendulum_at(0.5, &Options::default());
     let shown = format!("{cvode:?}");
     assert!(
-        shown.starts_with("Cvode { time: 0.5, state: [1.0, 0.0], statistics: Statistics { steps: 0, "),
+        shown.starts_with(
+            "Integration { time: 0.5, state: [1.0, 0.0], events: [], statistics: Statistics { steps: 0, "
+        ),
         "{shown}"
     );
 }
@@ -299,13 +297,14 @@ fn debug_shows_where_it_stands() {
 /// Solvers are independent of each other and of the thread they were made in.
 #[test]
 fn a_solver_moves_between_threads() {
-    let run = |mut cvode: Cvode<_>| std::thread::spawn(move || cvode.advance_to(10.0).unwrap().to_vec());
+    let run =
+        |mut cvode: Integration<Cvode<_>>| std::thread::spawn(move || cvode.state_at(10.0).unwrap().to_vec());
     let cvode = |phase: f64| {
         let field = from_fn(1, move |t: f64, _y: &[f64], ydot: &mut [f64]| {
             ydot[0] = (t + phase).cos();
             Ok(())
         });
-        Cvode::new(field, 0.0, &[phase.sin()], &Options::default()).unwrap()
+        Integration::new(field, 0.0, &[phase.sin()], &Options::default()).unwrap()
     };
     let threads: Vec<_> = (0..8).map(|i| (f64::from(i), run(cvode(f64::from(i))))).collect();
     for (phase, thread) in threads {

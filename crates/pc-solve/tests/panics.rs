@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
-use pc_solve::{Cvode, Failure, Method, Options, VectorField, from_fn, solve};
+use pc_solve::{Failure, Integration, Method, Observed, Options, VectorField, from_fn, solve};
 
 /// ẏ = 1 that panics, or fails, from a time on, and counts its drops.
 struct Fragile {
@@ -69,11 +69,10 @@ fn a_panic_goes_on_to_the_caller_and_leaves_the_last_state() {
         let drops = Rc::new(Cell::new(0));
         let field = Fragile { panics_from: 2.0, ..Fragile::new(&drops) };
         let options = Options::new(method).max_step(0.1);
-        let mut cvode = Cvode::new(field, 0.0, &[0.0], &options).unwrap();
-        cvode.advance_to(1.0).unwrap();
+        let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+        cvode.state_at(1.0).unwrap();
         for _ in 0..3 {
-            let panic =
-                catch_unwind(AssertUnwindSafe(|| cvode.advance_to(3.0).map(<[f64]>::len))).unwrap_err();
+            let panic = catch_unwind(AssertUnwindSafe(|| cvode.state_at(3.0).map(<[f64]>::len))).unwrap_err();
             assert_eq!(message(&*panic), "no further than 2");
             assert!(cvode.time() < 2.0 && cvode.time() > 1.89);
             assert!((cvode.state()[0] - cvode.time()).abs() < 1e-9);
@@ -108,18 +107,20 @@ fn a_panic_unwinds_through_solve() {
 #[test]
 fn a_panicking_observer_leaves_the_solver_usable() {
     let drops = Rc::new(Cell::new(0));
-    let mut cvode = Cvode::new(Fragile::new(&drops), 0.0, &[0.0], &Options::default().max_step(0.1)).unwrap();
+    let mut cvode =
+        Integration::new(Fragile::new(&drops), 0.0, &[0.0], &Options::default().max_step(0.1)).unwrap();
     let panic =
         catch_unwind(AssertUnwindSafe(|| cvode.run(&[1.0, 2.0], |t, _| panic!("seen {t}")))).unwrap_err();
     assert_eq!(message(&*panic), "seen 1");
     assert_eq!(cvode.time(), 1.0);
 
     let observer = |t: f64, _: &[f64]| if t > 1.5 { panic!("far enough") } else { ControlFlow::Continue(()) };
-    let run = || cvode.run_observed(&[1.7, 2.0], |_, _| ControlFlow::Continue(()), observer);
+    let run =
+        || cvode.run_observed(&[1.7, 2.0], Observed::new(|_, _| ControlFlow::Continue(())).steps(observer));
     assert_eq!(message(&*catch_unwind(AssertUnwindSafe(run)).unwrap_err()), "far enough");
     assert!(cvode.time() > 1.5);
     assert!((cvode.state()[0] - cvode.time()).abs() < 1e-9);
-    assert!((cvode.advance_to(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
+    assert!((cvode.state_at(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
 }
 
 #[test]
@@ -147,30 +148,30 @@ fn the_field_is_dropped_once() {
     let options = Options::default();
 
     // Never used.
-    drop(Cvode::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap());
+    drop(Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap());
     assert_eq!(drops.get(), 1);
 
     // In the middle of a step.
-    let mut cvode = Cvode::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
-    cvode.advance_to(1.0).unwrap();
+    let mut cvode = Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
+    cvode.state_at(1.0).unwrap();
     drop(cvode);
     assert_eq!(drops.get(), 1);
 
     // After an error; the error outlives the solver.
     let field = Fragile { fails_from: 1.0, ..Fragile::new(&drops) };
-    let mut cvode = Cvode::new(field, 0.0, &[0.0], &options).unwrap();
-    let error = cvode.advance_to(2.0).unwrap_err();
+    let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+    let error = cvode.state_at(2.0).unwrap_err();
     drop(cvode);
     assert_eq!(drops.get(), 1);
     assert!(error.to_string().starts_with("CV_RHSFUNC_FAIL (-8) after reaching t = "));
 
     // Refused.
-    assert!(Cvode::new(Fragile::new(&drops), f64::NAN, &[0.0], &options).is_err());
+    assert!(Integration::new(Fragile::new(&drops), f64::NAN, &[0.0], &options).is_err());
     assert_eq!(drops.get(), 1);
 
     // Given back.
-    let mut cvode = Cvode::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
-    cvode.advance_to(1.0).unwrap();
+    let mut cvode = Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
+    cvode.state_at(1.0).unwrap();
     assert_eq!(cvode.field().drops.0.get(), 0);
     let field = cvode.into_field();
     assert_eq!(drops.get(), 0);

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, derivative, precise};
 use pc_solve::{
-    Correction, Cvode, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, from_fn,
+    Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, from_fn,
     solve, solve_with_sensitivities,
 };
 
@@ -162,7 +162,8 @@ fn the_motion_is_unchanged_without_error_control() {
             let alone = solve(Offering(pendulum, offer), 0.0, &[1.0, 0.5], &times, &options).unwrap();
             let with = |wanted: &Sensitivities| {
                 let field = Offering(pendulum, offer);
-                let mut cvode = Cvode::with_sensitivities(field, 0.0, &[1.0, 0.5], &options, wanted).unwrap();
+                let mut cvode =
+                    Integration::with_sensitivities(field, 0.0, &[1.0, 0.5], &options, wanted).unwrap();
                 cvode.set_stop_time(Some(20.0)).unwrap();
                 let (mut states, mut matrix) = (Vec::new(), Vec::new());
                 let output = |_, y: &[f64], s: &[f64]| {
@@ -170,7 +171,7 @@ fn the_motion_is_unchanged_without_error_control() {
                     matrix = s.to_vec();
                     ControlFlow::Continue(())
                 };
-                cvode.run_with_sensitivities(&times, output).unwrap();
+                cvode.run_with_sensitivities(&times, output, |_| ControlFlow::Continue(())).unwrap();
                 (states, matrix, cvode.statistics().steps, cvode.sensitivity_statistics())
             };
             // Tolerances that the iteration for the columns reaches as soon as that for the state.
@@ -222,7 +223,7 @@ fn stepping() {
     let options = &precise()[0];
     let wanted = Sensitivities::new().by_start(1).by_parameter_from(0, [3.0, 4.0]);
     let field = Offering(OSCILLATOR, Offer::Products);
-    let mut cvode = Cvode::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &wanted).unwrap();
+    let mut cvode = Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &wanted).unwrap();
     assert_eq!(cvode.sensitivities().unwrap(), [0.0, 1.0, 3.0, 4.0]);
     assert_eq!(cvode.sensitivity_statistics(), SensitivityStatistics::default());
     let check = |t: f64, s: &[f64]| {
@@ -232,21 +233,22 @@ fn stepping() {
         }
     };
     while cvode.time() < 2.0 {
-        let t = cvode.step(10.0).unwrap();
-        check(t, cvode.sensitivities().unwrap());
+        let t = cvode.step_towards(10.0).unwrap();
+        check(t, &cvode.sensitivities().unwrap());
     }
     let ahead = cvode.statistics().current_time;
     let inside = ahead + 1e-3;
-    cvode.advance_to(inside).unwrap();
+    cvode.state_at(inside).unwrap();
     assert!(cvode.statistics().current_time > inside);
-    check(inside, cvode.sensitivities().unwrap());
+    check(inside, &cvode.sensitivities().unwrap());
     let mut seen = Vec::new();
     let stop_at_five = |t, _: &[f64], s: &[f64]| {
         check(t, s);
         seen.push(t);
         if t < 5.0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let ending = cvode.run_with_sensitivities(&[3.0, 5.0, 6.0], stop_at_five).unwrap();
+    let ending =
+        cvode.run_with_sensitivities(&[3.0, 5.0, 6.0], stop_at_five, |_| ControlFlow::Continue(())).unwrap();
     assert_eq!((ending, seen), (pc_solve::Ending::Stopped, vec![3.0, 5.0]));
     let work = cvode.sensitivity_statistics();
     assert!(work.evaluations > cvode.statistics().steps && work.nonlinear_iterations > 0);
@@ -255,8 +257,8 @@ fn stepping() {
     let field = Offering(OSCILLATOR, Offer::Products);
     let none = Sensitivities::new();
     assert!(none.is_empty());
-    let mut plain = Cvode::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &none).unwrap();
-    plain.advance_to(1.0).unwrap();
+    let mut plain = Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &none).unwrap();
+    plain.state_at(1.0).unwrap();
     assert_eq!(plain.sensitivities().unwrap(), [0.0; 0]);
 }
 

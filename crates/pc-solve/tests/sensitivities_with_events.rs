@@ -3,7 +3,7 @@
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Checkpoint, Correction, Cvode, DenseOutput, Event, FnEvents, Hybrid, InputError, Method, Options, Reason,
+    Checkpoint, Correction, DenseOutput, Event, FnEvents, InputError, Integration, Method, Options, Reason,
     Segment, Sensitivities, SolveError, VectorField, from_fn, solve_dense_with_sensitivities,
     solve_with_sensitivities,
 };
@@ -80,7 +80,8 @@ fn a_bouncing_ball() {
     for method in [Method::Adams, Method::Bdf] {
         for correction in [Correction::Staggered, Correction::Simultaneous] {
             let columns = columns().correction(correction);
-            let cvode = Cvode::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns).unwrap();
+            let cvode =
+                Integration::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns).unwrap();
             let mut hybrid = cvode.with_events(bounce(e)).unwrap();
             let mut outputs = 0;
             let times = [0.4, 0.6, 0.9, 1.2];
@@ -106,13 +107,14 @@ fn a_bouncing_ball() {
 fn many_bounces() {
     let end = 4.0;
     let motion = |h: f64, g: f64, e: f64| {
-        let cvode = Cvode::new(ball(g), 0.0, &[h, 0.0], &sharp(Method::Adams)).unwrap();
+        let cvode = Integration::new(ball(g), 0.0, &[h, 0.0], &sharp(Method::Adams)).unwrap();
         let mut hybrid = cvode.with_events(bounce(e)).unwrap();
         hybrid.advance_to(end, |_| Continue(())).unwrap();
         hybrid.state().to_vec()
     };
     let cvode =
-        Cvode::with_sensitivities(ball(9.81), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns()).unwrap();
+        Integration::with_sensitivities(ball(9.81), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns())
+            .unwrap();
     let mut hybrid = cvode.with_events(bounce(0.9)).unwrap();
     let mut bounces = 0;
     hybrid
@@ -161,7 +163,8 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
             Ok(-1.0)
         });
     let columns = Sensitivities::new().by_parameter(0);
-    let cvode = Cvode::with_sensitivities(field, 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns).unwrap();
+    let cvode =
+        Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns).unwrap();
     let mut hybrid = cvode.with_events(wall).unwrap();
     hybrid.advance_to(t, |_| Continue(())).unwrap();
     // x = c cos s + e √(1 − c²) sin s with s = t − acos c
@@ -169,7 +172,7 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
     let by_s = [-c * s.sin() + e * root * s.cos(), -c * s.cos() - e * root * s.sin()];
     let by_c = [s.cos() - e * c / root * s.sin(), -s.sin() - e * c / root * s.cos()];
     let expected = [by_c[0] + by_s[0] / root, by_c[1] + by_s[1] / root];
-    assert_near(hybrid.sensitivities().unwrap(), &expected, 1e-8);
+    assert_near(&hybrid.sensitivities().unwrap(), &expected, 1e-8);
 }
 
 /// Events that reset nothing leave the derivatives as they are.
@@ -177,17 +180,18 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
 fn events_that_reset_nothing() {
     let passes = FnEvents::new().with(Event::new("half"), |_, y| Ok(y[0] - 0.5));
     let cvode =
-        Cvode::with_sensitivities(ball(2.0), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns()).unwrap();
+        Integration::with_sensitivities(ball(2.0), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns())
+            .unwrap();
     let mut hybrid = cvode.with_events(passes).unwrap();
     hybrid.advance_to(3.0, |_| Continue(())).unwrap();
-    assert_near(hybrid.sensitivities().unwrap(), &[1.0, 0.0, 3.0, 1.0, -4.5, -3.0, 0.0, 0.0], 1e-9);
+    assert_near(&hybrid.sensitivities().unwrap(), &[1.0, 0.0, 3.0, 1.0, -4.5, -3.0, 0.0, 0.0], 1e-9);
 }
 
 /// What has no derivatives, or is not told, is refused.
 #[test]
 fn what_has_no_derivatives_is_refused() {
     let start = |h: f64, v: f64| {
-        Cvode::with_sensitivities(ball(1.0), 0.0, &[h, v], &sharp(Method::Adams), &columns()).unwrap()
+        Integration::with_sensitivities(ball(1.0), 0.0, &[h, v], &sharp(Method::Adams), &columns()).unwrap()
     };
     let turn = |_: f64, y: &mut [f64]| {
         y[1] = y[1].abs();
@@ -224,37 +228,43 @@ fn derivatives_go_on_from_a_checkpoint() {
         })
     };
     let start = Sensitivities::new().by_start(0);
-    let mut motion = Cvode::with_sensitivities(decay(), 0.0, &[2.0], &options, &start).unwrap();
-    motion.advance_to(1.0).unwrap();
+    let mut motion = Integration::with_sensitivities(decay(), 0.0, &[2.0], &options, &start).unwrap();
+    motion.state_at(1.0).unwrap();
     let kept = Checkpoint::from_bytes(&motion.checkpoint().to_bytes("")).unwrap().0;
     assert_near(kept.sensitivities(), &[1.0 / 9.0], 1e-9);
-    let mut later = Cvode::resume_with_sensitivities(decay(), &kept, &options, &start).unwrap();
-    later.advance_to(1.5).unwrap();
-    assert_near(later.sensitivities().unwrap(), &[1.0 / 16.0], 1e-9);
-    let mut same = Cvode::resume_with_sensitivities(decay(), &motion.checkpoint(), &options, &start).unwrap();
-    same.advance_to(1.5).unwrap();
+    let mut later = Integration::resume_with_sensitivities(decay(), &kept, &options, &start).unwrap();
+    later.state_at(1.5).unwrap();
+    assert_near(&later.sensitivities().unwrap(), &[1.0 / 16.0], 1e-9);
+    let mut same =
+        Integration::resume_with_sensitivities(decay(), &motion.checkpoint(), &options, &start).unwrap();
+    same.state_at(1.5).unwrap();
     assert_eq!(same.sensitivities().unwrap(), later.sensitivities().unwrap());
 
     let refused = |result: Result<(), SolveError>| {
         let error = result.unwrap_err();
         assert!(matches!(error, SolveError::Input(InputError::Sensitivities { .. })), "{error}");
     };
-    refused(Cvode::resume(decay(), &kept, &options).map(|_| ()));
-    refused(Hybrid::resume(decay(), FnEvents::new(), &kept, &options).map(|_| ()));
+    refused(Integration::resume(decay(), &kept, &options).map(|_| ()));
+    refused(
+        Integration::resume(decay(), &kept, &options)
+            .and_then(|resumed| resumed.with_events_of(FnEvents::new(), &kept))
+            .map(|_| ()),
+    );
     let two = Sensitivities::new().by_start(0).along([1.0]);
-    refused(Cvode::resume_with_sensitivities(decay(), &kept, &options, &two).map(|_| ()));
+    refused(Integration::resume_with_sensitivities(decay(), &kept, &options, &two).map(|_| ()));
     let plain = Checkpoint::start(0.0, &[2.0]);
-    refused(Cvode::resume_with_sensitivities(decay(), &plain, &options, &start).map(|_| ()));
+    refused(Integration::resume_with_sensitivities(decay(), &plain, &options, &start).map(|_| ()));
 
     // With events, in the middle of a flight.
-    let cvode = Cvode::with_sensitivities(ball(9.81), 0.0, &[1.3, 0.0], &options, &columns()).unwrap();
+    let cvode = Integration::with_sensitivities(ball(9.81), 0.0, &[1.3, 0.0], &options, &columns()).unwrap();
     let mut hybrid = cvode.with_events(bounce(0.8)).unwrap();
     hybrid.advance_to(0.7, |_| Continue(())).unwrap();
     let kept = Checkpoint::from_bytes(&hybrid.checkpoint().to_bytes("")).unwrap().0;
-    let mut later =
-        Hybrid::resume_with_sensitivities(ball(9.81), bounce(0.8), &kept, &options, &columns()).unwrap();
+    let mut later = Integration::resume_with_sensitivities(ball(9.81), &kept, &options, &columns())
+        .and_then(|resumed| resumed.with_events_of(bounce(0.8), &kept))
+        .unwrap();
     later.advance_to(1.2, |_| Continue(())).unwrap();
-    assert_near(later.sensitivities().unwrap(), &after_one_bounce(1.2, 1.3, 9.81, 0.8).1, 1e-8);
+    assert_near(&later.sensitivities().unwrap(), &after_one_bounce(1.2, 1.3, 9.81, 0.8).1, 1e-8);
 }
 
 /// ẏ = −p y/P at p = P of any size: ∂y/∂p = −t e^(−t)/P, to the tolerance.
@@ -295,7 +305,8 @@ fn parameters_of_any_size() {
 fn derivatives_between_the_steps() {
     let (h, g, e) = (1.3, 9.81, 0.8);
     for method in [Method::Adams, Method::Bdf] {
-        let cvode = Cvode::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns()).unwrap();
+        let cvode =
+            Integration::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns()).unwrap();
         let mut hybrid = cvode.with_events(bounce(e)).unwrap();
         let mut matrix = DenseOutput::default();
         let keep = |_: Segment, of_matrix: Segment| {
@@ -347,19 +358,20 @@ fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
             assert!(at_steps < 300.0 * rtol, "{method} {rtol}: {at_steps:e}");
         }
     }
-    let mut cvode = Cvode::with_sensitivities(decay(), 0.0, &[2.0], &sharp(Method::Adams), &columns).unwrap();
+    let mut cvode =
+        Integration::with_sensitivities(decay(), 0.0, &[2.0], &sharp(Method::Adams), &columns).unwrap();
     assert!(matches!(
         cvode.interpolate_sensitivities(0.0, 0).unwrap_err(),
         SolveError::Input(InputError::NoStep)
     ));
-    let end = cvode.step(3.0).unwrap();
+    let end = cvode.step_towards(3.0).unwrap();
     assert_near(&cvode.interpolate_sensitivities(end / 2.0, 0).unwrap(), &[exact(end / 2.0)], 1e-9);
     assert!(matches!(
         cvode.interpolate_sensitivities(2.0 * end, 0).unwrap_err(),
         SolveError::Input(InputError::OutsideStep { .. })
     ));
-    let mut plain = Cvode::new(decay(), 0.0, &[2.0], &sharp(Method::Adams)).unwrap();
-    let end = plain.step(3.0).unwrap();
+    let mut plain = Integration::new(decay(), 0.0, &[2.0], &sharp(Method::Adams)).unwrap();
+    let end = plain.step_towards(3.0).unwrap();
     assert!(matches!(
         plain.interpolate_sensitivities(end, 0).unwrap_err(),
         SolveError::Input(InputError::NoSensitivities)

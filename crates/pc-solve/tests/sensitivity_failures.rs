@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use pc_solve::{
-    Code, Cvode, Failure, Method, NonFinite, Options, Sensitivities, SensitivityFailure,
-    SensitivityTrajectory, SolveError, VectorField, from_fn, solve_with_sensitivities,
+    Code, Failure, Integration, Method, NonFinite, Options, Sensitivities, SensitivityTrajectory, SolveError,
+    SolveFailure, VectorField, from_fn, solve_with_sensitivities,
 };
 
 type Value = fn(f64) -> Result<f64, Failure>;
@@ -82,7 +82,10 @@ fn wanted() -> Sensitivities {
     Sensitivities::new().by_start(0).by_parameter(0)
 }
 
-fn run(field: Faulty, method: Method) -> Result<SensitivityTrajectory, Box<SensitivityFailure>> {
+fn run(
+    field: Faulty,
+    method: Method,
+) -> Result<SensitivityTrajectory, Box<SolveFailure<SensitivityTrajectory>>> {
     // Adams needs no Jacobian for the state, so all failures are of the sensitivities; for BDF they may be of both.
     let options = Options::new(method).initial_step(0.1).max_step(0.1);
     solve_with_sensitivities(field, 0.0, &[0.0], &[0.5, 2.0], &options, &wanted())
@@ -177,9 +180,9 @@ fn panics_go_on_to_the_caller_and_leave_the_last_state() {
         for field in [faulty(PANIC, true, ZERO), faulty(PANIC, false, ZERO), faulty(ZERO, true, PANIC)] {
             let drops = Rc::clone(&field.drops);
             let options = Options::new(method).initial_step(0.1).max_step(0.1);
-            let mut cvode = Cvode::with_sensitivities(field, 0.0, &[0.0], &options, &wanted()).unwrap();
+            let mut cvode = Integration::with_sensitivities(field, 0.0, &[0.0], &options, &wanted()).unwrap();
             for _ in 0..2 {
-                let advance = AssertUnwindSafe(|| cvode.advance_to(2.0).map(<[f64]>::len));
+                let advance = AssertUnwindSafe(|| cvode.state_at(2.0).map(<[f64]>::len));
                 let panic = catch_unwind(advance).unwrap_err();
                 assert_eq!(panic.downcast_ref::<&str>(), Some(&"no further than 1"));
                 assert!(cvode.time() > 0.89 && cvode.time() <= 1.0);

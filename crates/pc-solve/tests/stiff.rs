@@ -114,8 +114,9 @@ fn jacobian_is_column_major() {
     let mut steps = Vec::new();
     for solver in [NonlinearSolver::Newton, NonlinearSolver::FixedPoint] {
         let options = Options::new(Method::Bdf).nonlinear_solver(solver);
-        let mut cvode = pc_solve::Cvode::new(Linear { jacobians: 0 }, 0.0, &[2.0, 1.0], &options).unwrap();
-        let y = cvode.advance_to(0.1).unwrap().to_vec();
+        let mut cvode =
+            pc_solve::Integration::new(Linear { jacobians: 0 }, 0.0, &[2.0, 1.0], &options).unwrap();
+        let y = cvode.state_at(0.1).unwrap().to_vec();
         // y1 = a e^(-t) + (2 − a) e^(-1e5 t) with a = 1e5/(1e5 − 1).
         let error = y[0] - 1e5 / (1e5 - 1.0) * (-0.1_f64).exp();
         assert!(error.abs() < 1e-6, "{solver:?}: {error}"); // 1000 rtol: the local errors add up

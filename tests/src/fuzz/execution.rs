@@ -3,7 +3,7 @@
 use pc_expr::{Events, VectorField};
 use pc_mech::{EmitOptions, Equations, Graph, Language};
 use pc_model::{Assembly, Document, Flow, Model, ModelError, Source, Variables};
-use pc_solve::{Occurrence, Options, Trajectory, solve_with_events};
+use pc_solve::{Occurrence, Options, Solve, Trajectory};
 
 use pc_verify::{Agreement, VerifyError, verify};
 
@@ -271,7 +271,8 @@ fn integrate(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64
     let options = Options::default().relative_tolerance(RTOL * loose).absolute_tolerance(ATOL * loose);
     let options = options.max_steps(MOST_STEPS);
     let start = flow.start.clone();
-    let solved = solve_with_events(&mut flow.motion, t_start, &start, &times, &options, &mut flow.events);
+    let solved =
+        Solve::new(&mut flow.motion, t_start, &start).method(&options).events(&mut flow.events).run(&times);
     let solved = solved.map_err(|failure| Refusal::new(GIVEN_UP, &failure.error))?;
     let residual = residual(flow, &solved.trajectory);
     let names: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();

@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 27] = [
+const FILES: [&str; 28] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -72,6 +72,7 @@ const FILES: [&str; 27] = [
     "api/kernel.rs",
     "api/solver.rs",
     "api/occurrences.rs",
+    "api/sensitivity.rs",
     "api/dense.rs",
     "api/checkpoint.rs",
     "api/statistics.rs",

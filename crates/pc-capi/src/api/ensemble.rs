@@ -7,7 +7,9 @@ use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
-use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
+use pc_solve::{
+    Checkpoint, Cvode, Ending, Ensemble, Observed, Options, Panicked, Sensitivities, Stepper, Stop,
+};
 
 use crate::api::options::{pc_solver_options, take};
 use crate::api::system::pc_system;
@@ -15,7 +17,7 @@ use crate::ffi::boundary::entry;
 use crate::ffi::error::{Fault, pc_error};
 use crate::ffi::pointer::{finite, handle, numbers};
 use crate::ffi::status::pc_status;
-use crate::machinery::engine::Engine;
+use crate::machinery::engine::{Engine, engine};
 use crate::machinery::event_set::Followed;
 use crate::machinery::field::Field;
 
@@ -121,7 +123,7 @@ impl Plan<'_> {
             let step = |_: f64, _: &[f64]| {
                 if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            Ok(engine.run(self.times, output, |_| ControlFlow::Continue(()), step)?)
+            Ok(engine.run_observed(self.times, Observed::new(output).steps(step))?)
         });
         match ended {
             Ok(Ending::Completed) => {}
@@ -145,7 +147,8 @@ impl Plan<'_> {
             field.parameters_mut().copy_from_slice(&values);
             events.set_parameters(&values);
         }
-        Ok(Engine::new(field, &Checkpoint::start(self.t, &start), &self.options, Followed::new(events))?)
+        let (start, events) = (Checkpoint::start(self.t, &start), Followed::new(events));
+        Ok(engine(field, &start, &self.options, events, &Sensitivities::new())?)
     }
 }
 
@@ -205,7 +208,8 @@ pub unsafe extern "C" fn pc_ensemble_run(
         if let Some(&end) = times.last() {
             // A step of one member compiles the derivatives that all need. What goes wrong, each will hear of.
             let first = states.and_then(|all| all.get(..start.len())).unwrap_or(start);
-            let _ = Cvode::new(&mut field, t, first, &options).and_then(|mut cvode| cvode.step(end));
+            let _ = Cvode::new(&mut field, t, first, &options)
+                .and_then(|mut cvode| Stepper::step(&mut cvode, end));
         }
         let prototype = Mutex::new((field, events));
         let plan = Plan { prototype, t, start, states, parameters, times, options };

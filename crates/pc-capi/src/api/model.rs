@@ -26,6 +26,7 @@ pub(crate) struct Contents {
     pub(crate) external: Vec<String>,
     projects_start: bool,
     pub(crate) observes_reactions: bool,
+    differentiates: bool,
 }
 
 #[derive(Clone)]
@@ -49,6 +50,7 @@ impl Contents {
         }
         model.project_start(self.projects_start);
         model.observe_reactions(self.observes_reactions);
+        model.differentiate_by_parameters(self.differentiates);
         Ok(model)
     }
 }
@@ -60,6 +62,7 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         external: Vec::new(),
         projects_start: false,
         observes_reactions: false,
+        differentiates: false,
     };
     Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }))
 }
@@ -262,10 +265,26 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
     unsafe { change(model, error, observe) }
 }
 
+/// Whether systems of the model are derived with their derivatives by parameters, which pc_solver_add_sensitivity takes. Not 0
+/// is yes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_differentiate(
+    model: *mut pc_model,
+    yes: c_int,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let differentiate = |contents: &mut Contents| {
+        contents.differentiates = yes != 0;
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, differentiate) }
+}
+
 /// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
 /// wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
 /// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
-/// pc_model_add_external_force.
+/// pc_model_differentiate, pc_model_add_external_force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

@@ -37,6 +37,9 @@ pub struct pc_statistics {
     pub next_step: f64,
     /// End of the last step, which may lie beyond the time of the solver.
     pub step_time: f64,
+    /// Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
+    /// does not let expect: the beginning of a pulse, a jump.
+    pub limited_steps: u64,
 }
 
 impl From<Statistics> for pc_statistics {
@@ -54,6 +57,7 @@ impl From<Statistics> for pc_statistics {
             last_step: of.last_step,
             next_step: of.current_step,
             step_time: of.current_time,
+            limited_steps: of.limited_steps,
         }
     }
 }

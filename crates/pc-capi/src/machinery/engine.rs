@@ -1,81 +1,41 @@
-//! An integration by CVODE, with events or without, and what is remembered of them.
+//! An integration by CVODE, and what is remembered of its events.
 
 use std::ffi::c_void;
 use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
-use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
+use pc_solve::{
+    Checkpoint, Cvode, DenseOutput, Ending, Observed, Occurrence, Options, Sensitivities, SolveError,
+    Statistics, VectorField,
+};
 
 use crate::ffi::error::Fault;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::field::Field;
 
-/// The integration.
-pub(crate) enum Engine {
-    Smooth(Box<Cvode<Field>>),
-    Hybrid(Box<Hybrid<Field, Followed>>),
-}
+/// The integration by CVODE, with its events.
+pub(crate) type Engine = Box<pc_solve::Integration<Cvode<Field>, Followed>>;
 
-impl Engine {
-    /// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
-    pub(crate) fn new(
-        mut field: Field,
-        from: &Checkpoint,
-        options: &Options,
-        events: Followed,
-    ) -> Result<Engine, SolveError> {
-        use pc_expr::VectorField;
-        // One of another length is refused below.
-        if from.state().len() == field.dim() {
-            field.restart(from.time(), from.state());
-        }
-        Ok(if events.is_empty() {
-            Engine::Smooth(Box::new(Cvode::resume(field, from, options)?))
-        } else {
-            Engine::Hybrid(Box::new(Hybrid::resume(field, events, from, options)?))
-        })
+/// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
+pub(crate) fn engine(
+    mut field: Field,
+    from: &Checkpoint,
+    options: &Options,
+    events: Followed,
+    sensitivities: &Sensitivities,
+) -> Result<Engine, SolveError> {
+    // One of another length is refused below.
+    if from.state().len() == field.dim() {
+        field.restart(from.time(), from.state());
     }
-
-    pub(crate) fn run(
-        &mut self,
-        times: &[f64],
-        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
-        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-    ) -> Result<Ending, SolveError> {
-        match self {
-            Engine::Smooth(cvode) => cvode.run_observed(times, output, step),
-            Engine::Hybrid(hybrid) => hybrid.run_observed(times, output, occurred, step),
-        }
+    // At a start they begin as they say.
+    if !sensitivities.is_empty() && from.sensitivities().is_empty() {
+        let (t, y) = (from.time(), from.state());
+        let begun = pc_solve::Integration::with_sensitivities(field, t, y, options, sensitivities)?;
+        return Ok(Box::new(begun.with_events(events)?));
     }
-
-    fn field(&self) -> &Field {
-        match self {
-            Engine::Smooth(cvode) => cvode.field(),
-            Engine::Hybrid(hybrid) => hybrid.field(),
-        }
-    }
-
-    fn time(&self) -> f64 {
-        match self {
-            Engine::Smooth(cvode) => cvode.time(),
-            Engine::Hybrid(hybrid) => hybrid.time(),
-        }
-    }
-
-    fn state(&self) -> &[f64] {
-        match self {
-            Engine::Smooth(cvode) => cvode.state(),
-            Engine::Hybrid(hybrid) => hybrid.state(),
-        }
-    }
-
-    fn statistics(&self) -> Statistics {
-        match self {
-            Engine::Smooth(cvode) => cvode.statistics(),
-            Engine::Hybrid(hybrid) => hybrid.statistics(),
-        }
-    }
+    let resumed = pc_solve::Integration::resume_with_sensitivities(field, from, options, sensitivities)?;
+    Ok(Box::new(resumed.with_events_of(events, from)?))
 }
 
 /// What a solver remembers of its events: little, however often they occur.
@@ -121,6 +81,7 @@ pub(crate) struct Integration {
     engine: Engine,
     events: Followed,
     options: Options,
+    sensitivities: Sensitivities,
     /// The work before it began anew at a checkpoint.
     earlier: Statistics,
     pub(crate) record: Record,
@@ -133,9 +94,10 @@ impl Integration {
         options: Options,
         events: Followed,
     ) -> Result<Integration, SolveError> {
-        let engine = Engine::new(field, from, &options, events.clone())?;
+        let sensitivities = Sensitivities::new();
+        let engine = engine(field, from, &options, events.clone(), &sensitivities)?;
         let record = Record::of(events.events().len());
-        Ok(Integration { engine, events, options, earlier: Statistics::default(), record })
+        Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
     }
 
     /// Follows one more event. Where that is refused, nothing has changed.
@@ -150,9 +112,30 @@ impl Integration {
         Ok(())
     }
 
+    /// Integrates one more column of sensitivities. Where that is refused, nothing has changed.
+    pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), Fault> {
+        if self.statistics().steps > 0 {
+            return Err(Fault::Begun { what: "a sensitivity" });
+        }
+        let more = self.sensitivities.clone().by_parameter_from(parameter, start);
+        let before = std::mem::replace(&mut self.sensitivities, more);
+        let begun = self.begin(&Checkpoint::start(self.time(), self.state()), self.events.clone());
+        begun.map_err(|error| {
+            self.sensitivities = before;
+            error.into()
+        })
+    }
+
+    /// S where it stands, column-major, and the number of columns.
+    pub(crate) fn sensitivities(&mut self) -> Result<(Vec<f64>, usize), SolveError> {
+        let matrix = self.engine.sensitivities()?;
+        Ok((matrix, self.sensitivities.len()))
+    }
+
     /// Begins anew with these events.
     fn begin(&mut self, from: &Checkpoint, events: Followed) -> Result<(), SolveError> {
-        let engine = Engine::new(self.engine.field().clone(), from, &self.options, events.clone())?;
+        let field = self.engine.field().clone();
+        let engine = engine(field, from, &self.options, events.clone(), &self.sensitivities)?;
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
@@ -167,7 +150,11 @@ impl Integration {
 
     /// Begins anew where it stands with these values of the parameters.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), Fault> {
-        let stand = self.stand("a change of parameters")?;
+        let what = "a change of parameters";
+        let stand = self.stand(what)?;
+        if !self.sensitivities.is_empty() {
+            return Err(Fault::Unsupported { what, why: "there are sensitivities by them" });
+        }
         let (mut field, mut events) = (self.engine.field().clone(), self.events.clone());
         let (found, expected) = (values.len(), field.parameters().len());
         if found != expected {
@@ -175,7 +162,7 @@ impl Integration {
         }
         field.parameters_mut().copy_from_slice(values);
         events.set_parameters(values);
-        let engine = Engine::new(field, &stand, &self.options, events.clone())?;
+        let engine = engine(field, &stand, &self.options, events.clone(), &self.sensitivities)?;
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
@@ -185,26 +172,17 @@ impl Integration {
         if self.events.has_own() {
             return Err(Fault::Unsupported { what, why: "there are events of the program's own" });
         }
-        Ok(match &self.engine {
-            Engine::Smooth(cvode) => cvode.checkpoint(),
-            Engine::Hybrid(hybrid) => hybrid.checkpoint(),
-        })
+        Ok(self.engine.checkpoint())
     }
 
     pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {
         self.record.terminal = None;
-        match &mut self.engine {
-            Engine::Smooth(cvode) => cvode.advance_to(t).map(|_| Ending::Completed),
-            Engine::Hybrid(hybrid) => hybrid.advance_to(t, |occurrence| self.record.note(occurrence)),
-        }
+        self.engine.advance_to(t, |occurrence| self.record.note(occurrence))
     }
 
     pub(crate) fn step(&mut self, towards: f64) -> Result<Ending, SolveError> {
         self.record.terminal = None;
-        match &mut self.engine {
-            Engine::Smooth(cvode) => cvode.step(towards).map(|_| Ending::Completed),
-            Engine::Hybrid(hybrid) => hybrid.step(towards, |occurrence| self.record.note(occurrence)),
-        }
+        self.engine.step(towards, |occurrence| self.record.note(occurrence))
     }
 
     pub(crate) fn run(
@@ -214,7 +192,7 @@ impl Integration {
     ) -> Result<Ending, SolveError> {
         self.record.terminal = None;
         let occurred = |occurrence: &Occurrence| self.record.note(occurrence);
-        self.engine.run(times, output, occurred, |_, _| ControlFlow::Continue(()))
+        self.engine.run_observed(times, Observed::new(output).occurrences(occurred))
     }
 
     pub(crate) fn run_dense(&mut self, end: f64) -> Result<(DenseOutput, Ending), SolveError> {
@@ -224,20 +202,12 @@ impl Integration {
             motion.extend([segment]);
             ControlFlow::Continue(())
         };
-        let ending = match &mut self.engine {
-            Engine::Smooth(cvode) => cvode.run_dense(end, keep)?,
-            Engine::Hybrid(hybrid) => {
-                hybrid.run_dense(end, keep, |occurrence| self.record.note(occurrence))?
-            }
-        };
+        let ending = self.engine.run_dense(end, keep, |occurrence| self.record.note(occurrence))?;
         Ok((motion, ending))
     }
 
     pub(crate) fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
-        match &mut self.engine {
-            Engine::Smooth(cvode) => cvode.interpolate(t, order),
-            Engine::Hybrid(hybrid) => hybrid.interpolate(t, order),
-        }
+        self.engine.interpolate(t, order)
     }
 
     /// What the end of a call means to its caller.

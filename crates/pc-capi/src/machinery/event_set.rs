@@ -60,10 +60,6 @@ impl Followed {
         more
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.list.is_empty()
-    }
-
     /// Gives the events of the model other values of the parameters.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) {
         self.model.set_parameters(values);
@@ -107,5 +103,40 @@ impl Events for Followed {
             Some(reset) => own.read("reset", unsafe { reset(t, y.as_mut_ptr(), y.len(), own.user.data) }),
             None => Ok(()),
         }
+    }
+
+    /// Nothing is known of how a reset of the program's own depends on anything.
+    fn has_parameter_derivatives(&self) -> bool {
+        self.own.iter().all(|own| own.reset.is_none()) && self.model.has_parameter_derivatives()
+    }
+
+    fn by_parameter(
+        &mut self,
+        event: usize,
+        parameter: usize,
+        t: f64,
+        y: &[f64],
+        reset: &mut [f64],
+    ) -> Result<f64, Failure> {
+        self.model.by_parameter(event, parameter, t, y, reset)
+    }
+
+    fn has_derivatives(&self) -> bool {
+        self.own.iter().all(|own| own.reset.is_none()) && self.model.has_derivatives()
+    }
+
+    fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure> {
+        self.model.gradient(event, t, y, by_state)
+    }
+
+    fn reset_along(
+        &mut self,
+        event: usize,
+        t: f64,
+        y: &[f64],
+        along: (f64, &[f64]),
+        change: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.model.reset_along(event, t, y, along, change)
     }
 }

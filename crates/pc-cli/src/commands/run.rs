@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use pc_mech::Graph;
 use pc_model::{Flow, Model};
-use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
+use pc_solve::{self as solver, Events, Solution, SolveError, Statistics, Trajectory};
 
 use crate::args::args::{Outputs, RunArguments, RunForm};
 use crate::args::input;
@@ -176,7 +176,7 @@ pub fn integrate_saved(
     let wall = start.elapsed();
     drop(progress);
 
-    let HybridMotion { trajectory, occurrences, ending } = solved;
+    let Solution { trajectory, occurrences, ending } = solved;
     if let (Some(verification), Some((t, y))) = (&mut verification, trajectory.last())
         && t != plan.t_start
         && !verification.is_long()

@@ -9,9 +9,7 @@ use std::time::Instant;
 
 use clap::Args;
 use pc_model::{Flow, Model};
-use pc_solve::{
-    Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_with_events_checkpointed,
-};
+use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, solve_checkpointed};
 
 use crate::args::args::RunForm;
 use crate::error::CliError;
@@ -150,7 +148,7 @@ impl Saving {
         flow: &Flow,
         plan: &Plan,
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-    ) -> Result<(HybridMotion, Option<SolveError>), CliError> {
+    ) -> Result<(Solution, Option<SolveError>), CliError> {
         let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
         let label = serde_json::to_string(&self.identity);
         let label = label.map_err(|error| write_error(&self.path, error.into()))?;
@@ -174,7 +172,7 @@ impl Saving {
         // after a reset is in the checkpoint.
         let parts = || (flow.motion.clone(), flow.events.clone());
         let (times, options) = (plan.times(), plan.options());
-        let solved = solve_with_events_checkpointed(parts, from, &times, &options, self.every, save, step);
+        let solved = solve_checkpointed(&options, parts, from, &times, self.every, save, step);
         let (motion, error) = match solved {
             Ok(motion) => (motion, None),
             Err(failure) => (failure.reached, Some(failure.error)),

@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 
 use pc_model::{Flow, Model, UnknownParameter};
 use pc_solve::{
-    HybridMotion, HybridSensitivities, Options, Sensitivities, SolveError,
-    solve_with_sensitivities_and_events,
+    Options, Sensitivities, SensitivitySolution, Solution, SolveError, solve_with_sensitivities_and_events,
 };
 
 use crate::args::args::RunForm;
@@ -57,12 +56,11 @@ impl Derivatives {
         times: &[f64],
         options: &Options,
         output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-    ) -> (HybridMotion, Option<SolveError>) {
+    ) -> (Solution, Option<SolveError>) {
         let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
         let solved = solve_with_sensitivities_and_events(
             motion,
-            t_start,
-            start,
+            (t_start, start),
             times,
             options,
             &self.wanted,
@@ -71,11 +69,11 @@ impl Derivatives {
         );
         let (reached, error) = match solved {
             Ok(reached) => (reached, None),
-            Err((reached, error)) => (*reached, Some(error)),
+            Err(failure) => (failure.reached, Some(failure.error)),
         };
-        let HybridSensitivities { trajectory, occurrences, ending } = reached;
+        let SensitivitySolution { trajectory, occurrences, ending } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
-        (HybridMotion { trajectory: trajectory.motion().clone(), occurrences, ending }, error)
+        (Solution { trajectory: trajectory.motion().clone(), occurrences, ending }, error)
     }
 
     /// Names of the columns: ∂x/∂p for each x of a motion, then for the next p.

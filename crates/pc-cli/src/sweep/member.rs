@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pc_mech::{Graph, VectorField};
 use pc_model::{Flow, Model, ModelError};
-use pc_solve::{Ending, Events, HybridMotion, Options, Stop, Trajectory};
+use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
@@ -127,7 +127,7 @@ impl Members {
             }
         };
         let (motion, error) = follow(&mut flow, self.t_start, &self.times, &self.options, observer);
-        let HybridMotion { trajectory, ending, .. } = motion;
+        let Solution { trajectory, ending, .. } = motion;
         if ending == Some(Ending::Stopped) {
             return None;
         }

@@ -13,6 +13,8 @@ use crate::model::model::{Assembly, Model};
 /// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
 /// larger, is no rounding.
 const OFF: f64 = 1e-8;
+/// A reset may lengthen by this factor how far a state is off the constraints.
+const LENGTHENED: f64 = 10.0;
 
 /// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
 #[derive(Clone, Debug)]
@@ -175,6 +177,7 @@ impl Events for FlowEvents {
     /// stay where they are unless the reset says otherwise: the state is at the event, and no rounding may take it back.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
+        let before = all.clone();
         let Reset { places, values } = &mut self.resets[event];
         let mut new = vec![0.0; places.len()];
         self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
@@ -194,9 +197,14 @@ impl Events for FlowEvents {
                 [] => motion.project(t, &mut all)?,
                 determining => motion.project_holding(t, &mut all, &[], determining)?,
             }
+            // A state that is itself off them by so much, as those that derivatives are taken by, stays so near.
+            let mut nearest = before.clone();
+            motion.project(t, &mut nearest)?;
+            let coordinates = 0..motion.coordinates();
+            let off = coordinates.map(|i| (before[i] - nearest[i]).abs()).fold(0.0, f64::max);
             for i in 0..motion.coordinates() {
                 let (given, allowed) = (given[i], all[i]);
-                if (given - allowed).abs() > OFF * given.abs().max(1.0) {
+                if (given - allowed).abs() > OFF * given.abs().max(1.0) + LENGTHENED * off {
                     let coordinate = motion.component_name(i);
                     return Err(Failure::fatal(OffConstraints { coordinate, given, allowed }));
                 }

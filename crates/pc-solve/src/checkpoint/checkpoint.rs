@@ -4,25 +4,25 @@
 //! interrupted there or not: everything after a checkpoint depends on nothing but what is in it. That changes the
 //! motion within its tolerance, and costs the steps in which the order grows again.
 //! ```
-//! use pc_solve::{Checkpoint, Cvode, Options, from_fn};
+//! use pc_solve::{Checkpoint, Integration, Options, from_fn};
 //!
 //! let field = || from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -y[0].sin(); Ok(()) });
 //! let options = Options::default();
-//! let mut motion = Cvode::new(field(), 0.0, &[1.0, 0.0], &options)?;
-//! motion.advance_to(2.0)?;
+//! let mut motion = Integration::new(field(), 0.0, &[1.0, 0.0], &options)?;
+//! motion.state_at(2.0)?;
 //! let bytes = motion.checkpoint().to_bytes("pendulum");
 //!
-//! let mut motion = Cvode::resume(motion.into_field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
-//! let mut later = Cvode::resume(field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
-//! assert_eq!(motion.advance_to(4.0)?, later.advance_to(4.0)?);
+//! let mut motion = Integration::resume(motion.into_field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
+//! let mut later = Integration::resume(field(), &Checkpoint::from_bytes(&bytes)?.0, &options)?;
+//! assert_eq!(motion.state_at(4.0)?, later.state_at(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //! With events it keeps, beside the state, what is known of them: on which side of zero each function is, when they
 //! occurred last, and which are due. What a field keeps by projection, such as the energy, is what it kept when made, but
-//! after a [restart](crate::Cvode::restart), by a reset say, what it is in the state of the checkpoint.
+//! after a [restart](crate::Integration::restart), by a reset say, what it is in the state of the checkpoint.
 
 pub use crate::checkpoint::encoding::CheckpointError;
-pub use crate::checkpoint::legs::{solve_checkpointed, solve_with_events_checkpointed};
+pub use crate::checkpoint::legs::solve_checkpointed;
 
 use crate::events::events::{History, Occurrence};
 use crate::integration::statistics::Statistics;
@@ -107,7 +107,7 @@ impl Checkpoint {
         &self.outputs
     }
 
-    /// What occurred up to that time in [`solve_with_events_checkpointed`].
+    /// What occurred up to that time in [`solve_checkpointed`].
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences
     }

@@ -7,57 +7,30 @@ use std::ops::ControlFlow;
 use pc_expr::{Events, VectorField};
 
 use crate::checkpoint::checkpoint::Checkpoint;
-use crate::cvode::cvode::Ending;
-use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::cvode::return_code::Code;
-use crate::error::{IntegrationError, Reason, SolveError, SolveFailure};
-use crate::events::events::{FnEvents, Occurrence};
-use crate::integration::options::Options;
-use crate::integration::solve::{HybridFailure, HybridMotion};
+use crate::error::{InputError, IntegrationError, Reason, SolveError, SolveFailure};
+use crate::events::events::Occurrence;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::Observed;
+use crate::integration::solve::{IntegrationMethod, Solution};
 use crate::integration::statistics::Statistics;
+use crate::integration::stepper::Stepper;
 use crate::integration::trajectory::Trajectory;
 
-/// As [`solve_observed`](crate::solve_observed), with a checkpoint after `every` so many internal steps.
+/// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint after `every` so many steps.
 ///
 /// The motion goes on from the checkpoint `from`, whose outputs are the first of `times`, and is begun anew at each
-/// checkpoint with a vector field that `field` makes. So a motion that goes on from any of its checkpoints gives the
-/// same outputs, bit for bit, as one that was never interrupted.
+/// checkpoint with the vector field and the events that `parts` makes; a field that keeps an integral is told, in the legs
+/// after a reset, to [keep](VectorField::restart) what the motion has then. A part of a step that an event has ended counts as
+/// a step; a checkpoint at its end comes after all that occurs there. So a motion that goes on from any of its checkpoints
+/// gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was never interrupted.
 ///
 /// Each checkpoint is given to `save`, `from` too, and the last one again with `true` where `step` stops the motion or it
 /// fails: with the outputs beyond it, which are returned, nothing can be begun anew.
 ///
-/// # Errors
-/// As for [`solve`](crate::integration::solve()).
-pub fn solve_checkpointed<F: VectorField>(
-    mut field: impl FnMut() -> F,
-    from: Checkpoint,
-    times: &[f64],
-    options: &Options,
-    every: NonZeroU64,
-    save: impl FnMut(&Checkpoint, bool),
-    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<Trajectory, Box<SolveFailure>> {
-    let parts = || (field(), FnEvents::new());
-    match solve_with_events_checkpointed(parts, from, times, options, every, save, step) {
-        Ok(motion) => Ok(motion.trajectory),
-        Err(failure) => {
-            let HybridFailure { reached, error } = *failure;
-            Err(Box::new(SolveFailure { reached: reached.trajectory, error }))
-        }
-    }
-}
-
-/// As [`solve_with_events_observed`](crate::solve_with_events_observed), with checkpoints as in [`solve_checkpointed`].
-///
-/// The vector field and the events are those that `parts` makes for each leg of the motion; a field that keeps an integral
-/// is told, in the legs after a reset, to [keep](VectorField::restart) what the motion has then. A part of a step that an event
-/// has ended counts as a step; a checkpoint at its end comes after all that occurs there. So a motion that goes on from any
-/// of its checkpoints gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was never
-/// interrupted.
-///
 /// ```
 /// use std::{num::NonZeroU64, ops::ControlFlow};
-/// use pc_solve::{Checkpoint, Event, FnEvents, Options, from_fn, solve_with_events_checkpointed};
+/// use pc_solve::{Checkpoint, Event, FnEvents, Options, from_fn, solve_checkpointed};
 ///
 /// // A ball that bounces.
 /// let parts = || {
@@ -69,52 +42,57 @@ pub fn solve_checkpointed<F: VectorField>(
 /// let (times, options, every) = ([1.0, 2.0, 3.0], Options::default(), NonZeroU64::new(7).unwrap());
 /// let mut kept = Vec::new();
 /// let start = Checkpoint::start(0.0, &[1.0, 0.0]);
-/// let whole = solve_with_events_checkpointed(parts, start, &times, &options, every,
+/// let whole = solve_checkpointed(&options, parts, start, &times, every,
 ///     |checkpoint, _| kept.push(checkpoint.clone()), |_, _| ControlFlow::Continue(()))?;
 /// let later = kept.swap_remove(kept.len() / 2);
-/// let part = solve_with_events_checkpointed(parts, later, &times, &options, every,
+/// let part = solve_checkpointed(&options, parts, later, &times, every,
 ///     |_, _| (), |_, _| ControlFlow::Continue(()))?;
 /// assert_eq!(part, whole);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// As for [`solve_with_events`](crate::solve_with_events), and
-/// [`InputError::EventCount`](crate::InputError::EventCount).
-pub fn solve_with_events_checkpointed<F: VectorField, E: Events>(
+/// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`]; [`InputError::Sensitivities`] if the checkpoint has
+/// sensitivities.
+pub fn solve_checkpointed<F: VectorField, E: Events>(
+    method: &impl IntegrationMethod<F>,
     mut parts: impl FnMut() -> (F, E),
     from: Checkpoint,
     times: &[f64],
-    options: &Options,
     every: NonZeroU64,
     mut save: impl FnMut(&Checkpoint, bool),
     mut step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<HybridMotion, Box<HybridFailure>> {
-    let mut options = options.clone();
-    options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    // The steps to the next output are counted here, over all legs, once the limit has been found valid.
-    let limit = options.max_steps;
-    options.max_steps = if limit == 0 { 0 } else { u64::MAX };
-    let plan = Plan { times, every: every.get(), limit };
+) -> Result<Solution, Box<SolveFailure<Solution>>> {
+    let mut begin = |stand: &Checkpoint| {
+        let (field, events) = parts();
+        if !stand.sensitivities.is_empty() {
+            let found = stand.sensitivities.len() / stand.state.len().max(1);
+            return Err(InputError::Sensitivities { expected: 0, found }.into());
+        }
+        let mut stepper = method.begin(field, stand.time, &stand.state, times.last().copied())?;
+        // The steps to the next output are counted here, over all legs.
+        let limit = std::mem::replace(&mut stepper.limits_mut().max_steps, u64::MAX);
+        let integration = Integration::resumed(stepper, stand).with_events_of(events, stand)?;
+        Ok::<_, SolveError>((integration, Plan { times, every: every.get(), limit }))
+    };
     let mut stand = from;
     loop {
         save(&stand, false);
         if !stand.outputs.is_empty() && stand.outputs.len() >= times.len() {
             return Ok(motion(stand.outputs, stand.occurrences, stand.statistics, Some(Ending::Completed)));
         }
-        let (field, events) = parts();
-        let mut hybrid = match Hybrid::resume(field, events, &stand, &options) {
-            Ok(hybrid) => hybrid,
+        let (mut integration, plan) = match begin(&stand) {
+            Ok(begun) => begun,
             Err(error) => {
                 let reached = motion(stand.outputs, stand.occurrences, stand.statistics, None);
-                return Err(Box::new(HybridFailure { reached, error }));
+                return Err(Box::new(SolveFailure { reached, error }));
             }
         };
         let (work, outputs, occurrences) = (stand.statistics, stand.outputs.len(), stand.occurrences.len());
-        let result = plan.leg(&mut hybrid, &mut stand, &mut step);
-        stand.statistics = work.followed_by(&hybrid.statistics());
+        let result = plan.leg(&mut integration, &mut stand, &mut step);
+        stand.statistics = work.followed_by(&integration.statistics());
         let Some(ending) = result.transpose() else {
-            let Checkpoint { time, state, jumped, past, .. } = hybrid.checkpoint();
+            let Checkpoint { time, state, jumped, past, .. } = integration.checkpoint();
             stand = Checkpoint { time, state, jumped, past, ..stand };
             continue;
         };
@@ -127,7 +105,7 @@ pub fn solve_with_events_checkpointed<F: VectorField, E: Events>(
         }
         return match ending {
             Ok(_) => Ok(reached),
-            Err(error) => Err(Box::new(HybridFailure { reached, error })),
+            Err(error) => Err(Box::new(SolveFailure { reached, error })),
         };
     }
 }
@@ -138,9 +116,9 @@ fn motion(
     occurrences: Vec<Occurrence>,
     statistics: Statistics,
     ending: Option<Ending>,
-) -> HybridMotion {
+) -> Solution {
     trajectory.finish(ending == Some(Ending::Completed), statistics);
-    HybridMotion { trajectory, occurrences, ending }
+    Solution { trajectory, occurrences, ending }
 }
 
 /// What all legs have in common.
@@ -165,9 +143,9 @@ impl Plan<'_> {
     /// if it does.
     ///
     /// A leg has as many steps as it should, or more if the last of them did not get away from its start.
-    fn leg<F: VectorField, E: Events>(
+    fn leg<S: Stepper, E: Events>(
         &self,
-        hybrid: &mut Hybrid<F, E>,
+        integration: &mut Integration<S, E>,
         stand: &mut Checkpoint,
         step: &mut impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<Option<Ending>, SolveError> {
@@ -197,27 +175,28 @@ impl Plan<'_> {
             }
             if end.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let ending = hybrid.run_observed(remaining, output, &mut occurred, observed)?;
+        let ending = integration
+            .run_observed(remaining, Observed::new(output).occurrences(&mut occurred).steps(observed))?;
         match end {
             Some(End::Full) => {}
             Some(End::Exhausted) => {
                 let next = self.times[outputs.borrow().len()];
-                return Err(too_much_work(hybrid, self.limit, next));
+                return Err(too_much_work(integration, self.limit, next));
             }
             Some(End::Stopped) | None => return Ok(Some(ending)),
         }
         let next = || self.times.get(outputs.borrow().len()).copied();
-        let here = hybrid.time();
-        while let Some(t) = next().filter(|&t| hybrid.is_before_front(t)) {
-            hybrid.stand_at(t)?;
-            let _ = output(t, hybrid.state());
+        let here = integration.time();
+        while let Some(t) = next().filter(|&t| integration.is_before_front(t)) {
+            integration.stand_at(t)?;
+            let _ = output(t, integration.state());
         }
         if next().is_none() {
             return Ok(Some(Ending::Completed)); // what lies beyond the last output is not asked for
         }
-        let ending = hybrid.settle(&mut occurred)?;
+        let ending = integration.settle(&mut occurred)?;
         if ending.is_some() || next() == Some(here) {
-            let _ = output(here, hybrid.state());
+            let _ = output(here, integration.state());
         }
         stand.steps_since_output = since.get();
         Ok(ending)
@@ -225,9 +204,9 @@ impl Plan<'_> {
 }
 
 /// Legs that lead too slowly to the output at `t`.
-fn too_much_work<F: VectorField, E: Events>(hybrid: &Hybrid<F, E>, steps: u64, t: f64) -> SolveError {
+fn too_much_work<S: Stepper, E: Events>(integration: &Integration<S, E>, steps: u64, t: f64) -> SolveError {
     let message = format!("{steps} internal steps taken before reaching t = {t}.");
     let reason = Reason::Cvode { code: Code::TooMuchWork, message };
-    let (time, state) = (hybrid.time(), hybrid.state().to_vec());
+    let (time, state) = (integration.time(), integration.state().to_vec());
     SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure: None }))
 }

@@ -5,6 +5,7 @@ use sundials_sys as sys;
 
 use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
+use crate::integration::breaks::{are_close, following};
 
 impl<F: VectorField> Cvode<F> {
     /// The break of the field, or the stop time, at which the next step towards a time ends at the latest; none where the field
@@ -39,7 +40,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// Starts CVODES anew where it stands, of which the field is not told.
     fn begin_anew(&mut self) -> Result<(), SolveError> {
-        let before = self.statistics();
+        let before = self.work_so_far();
         let integrals = self.quadrature.as_ref().map(|_| self.quadratures()).transpose()?;
         self.work.as_mut_slice().copy_from_slice(self.step_state.as_slice());
         // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
@@ -53,22 +54,4 @@ impl<F: VectorField> Cvode<F> {
         self.idle_failure = None;
         Ok(())
     }
-}
-
-/// What CVODES takes two times for the same by, and as much again.
-const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
-
-fn are_close(a: f64, b: f64) -> bool {
-    (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
-}
-
-/// The first of the breaks, which rise, after t and before the end in its direction.
-fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
-    let next = if end >= t {
-        breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
-    } else {
-        let before = breaks.partition_point(|&time| time < t).checked_sub(1);
-        before.map(|i| breaks[i]).filter(|&time| time > end)
-    };
-    next.filter(|&time| end.is_infinite() || !are_close(time, end))
 }

@@ -1,60 +1,32 @@
 //! States inside the last internal step.
 
+use std::ffi::c_int;
+
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
 use crate::cvode::cvode::Cvode;
-use crate::error::{InputError, Reason, SolveError};
-use crate::integration::options::finite;
+use crate::error::{Reason, SolveError};
+use crate::integration::stepper::LastStep;
 
 impl<F: VectorField> Cvode<F> {
-    /// The derivative of y of the given order at `t` in the last internal step, by the polynomial of the method.
-    ///
-    /// Order 0 is y itself, [projected](VectorField::project) where the field does so. The polynomial has the degree of
-    /// the order of that step.
-    ///
-    /// # Errors
-    /// [`InputError::NoStep`] before the first step, [`InputError::OutsideStep`] outside the last step, and
-    /// [`InputError::DerivativeOrder`] above the degree; [`Reason::Projection`].
-    pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
-        finite("the time", t)?;
-        if self.direction.is_none() {
-            return Err(InputError::NoStep.into());
+    /// Where the last step began, where it ended, and the order of the method in it.
+    pub(crate) fn step_made(&self) -> LastStep {
+        let end = self.step_time;
+        if self.direction.is_none() || self.restarted {
+            return LastStep { start: end, end, degree: None };
         }
-        self.check_inside(t, order, self.step_time)?;
-        let stands_at = self.time;
-        let outcome = self.interpolate_to_work(t, order);
-        self.time = stands_at; // which a failed projection moves
-        outcome?;
-        Ok(self.work.as_slice())
-    }
-
-    /// Checks that `t` lies in the last internal step, as far as that is asked for up to `end`, and that its polynomial has
-    /// a derivative of that order.
-    ///
-    /// As CVODES does, a time may lie outside by its rounding, 100 ε of the time.
-    pub(crate) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
-        let (mut now, mut length, mut degree) = (0.0, 0.0, 0);
+        let (mut length, mut degree): (f64, c_int) = (0.0, 0);
         let memory = self.memory.raw();
         // SAFETY: the memory is live and initialised; the others are places for the results.
         unsafe {
-            sys::CVodeGetCurrentTime(memory, &raw mut now);
             sys::CVodeGetLastStep(memory, &raw mut length);
             sys::CVodeGetLastOrder(memory, &raw mut degree);
         }
-        let (start, direction) = (now - length, 1.0_f64.copysign(length));
-        let slack = 100.0 * f64::EPSILON * (now.abs() + length.abs());
-        if (start - t) * direction > slack || (t - end) * direction > slack {
-            return Err(InputError::OutsideStep { requested: t, start, end });
-        }
-        let highest = u32::try_from(degree).unwrap_or(0);
-        if order > highest {
-            return Err(InputError::DerivativeOrder { order, highest });
-        }
-        Ok(())
+        LastStep { start: end - length, end, degree: u32::try_from(degree).ok() }
     }
 
-    /// As [`interpolate`](Cvode::interpolate), where it has been checked that this can be.
+    /// Writes the derivative of y of that order at `t` in the last step to the work vector.
     pub(crate) fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
         let order = i32::try_from(order).unwrap_or(i32::MAX);
         // SAFETY: memory and vector are live and of one context; a step has been taken.

@@ -1,14 +1,13 @@
 //! Integrals along an integration.
 
 use std::ffi::{c_int, c_void};
-use std::ops::ControlFlow;
 use std::slice;
 
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
 use crate::cvode::callback::{Callbacks, FATAL, nan_slice};
-use crate::cvode::cvode::{Cvode, Ending};
+use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::integration::integrals::Integrals;
@@ -24,7 +23,7 @@ pub(crate) trait Quadratures {
 }
 
 /// What an integration with integrals has besides.
-pub(super) struct Integration {
+pub(crate) struct Quadrature {
     /// Where CVODES writes them.
     values: Vector,
     /// As they were at the last start.
@@ -32,7 +31,7 @@ pub(super) struct Integration {
 }
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with integrals along the motion, which are 0 there.
+    /// Starts at y(t0) = y0 as [`Cvode::new`] does, with integrals along the motion, which are 0 there.
     ///
     /// They may be had together with [sensitivities](Cvode::with_sensitivities): then
     /// [`and_integrals`](Cvode::and_integrals) adds them.
@@ -90,7 +89,7 @@ impl<F: VectorField> Cvode<F> {
         let code = unsafe { sys::CVodeQuadSStolerances(memory.raw(), relative, absolute) };
         context.check("CVodeQuadSStolerances", code)?;
         memory.set(context, "CVodeSetQuadErrCon", sys::CVodeSetQuadErrCon, c_int::from(error_control))?;
-        self.quadrature = Some(Integration { values, start });
+        self.quadrature = Some(Quadrature { values, start });
         Ok(())
     }
 
@@ -99,12 +98,8 @@ impl<F: VectorField> Cvode<F> {
         self.integrals_at(self.step_time)
     }
 
-    /// The integrals from the start to [`time`](Cvode::time), in the order of their integrands.
-    ///
-    /// # Errors
-    /// [`InputError::NoIntegrals`] unless they were asked for; [`SolveError::Integration`] if one has grown beyond the largest
-    /// number.
-    pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
+    /// The integrals from the start to where it stands, in the order of their integrands, all finite.
+    pub(crate) fn integrals_here(&self) -> Result<Vec<f64>, SolveError> {
         let values = self.integrals_at(self.time)?;
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(values),
@@ -116,30 +111,9 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// As [`run`](Cvode::run), and gives each (t, y) with the integrals to there to `output`.
-    ///
-    /// # Errors
-    /// As for [`run`](Cvode::run) and [`integrals`](Cvode::integrals).
-    pub fn run_with_integrals(
-        &mut self,
-        times: &[f64],
-        mut output: impl FnMut(f64, &[f64], &[f64]) -> ControlFlow<()>,
-    ) -> Result<Ending, SolveError> {
-        let end = self.check_times(times)?;
-        for &t in times {
-            // Without an observer nothing can stop it.
-            let _ = self.advance(t, end, &mut |_, _| ControlFlow::Continue(()))?;
-            let values = self.integrals()?;
-            if output(t, self.state(), &values).is_break() {
-                return Ok(Ending::Stopped);
-            }
-        }
-        Ok(Ending::Completed)
-    }
-
     /// The integrals at `t` in the last internal step, or at the start.
     fn integrals_at(&self, t: f64) -> Result<Vec<f64>, SolveError> {
-        let Some(Integration { values, start }) = &self.quadrature else {
+        let Some(Quadrature { values, start }) = &self.quadrature else {
             return Err(InputError::NoIntegrals.into());
         };
         if self.direction.is_none() || self.restarted {
@@ -168,11 +142,6 @@ impl<F: VectorField> Cvode<F> {
         // SAFETY: quadratures are initialised; CVODES copies the vector.
         let code = unsafe { sys::CVodeQuadReInit(self.memory.raw(), quadrature.values.raw()) };
         self.context.check("CVodeQuadReInit", code)
-    }
-
-    /// The field, between steps.
-    pub(crate) fn field_mut(&mut self) -> &mut F {
-        self.callbacks.field_mut()
     }
 }
 

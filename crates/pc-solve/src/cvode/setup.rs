@@ -11,11 +11,12 @@ use crate::cvode::callback::UserData;
 use crate::cvode::context::Context;
 use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
-use crate::error::{InputError, SolveError};
+use crate::error::SolveError;
 use crate::integration::inequality;
 use crate::integration::inequality::Inequality;
-use crate::integration::options::{Method, Options, Tolerance, check_length, finite};
+use crate::integration::options::{Method, Options, Tolerance, check_start, finite};
 use crate::integration::statistics::Statistics;
+use crate::integration::stepper::Stepper;
 use crate::linear::linear;
 use crate::linear::linear::Linear;
 
@@ -37,7 +38,6 @@ impl<F: VectorField> Cvode<F> {
         let mut callbacks = UserData::new(field, y0.len());
         let mut step_state = Vector::new(&mut context, y0)?;
         step_state.halve_after_violations();
-        let output = Vector::new(&mut context, y0)?;
         let work = Vector::new(&mut context, y0)?;
         let linear = linear_solver
             .map(|choice| Linear::new(&mut context, &step_state, choice, callbacks.field()))
@@ -75,7 +75,6 @@ impl<F: VectorField> Cvode<F> {
             sensitivity: None,
             quadrature: None,
             step_state,
-            output,
             work,
             callbacks,
             context,
@@ -83,33 +82,20 @@ impl<F: VectorField> Cvode<F> {
             step_time: t0,
             direction: None,
             initial_step: options.initial_step,
-            max_steps: options.max_steps,
             stop_time: None,
-            inequalities: options.inequalities.clone(),
+            limits: options.limits(),
             idle_steps: 0,
             idle_failure: None,
             earlier: Statistics::default(),
             restarted: false,
-            jumped: false,
             foresight,
-            samples_per_step: options.samples_per_step,
-            accumulation: options.accumulation,
         };
-        cvode.set_stop_time(options.stop_time)?;
+        if let Some(t) = options.stop_time {
+            finite("the stop time", t)?;
+            cvode.set_stop_time(Some(t))?;
+        }
         Ok(cvode)
     }
-}
-
-fn check_start(field: &impl VectorField, t0: f64, y0: &[f64]) -> Result<(), InputError> {
-    if field.dim() == 0 {
-        return Err(InputError::NoComponents);
-    }
-    finite("the start time", t0)?;
-    check_length("the start", y0.len(), field.dim())?;
-    for (i, &value) in y0.iter().enumerate() {
-        finite(&format!("{} at the start", field.component_name(i)), value)?;
-    }
-    Ok(())
 }
 
 /// Hands the tolerances and limits to CVODES, which has been initialised.

@@ -41,11 +41,11 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 pub use crate::ensemble::random::member_stream;
 
-use crate::cvode::cvode::Ending;
 use crate::ensemble::ordered::Queue;
 use crate::error::SolveFailure;
+use crate::integration::integration::Ending;
 use crate::integration::options::Options;
-use crate::integration::solve::solve_observed;
+use crate::integration::solve::{Solution, Solve};
 use crate::integration::trajectory::Trajectory;
 
 /// Members that may be ahead of the one that is consumed next, for each thread.
@@ -123,7 +123,11 @@ impl<'a> Ensemble<'a> {
                     keep(&mut reached.borrow_mut(), t, y);
                     if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
                 };
-                solve_observed(field, t0, &start, times, options, observe).map_err(MemberError::Solve)
+                let solved = Solve::new(field, t0, &start).method(options).run_observed(times, observe);
+                let failed = |failure: Box<SolveFailure<Solution>>| failure.map(|reached| reached.trajectory);
+                solved
+                    .map(|solution| solution.trajectory)
+                    .map_err(|failure| MemberError::Solve(Box::new(failed(failure))))
             });
             match solved {
                 Ok(Ok(motion)) if !motion.is_complete() => None,

@@ -83,6 +83,20 @@ impl<'a> FnEvents<'a> {
     }
 }
 
+/// No events.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NoEvents;
+
+impl Events for NoEvents {
+    fn events(&self) -> &[Event] {
+        &[]
+    }
+
+    fn evaluate(&mut self, _t: f64, _y: &[f64], _values: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
 impl fmt::Debug for FnEvents<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FnEvents").field("events", &self.events).finish_non_exhaustive()

@@ -79,7 +79,7 @@ impl Segment {
 ///
 /// It is made of the polynomials alone and knows no vector field: where that [projects](pc_expr::VectorField::project) its
 /// states, those inside steps are off the constraints, and off the values of the integrals that are kept, by the error of
-/// a step. Outputs and what [`Cvode::interpolate`](crate::Cvode::interpolate) gives are on them; who needs such states
+/// a step. Outputs and what [`Integration::interpolate`](crate::Integration::interpolate) gives are on them; who needs such states
 /// asks for them on the way, or projects what is evaluated here.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DenseOutput {

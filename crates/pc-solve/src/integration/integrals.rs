@@ -1,12 +1,15 @@
 //! Integrals along a motion.
 
+use std::cell::RefCell;
 use std::fmt;
 use std::ops::ControlFlow;
 
-use pc_expr::{Failure, VectorField};
+use pc_expr::{Events, Failure, VectorField};
 
-use crate::cvode::cvode::{Cvode, Ending};
-use crate::error::{InputError, SolveFailure};
+use crate::cvode::cvode::Cvode;
+use crate::error::{InputError, SolveError, SolveFailure};
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::Observed;
 use crate::integration::options::{Options, Tolerance, positive};
 use crate::integration::trajectory::Trajectory;
 
@@ -20,7 +23,7 @@ pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()
 /// implicit equations. Steps have to pass the error test of the integrals too, unless that is [left out](Integrals::error_control).
 ///
 /// ```
-/// use pc_solve::{Cvode, Integrals, Options, from_fn};
+/// use pc_solve::{Integration, Integrals, Options, from_fn};
 ///
 /// // ẏ = −y from 1: ∫ y dt = 1 − e^(−t), ∫ y² dt = (1 − e^(−2t))/2.
 /// let decay = from_fn(1, |_t, y, ydot| {
@@ -31,8 +34,8 @@ pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()
 ///     rates.copy_from_slice(&[y[0], y[0] * y[0]]);
 ///     Ok(())
 /// });
-/// let mut motion = Cvode::with_integrals(decay, 0.0, &[1.0], &Options::default(), integrals)?;
-/// motion.advance_to(2.0)?;
+/// let mut motion = Integration::with_integrals(decay, 0.0, &[1.0], &Options::default(), integrals)?;
+/// motion.state_at(2.0)?;
 /// let found = motion.integrals()?;
 /// assert!((found[0] - (1.0 - (-2.0_f64).exp())).abs() < 1e-8);
 /// assert!((found[1] - (1.0 - (-4.0_f64).exp()) / 2.0).abs() < 1e-8);
@@ -93,6 +96,58 @@ impl Integrals {
     }
 }
 
+impl<F: VectorField> Integration<Cvode<F>> {
+    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion, which are 0 there.
+    ///
+    /// # Errors
+    /// As for [`Cvode::with_integrals`].
+    pub fn with_integrals(
+        field: F,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+        integrals: Integrals,
+    ) -> Result<Self, SolveError> {
+        Ok(Integration::of(Cvode::with_integrals(field, t0, y0, options, integrals)?))
+    }
+
+    /// This integration, which has not begun, with integrals along the motion.
+    ///
+    /// # Errors
+    /// As for [`Cvode::and_integrals`].
+    pub fn and_integrals(self, integrals: Integrals, options: &Options) -> Result<Self, SolveError> {
+        Ok(Integration::of(self.engine.and_integrals(integrals, options)?))
+    }
+}
+
+impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
+    /// The integrals from the start to [`time`](Integration::time), over what occurred, in the order of their integrands.
+    ///
+    /// # Errors
+    /// [`InputError::NoIntegrals`] unless they were asked for; [`SolveError::Integration`] if one has grown beyond the largest
+    /// number.
+    pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
+        self.engine.integrals_here()
+    }
+
+    /// As [`run`](Integration::run), and gives each (t, y) with the integrals to there to `output`.
+    ///
+    /// # Errors
+    /// As for [`run`](Integration::run) and [`integrals`](Integration::integrals).
+    pub fn run_with_integrals(
+        &mut self,
+        times: &[f64],
+        mut output: impl FnMut(f64, &[f64], &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        let values = RefCell::new(Vec::new());
+        let mut observer = Observed::new(|t, y: &[f64]| output(t, y, &values.borrow()));
+        self.run_through(times, &mut observer, |integration| {
+            *values.borrow_mut() = integration.engine.integrals_here()?;
+            Ok(())
+        })
+    }
+}
+
 /// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::integration::solve()) does, with integrals from t0 to each output time.
 ///
 /// # Errors
@@ -108,17 +163,17 @@ pub fn solve_with_integrals<F: VectorField>(
     let mut reached = Trajectory::new(field.dim());
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let mut cvode = match Cvode::with_integrals(field, t0, y0, &options, integrals) {
-        Ok(cvode) => cvode,
+    let mut integration = match Integration::with_integrals(field, t0, y0, &options, integrals) {
+        Ok(integration) => integration,
         Err(error) => return Err(Box::new(SolveFailure { reached, error })),
     };
     let mut values = Vec::with_capacity(times.len());
-    let result = cvode.run_with_integrals(times, |t, y, integrals| {
+    let result = integration.run_with_integrals(times, |t, y, integrals| {
         reached.push(t, y);
         values.push(integrals.to_vec());
         ControlFlow::Continue(())
     });
-    reached.finish(matches!(result, Ok(Ending::Completed)), cvode.statistics());
+    reached.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
     match result {
         Ok(_) => Ok((reached, values)),
         Err(error) => Err(Box::new(SolveFailure { reached, error })),

@@ -2,8 +2,8 @@
 
 use pc_expr::VectorField;
 
-use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
+use crate::integration::integration::Integration;
 use crate::integration::options::Options;
 
 /// The polynomials of the method over the steps of a piece of a motion.
@@ -29,17 +29,17 @@ impl MotionRecord {
         t1: f64,
         options: &Options,
     ) -> Result<MotionRecord, SolveError> {
-        let mut cvode = Cvode::new(field, t0, y0, &options.clone().stop_time(t1))?;
+        let mut motion = Integration::new(field, t0, y0, &options.clone().stop_time(t1))?;
         let direction = 1.0_f64.copysign(t1 - t0);
         let mut record = MotionRecord { dim: y0.len(), direction, ..MotionRecord::default() };
-        while cvode.time() != t1 {
-            let t = cvode.step(t1)?;
+        while motion.time() != t1 {
+            let t = motion.step_towards(t1)?;
             record.ends.push(t);
             record.first.push(record.coefficients.len());
             let mut factorial = 1.0;
-            for k in 0..=cvode.statistics().last_order {
+            for k in 0..=motion.statistics().last_order {
                 factorial *= f64::from(k.max(1));
-                let derivative = cvode.interpolate(t, k)?;
+                let derivative = motion.interpolate(t, k)?;
                 record.coefficients.extend(derivative.iter().map(|value| value / factorial));
             }
         }

@@ -2,9 +2,12 @@
 
 use std::fmt;
 
+use pc_expr::VectorField;
+
 use crate::error::InputError;
 use crate::events::events::Accumulation;
 use crate::integration::inequality::Inequality;
+use crate::integration::limits::Limits;
 use crate::linear::linear::LinearSolver;
 
 /// A family of linear multistep methods of variable order and step.
@@ -179,7 +182,7 @@ impl Options {
     }
 
     /// In how many equal parts of each internal step events are looked for, at least 1 and 4 unless given; between two
-    /// such places [an even number](crate::Hybrid) of zeros of a function may be missed.
+    /// such places [an even number](crate::Integration) of zeros of a function may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
@@ -187,6 +190,16 @@ impl Options {
     /// When occurrences of an event are taken to accumulate, which is an error.
     pub fn accumulation(self, accumulation: Accumulation) -> Self {
         Options { accumulation, ..self }
+    }
+
+    /// What does not depend on the method.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits {
+            max_steps: self.max_steps,
+            samples_per_step: self.samples_per_step,
+            accumulation: self.accumulation,
+            inequalities: self.inequalities.clone(),
+        }
     }
 
     pub(crate) fn validate(&self, dim: usize) -> Result<(), InputError> {
@@ -251,4 +264,17 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), InputError> {
 
 pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), InputError> {
     if found == expected { Ok(()) } else { Err(InputError::Length { what, expected, found }) }
+}
+
+/// Checks that a motion of the field can begin at y(t0) = y0.
+pub(crate) fn check_start(field: &impl VectorField, t0: f64, y0: &[f64]) -> Result<(), InputError> {
+    if field.dim() == 0 {
+        return Err(InputError::NoComponents);
+    }
+    finite("the start time", t0)?;
+    check_length("the start", y0.len(), field.dim())?;
+    for (i, &value) in y0.iter().enumerate() {
+        finite(&format!("{} at the start", field.component_name(i)), value)?;
+    }
+    Ok(())
 }

@@ -1,19 +1,20 @@
 //! Integration in one call.
 
-use std::error::Error;
-use std::fmt;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::cvode::{Cvode, Ending};
+use crate::cvode::cvode::Cvode;
 use crate::error::{SolveError, SolveFailure};
-use crate::events::events::Occurrence;
+use crate::events::events::{NoEvents, Occurrence};
 use crate::integration::dense_output::DenseOutput;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::Observed;
 use crate::integration::options::Options;
+use crate::integration::stepper::Stepper;
 use crate::integration::trajectory::Trajectory;
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 and returns the states at `times`.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 by CVODES and returns the states at `times`: [`Solve`] has more to choose from.
 ///
 /// `y0` has as many numbers as `field` has components. The times go one way, forwards or backwards; the first may be
 /// t0. The vector field is not evaluated beyond the last time, nor beyond the stop time of the options.
@@ -27,67 +28,166 @@ pub fn solve<F: VectorField>(
     times: &[f64],
     options: &Options,
 ) -> Result<Trajectory, Box<SolveFailure>> {
-    solve_observed(field, t0, y0, times, options, |_, _| ControlFlow::Continue(()))
-}
-
-/// As [`solve`], and gives the end (t, y) of each internal step to `step`, to show progress or to stop.
-///
-/// If stopped, the trajectory has the outputs before that step and is not
-/// [complete](Trajectory::is_complete).
-///
-/// # Errors
-/// As for [`solve`].
-pub fn solve_observed<F: VectorField>(
-    field: F,
-    t0: f64,
-    y0: &[f64],
-    times: &[f64],
-    options: &Options,
-    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<Trajectory, Box<SolveFailure>> {
-    let mut trajectory = Trajectory::new(field.dim());
-    let mut options = options.clone();
-    options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let mut cvode = match Cvode::new(field, t0, y0, &options) {
-        Ok(cvode) => cvode,
-        Err(error) => return Err(Box::new(SolveFailure { reached: trajectory, error })),
-    };
-    let output = |t, y: &[f64]| {
-        trajectory.push(t, y);
-        ControlFlow::Continue(())
-    };
-    let result = cvode.run_observed(times, output, step);
-    trajectory.finish(matches!(result, Ok(Ending::Completed)), cvode.statistics());
-    match result {
-        Ok(_) => Ok(trajectory),
-        Err(error) => Err(Box::new(SolveFailure { reached: trajectory, error })),
+    match Solve::new(field, t0, y0).method(options).run(times) {
+        Ok(solution) => Ok(solution.trajectory),
+        Err(failure) => Err(Box::new(failure.map(|reached| reached.trajectory))),
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion as a function of time.
-///
-/// # Errors
-/// As for [`Cvode::run_dense`], which also gives what was reached.
-pub fn solve_dense<F: VectorField>(
-    field: F,
-    t0: f64,
-    y0: &[f64],
-    end: f64,
-    options: &Options,
-) -> Result<DenseOutput, SolveError> {
-    let mut options = options.clone();
-    options.stop_time = options.stop_time.or(Some(end).filter(|t| t.is_finite()));
-    let mut motion = DenseOutput::default();
-    Cvode::new(field, t0, y0, &options)?.run_dense(end, |segment| {
-        motion.extend([segment]);
-        ControlFlow::Continue(())
-    })?;
-    Ok(motion)
+/// A method with its options, which can begin at a state.
+pub trait IntegrationMethod<F: VectorField> {
+    /// The method at work.
+    type Stepper: Stepper<Field = F>;
+
+    /// Begins at y(t0) = y0; the field is never to be evaluated beyond `stop`, nor beyond the stop time of the method.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges.
+    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Self::Stepper, SolveError>;
 }
 
-/// A motion with events.
+impl<F: VectorField> IntegrationMethod<F> for Options {
+    type Stepper = Cvode<F>;
+
+    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Cvode<F>, SolveError> {
+        let mut options = self.clone();
+        options.stop_time = options.stop_time.or(stop.filter(|t| t.is_finite()));
+        Cvode::new(field, t0, y0, &options)
+    }
+}
+
+impl<F: VectorField, M: IntegrationMethod<F>> IntegrationMethod<F> for &M {
+    type Stepper = M::Stepper;
+
+    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<M::Stepper, SolveError> {
+        (**self).begin(field, t0, y0, stop)
+    }
+}
+
+/// A motion to be integrated: ẏ = f(t, y) from y(t0) = y0, by a method, with events.
+///
+/// ```
+/// use pc_solve::{Event, FnEvents, Options, Solve, from_fn};
+///
+/// // A ball that is dropped and bounces.
+/// let ball = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
+/// let bounce = FnEvents::new().with_reset(
+///     Event::new("bounce").falling(), |_t, y| Ok(y[0]), |_t, y| { y[1] *= -0.5; Ok(()) });
+/// let solution = Solve::new(ball, 0.0, &[1.0, 0.0])
+///     .method(Options::default().relative_tolerance(1e-11))
+///     .events(bounce)
+///     .run(&[0.25, 0.5, 0.75])?;
+/// assert_eq!((solution.trajectory.len(), solution.occurrences.len()), (3, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Solve<'a, F, M = Options, E = NoEvents> {
+    field: F,
+    t0: f64,
+    y0: &'a [f64],
+    method: M,
+    events: E,
+}
+
+impl<'a, F: VectorField> Solve<'a, F> {
+    /// By CVODES with the default [`Options`], without events.
+    pub fn new(field: F, t0: f64, y0: &'a [f64]) -> Self {
+        Solve { field, t0, y0, method: Options::default(), events: NoEvents }
+    }
+}
+
+impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
+    /// By this method: [`Options`] are CVODES'.
+    pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
+        let Solve { field, t0, y0, events, .. } = self;
+        Solve { field, t0, y0, method, events }
+    }
+
+    /// With these events.
+    pub fn events<D: Events>(self, events: D) -> Solve<'a, F, M, D> {
+        let Solve { field, t0, y0, method, .. } = self;
+        Solve { field, t0, y0, method, events }
+    }
+}
+
+impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
+    /// The integration at its start, to take it step by step.
+    ///
+    /// # Errors
+    /// As for [`IntegrationMethod::begin`] and [`Integration::with_events`].
+    pub fn start(self) -> Result<Integration<M::Stepper, E>, SolveError> {
+        self.start_towards(None)
+    }
+
+    fn start_towards(self, end: Option<f64>) -> Result<Integration<M::Stepper, E>, SolveError> {
+        let Solve { field, t0, y0, method, events } = self;
+        Integration::of(method.begin(field, t0, y0, end)?).with_events(events)
+    }
+
+    /// The states at `times`, and what occurs on the way.
+    ///
+    /// The times go one way, forwards or backwards; the first may be t0. The vector field is not evaluated beyond the last,
+    /// nor beyond the stop time of the method.
+    ///
+    /// # Errors
+    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is not valid.
+    pub fn run(self, times: &[f64]) -> Result<Solution, Box<SolveFailure<Solution>>> {
+        self.run_observed(times, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Solve::run), and gives the end (t, y⁻) of each step, or of the part of it before an event, to `step`, to show
+    /// progress or to stop.
+    ///
+    /// If stopped, the solution has the outputs before that step and is not [complete](Trajectory::is_complete).
+    ///
+    /// # Errors
+    /// As for [`run`](Solve::run).
+    pub fn run_observed(
+        self,
+        times: &[f64],
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Solution, Box<SolveFailure<Solution>>> {
+        let mut solution = Solution::new(self.field.dim());
+        let mut integration = match self.start_towards(times.last().copied()) {
+            Ok(integration) => integration,
+            Err(error) => return Err(Box::new(SolveFailure { reached: solution, error })),
+        };
+        let Solution { trajectory, occurrences, .. } = &mut solution;
+        let output = |t: f64, y: &[f64]| {
+            trajectory.push(t, y);
+            ControlFlow::Continue(())
+        };
+        let occurred = |occurrence: &Occurrence| {
+            occurrences.push(occurrence.clone());
+            ControlFlow::Continue(())
+        };
+        let result = integration.run_observed(times, Observed::new(output).occurrences(occurred).steps(step));
+        solution.trajectory.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
+        match result {
+            Ok(ending) => Ok(Solution { ending: Some(ending), ..solution }),
+            Err(error) => Err(Box::new(SolveFailure { reached: solution, error })),
+        }
+    }
+
+    /// The motion to `end`, or to a terminal event before, as a function of time.
+    ///
+    /// # Errors
+    /// As for [`Integration::run_dense`], which also gives what was reached.
+    pub fn dense(self, end: f64) -> Result<DenseOutput, SolveError> {
+        let mut motion = DenseOutput::default();
+        let keep = |segment| {
+            motion.extend([segment]);
+            ControlFlow::Continue(())
+        };
+        self.start_towards(Some(end))?.run_dense(end, keep, |_| ControlFlow::Continue(()))?;
+        Ok(motion)
+    }
+}
+
+/// A motion as far as it was integrated.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HybridMotion {
+pub struct Solution {
     /// The states at the output times, y⁺ at those of events; a terminal event is the last.
     pub trajectory: Trajectory,
     /// What occurred, in order.
@@ -96,79 +196,8 @@ pub struct HybridMotion {
     pub ending: Option<Ending>,
 }
 
-/// A failed [`solve_with_events`] with what it had reached.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct HybridFailure {
-    /// Outputs and occurrences before the failure.
-    pub reached: HybridMotion,
-    /// What went wrong.
-    pub error: SolveError,
-}
-
-impl fmt::Display for HybridFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.error.fmt(f)
-    }
-}
-
-impl Error for HybridFailure {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        self.error.source()
-    }
-}
-
-/// As [`solve`], with events.
-///
-/// # Errors
-/// [`HybridFailure`] with what was reached before the failure.
-pub fn solve_with_events<F: VectorField, E: Events>(
-    field: F,
-    t0: f64,
-    y0: &[f64],
-    times: &[f64],
-    options: &Options,
-    events: E,
-) -> Result<HybridMotion, Box<HybridFailure>> {
-    solve_with_events_observed(field, t0, y0, times, options, events, |_, _| ControlFlow::Continue(()))
-}
-
-/// As [`solve_with_events`], and gives the end (t, y⁻) of each internal step, or of the part of it before an event, to
-/// `step`, to show progress or to stop.
-///
-/// # Errors
-/// As for [`solve_with_events`].
-pub fn solve_with_events_observed<F: VectorField, E: Events>(
-    field: F,
-    t0: f64,
-    y0: &[f64],
-    times: &[f64],
-    options: &Options,
-    events: E,
-    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<HybridMotion, Box<HybridFailure>> {
-    let trajectory = Trajectory::new(field.dim());
-    let mut motion = HybridMotion { trajectory, occurrences: Vec::new(), ending: None };
-    let mut options = options.clone();
-    options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let start = Cvode::new(field, t0, y0, &options).and_then(|cvode| cvode.with_events(events));
-    let mut hybrid = match start {
-        Ok(hybrid) => hybrid,
-        Err(error) => return Err(Box::new(HybridFailure { reached: motion, error })),
-    };
-    let output = |t, y: &[f64]| {
-        motion.trajectory.push(t, y);
-        ControlFlow::Continue(())
-    };
-    let occurred = |occurrence: &Occurrence| {
-        motion.occurrences.push(occurrence.clone());
-        ControlFlow::Continue(())
-    };
-    let result = hybrid.run_observed(times, output, occurred, step);
-    motion.trajectory.finish(matches!(result, Ok(Ending::Completed)), hybrid.statistics());
-    motion.ending = result.as_ref().ok().copied();
-    match result {
-        Ok(_) => Ok(motion),
-        Err(error) => Err(Box::new(HybridFailure { reached: motion, error })),
+impl Solution {
+    pub(crate) fn new(dim: usize) -> Solution {
+        Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }
     }
 }

@@ -2,8 +2,8 @@
 
 use pc_expr::VectorField;
 
-use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::integration::Integration;
 use crate::integration::options::{Options, positive};
 use crate::lyapunov::orthonormal::{length, orthonormalise};
 use crate::sensitivity::options::Sensitivities;
@@ -131,9 +131,9 @@ fn advance(
     let tangent = vectors.chunks_exact(dim).fold(Sensitivities::new(), Sensitivities::along);
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(Some(end).filter(|end| end.is_finite()));
-    let mut cvode = Cvode::with_sensitivities(field, *time, state, &options, &tangent)?;
-    *state = cvode.advance_to(end)?.to_vec();
-    *vectors = cvode.sensitivities()?.to_vec();
+    let mut motion = Integration::with_sensitivities(field, *time, state, &options, &tangent)?;
+    *state = motion.state_at(end)?.to_vec();
+    *vectors = motion.sensitivities()?;
     *time = end;
     let lengths_before: Vec<f64> = vectors.chunks_exact(dim).map(length).collect();
     let lengths = orthonormalise(vectors, dim);

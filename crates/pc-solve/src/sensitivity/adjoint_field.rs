@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use pc_expr::{Failure, Pattern, VectorField};
 
-use crate::cvode::cvode::Quadratures;
+use crate::cvode::quadrature::Quadratures;
 use crate::error::{NonFinite, SolveError};
 use crate::integration::motion_record::MotionRecord;
 use crate::integration::options::Options;

@@ -6,10 +6,13 @@ use std::rc::Rc;
 
 use pc_expr::{Event, Events, Failure, VectorField};
 
-use crate::cvode::cvode::{Cvode, Ending};
+use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::Observed;
 use crate::integration::options::Options;
 use crate::integration::statistics::Statistics;
+use crate::integration::stepper::Stepper;
 use crate::sensitivity::adjoint::{AdjointOptions, Functional, Gradient};
 use crate::sensitivity::adjoint_field::{AdjointField, Path, not_finite};
 
@@ -90,7 +93,7 @@ fn there<F: VectorField, E: Events>(
 ) -> Result<There, SolveError> {
     let names: Vec<String> = events.events().iter().map(|event| event.name().to_owned()).collect();
     let resetting: Vec<bool> = events.events().iter().map(Event::resets).collect();
-    let mut motion = Cvode::new(field, t0, y0, options)?.with_events(events)?;
+    let mut motion = Integration::new(field, t0, y0, options)?.with_events(events)?;
     let marks = RefCell::new(vec![Mark { t: t0, y: y0.to_vec(), jump: None }]);
     let mut together = None;
     let steps = RefCell::new(0);
@@ -122,7 +125,10 @@ fn there<F: VectorField, E: Events>(
         *steps.borrow_mut() = 0;
         ControlFlow::Continue(())
     };
-    let ending = motion.run_observed(&[t1], |_, _| ControlFlow::Continue(()), occurred, keep)?;
+    let ending = motion.run_observed(
+        &[t1],
+        Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred).steps(keep),
+    )?;
     let fail = |reason: Reason, time: f64, state: Vec<f64>| {
         Err(SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure: None })))
     };
@@ -143,9 +149,12 @@ fn there<F: VectorField, E: Events>(
     Ok(There { marks, has_jumps, end, statistics })
 }
 
+/// The equations of one functional, and λ.
+type Paused<F, G> = (AdjointField<F, G>, Vec<f64>);
+
 /// The way back of one functional.
 struct Way<F, G> {
-    back: Option<Cvode<AdjointField<F, G>>>,
+    back: Option<Integration<Cvode<AdjointField<F, G>>>>,
     options: Options,
     tolerances: (f64, f64),
     /// h, and what integrals behind the last jump add to it.
@@ -173,8 +182,8 @@ impl<F: VectorField, G: Functional> Way<F, G> {
     }
 
     fn begin(&mut self, adjoint: AdjointField<F, G>, t: f64, start: &[f64]) -> Result<(), SolveError> {
-        let mut back = Cvode::new(adjoint, t, start, &self.options)?;
-        back.begin_quadratures(self.tolerances.0, self.tolerances.1)?;
+        let mut back = Integration::new(adjoint, t, start, &self.options)?;
+        back.engine.begin_quadratures(self.tolerances.0, self.tolerances.1)?;
         self.back = Some(back);
         Ok(())
     }
@@ -183,14 +192,14 @@ impl<F: VectorField, G: Functional> Way<F, G> {
     fn advance_to(&mut self, t: f64) -> Result<(), SolveError> {
         let Some(back) = &mut self.back else { return Ok(()) };
         back.set_stop_time(Some(t))?;
-        let result = back.advance_to(t).map(|_| ());
-        result.map_err(|error| of_motion(error, back.field_mut()))
+        let result = back.state_at(t).map(|_| ());
+        result.map_err(|error| of_motion(error, back.engine.field_mut()))
     }
 
     /// Adds up the integrals, and takes the equations and λ out.
-    fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<(AdjointField<F, G>, Vec<f64>)>, SolveError> {
+    fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<Paused<F, G>>, SolveError> {
         let Some(back) = self.back.take() else { return Ok(None) };
-        let mut integrals = back.quadratures()?;
+        let mut integrals = back.engine.quadratures()?;
         if let Some(j) = not_finite(&integrals) {
             let component = format!("integral number {j} (from 0) of the gradient");
             let overflow = Reason::Overflow { component, value: integrals[j], t };
@@ -221,7 +230,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
             let field = &mut path.borrow_mut().field;
             // No step is taken.
             let options = Options { stop_time: None, ..options.clone() };
-            let mut there = Cvode::new(field, t, after, &options)?.with_events(events)?;
+            let mut there = Integration::new(field, t, after, &options)?.with_events(events)?;
             there.transposed_jump(event, t, before, after, (&lambda, step), parameters)?
         };
         for (sum, by_parameter) in self.by_parameters.iter_mut().zip(jumped.1) {

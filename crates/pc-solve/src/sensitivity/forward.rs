@@ -1,15 +1,15 @@
 //! Integration with sensitivities.
 
 use std::ffi::{c_int, c_long, c_void};
-use std::ops::ControlFlow;
 
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use crate::cvode::cvode::{Cvode, Ending};
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{NonlinearIteration, Vector};
-use crate::error::{Reason, SolveError};
-use crate::integration::options::{NonlinearSolver, Options, check_length, finite};
+use crate::error::{InputError, Reason, SolveError};
+use crate::integration::options::{NonlinearSolver, Options, finite};
 use crate::sensitivity::linearisation::Linearisation;
 use crate::sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
 use crate::sensitivity::variation;
@@ -21,7 +21,7 @@ pub(crate) struct Forward {
     _nonlinear_iteration: NonlinearIteration,
     /// Where CVODES writes the columns.
     pub(crate) columns: Vec<Vector>,
-    /// S(`time`) when asked for, S(t0) before; column-major.
+    /// S at the last start, column-major.
     matrix: Vec<f64>,
     correction: Correction,
     /// The work before the last restart.
@@ -64,11 +64,34 @@ impl<F: VectorField> Cvode<F> {
             return Ok(self);
         }
         let mut linearisation = Linearisation::new(self.field(), options);
-        let (t, y) = (self.time, self.state().to_vec());
+        let (t, y) = (self.time, self.step_state.as_slice().to_vec());
         let scales = sensitivities.sizes(self.callbacks.field_mut(), &mut linearisation, t, &y);
         self.callbacks.set_variation(Variation::new(linearisation, sensitivities.parameters()));
         self.begin_sensitivities(sensitivities, options.nonlinear_solver, start, scales)?;
         Ok(self)
+    }
+
+    /// Begins at a checkpoint with the columns that it has.
+    ///
+    /// # Errors
+    /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if the checkpoint has another
+    /// number of columns.
+    pub(crate) fn begin_at(
+        field: F,
+        checkpoint: &Checkpoint,
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        let (found, dim) = (checkpoint.sensitivities.len(), checkpoint.state.len());
+        if found != dim * sensitivities.len() {
+            let (expected, found) = (sensitivities.len(), found / dim.max(1));
+            return Err(InputError::Sensitivities { expected, found }.into());
+        }
+        for &value in &checkpoint.sensitivities {
+            finite("a sensitivity of the checkpoint", value)?;
+        }
+        let cvode = Cvode::new(field, checkpoint.time, &checkpoint.state, options)?;
+        cvode.and_sensitivities(sensitivities, options, checkpoint.sensitivities.clone())
     }
 
     fn begin_sensitivities(
@@ -139,62 +162,16 @@ impl<F: VectorField> Cvode<F> {
         context.check("the nonlinear solver of the sensitivities", code)
     }
 
-    /// S at [`time`](Cvode::time): entry `i + j * dim` is the derivative of component i by what column j stands for.
-    ///
-    /// Empty unless the integration was begun [with sensitivities](Cvode::with_sensitivities).
-    ///
-    /// # Errors
-    /// [`SolveError::Integration`] if a derivative has grown beyond the largest number.
-    pub fn sensitivities(&mut self) -> Result<&[f64], SolveError> {
-        if let Some(matrix) = self.sensitivities_at(self.time)?
-            && let Some(forward) = &mut self.sensitivity
-        {
-            forward.matrix = matrix;
-        }
-        self.finite_sensitivities()?;
-        Ok(self.sensitivity.as_ref().map_or(&[], |forward| &forward.matrix))
-    }
-
-    /// S at `t` in the last internal step; none where there is nothing but a start.
-    pub(crate) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
-        self.sensitivities_by_time(t, 0)
-    }
-
-    /// The parameter of each column.
-    pub(crate) fn sensitivity_parameters(&self) -> &[Option<usize>] {
-        self.callbacks.variation().parameters()
-    }
-
-    /// S where the integration stands, for a checkpoint; empty without sensitivities.
-    pub(crate) fn sensitivities_to_keep(&self) -> Vec<f64> {
-        match self.sensitivities_at(self.time) {
-            Ok(Some(matrix)) => matrix,
-            // What cannot be had is not finite, and refused by whoever goes on from it.
-            Err(_) => self.sensitivity.as_ref().map_or(Vec::new(), |s| vec![f64::NAN; s.matrix.len()]),
-            Ok(None) => self.sensitivity.as_ref().map_or(Vec::new(), |s| s.matrix.clone()),
-        }
-    }
-
-    /// Starts anew at y(t) = y as [`restart`](Cvode::restart) does, with these columns of S.
-    ///
-    /// Behind a jump that depends on the state, S jumps too.
-    ///
-    /// # Errors
-    /// As for [`restart`](Cvode::restart); [`SolveError::Input`] unless `matrix` is finite and as long as
-    /// [`sensitivities`](Cvode::sensitivities).
-    pub fn restart_with_sensitivities(
+    /// Starts anew at y(t) = y with these columns of S, which are finite.
+    pub(crate) fn restart_with_columns(
         &mut self,
         t: f64,
         y: &[f64],
         matrix: &[f64],
+        direction: Option<f64>,
     ) -> Result<(), SolveError> {
-        let expected = self.sensitivity.as_ref().map_or(0, |forward| forward.matrix.len());
-        check_length("the sensitivities", matrix.len(), expected)?;
-        for &value in matrix {
-            finite("a sensitivity", value)?;
-        }
         let work = self.sensitivity_statistics();
-        self.restart_alone(t, y)?;
+        self.restart_alone(t, y, direction)?;
         let Some(forward) = &mut self.sensitivity else { return Ok(()) };
         forward.earlier = work;
         forward.matrix.copy_from_slice(matrix);
@@ -212,39 +189,19 @@ impl<F: VectorField> Cvode<F> {
         self.context.check("CVodeSensReInit", code)
     }
 
-    fn finite_sensitivities(&self) -> Result<(), SolveError> {
-        let Some(forward) = &self.sensitivity else { return Ok(()) };
-        let Some(k) = forward.matrix.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+    /// S where it stands, column-major; empty without sensitivities.
+    pub(crate) fn columns_here(&self) -> Result<Vec<f64>, SolveError> {
+        let Some(forward) = &self.sensitivity else { return Ok(Vec::new()) };
+        let matrix = self.sensitivities_at(self.time)?.unwrap_or_else(|| forward.matrix.clone());
+        let Some(k) = matrix.iter().position(|value| !value.is_finite()) else { return Ok(matrix) };
         let dim = self.step_state.as_slice().len();
         let component = format!(
             "column {} (from 0) of the sensitivity of {}",
             k / dim,
             self.field().component_name(k % dim)
         );
-        let reason = Reason::Overflow { component, value: forward.matrix[k], t: self.time };
+        let reason = Reason::Overflow { component, value: matrix[k], t: self.time };
         Err(self.error(reason, None))
-    }
-
-    /// As [`run`](Cvode::run), and gives each (t, y, S) to `output`.
-    ///
-    /// # Errors
-    /// As for [`run`](Cvode::run) and [`sensitivities`](Cvode::sensitivities).
-    pub fn run_with_sensitivities(
-        &mut self,
-        times: &[f64],
-        mut output: impl FnMut(f64, &[f64], &[f64]) -> ControlFlow<()>,
-    ) -> Result<Ending, SolveError> {
-        let end = self.check_times(times)?;
-        for &t in times {
-            // Without an observer nothing can stop it.
-            let _ = self.advance(t, end, &mut |_, _| ControlFlow::Continue(()))?;
-            self.sensitivities()?;
-            let matrix = self.sensitivity.as_ref().map_or(&[][..], |forward| &forward.matrix);
-            if output(t, self.state(), matrix).is_break() {
-                return Ok(Ending::Stopped);
-            }
-        }
-        Ok(Ending::Completed)
     }
 
     /// The work for the sensitivities so far.

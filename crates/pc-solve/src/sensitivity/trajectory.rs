@@ -1,15 +1,13 @@
 //! States and their derivatives at the output times.
 
-use std::error::Error;
-use std::fmt;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::cvode::{Cvode, Ending};
-use crate::error::SolveError;
+use crate::error::{SolveError, SolveFailure};
 use crate::events::events::Occurrence;
 use crate::integration::dense_output::DenseOutput;
+use crate::integration::integration::{Ending, Integration};
 use crate::integration::options::Options;
 use crate::integration::trajectory::Trajectory;
 use crate::sensitivity::options::Sensitivities;
@@ -67,7 +65,7 @@ impl SensitivityTrajectory {
 /// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::integration::solve()) does, and derivatives of the motion with it.
 ///
 /// # Errors
-/// [`SensitivityFailure`] with the outputs reached before the failure; none if the input is not valid.
+/// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.
 pub fn solve_with_sensitivities<F: VectorField>(
     field: F,
     t0: f64,
@@ -75,51 +73,33 @@ pub fn solve_with_sensitivities<F: VectorField>(
     times: &[f64],
     options: &Options,
     sensitivities: &Sensitivities,
-) -> Result<SensitivityTrajectory, Box<SensitivityFailure>> {
+) -> Result<SensitivityTrajectory, Box<SolveFailure<SensitivityTrajectory>>> {
     let mut reached = SensitivityTrajectory::new(field.dim(), sensitivities.len());
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let mut cvode = match Cvode::with_sensitivities(field, t0, y0, &options, sensitivities) {
-        Ok(cvode) => cvode,
-        Err(error) => return Err(Box::new(SensitivityFailure { reached, error })),
+    let mut integration = match Integration::with_sensitivities(field, t0, y0, &options, sensitivities) {
+        Ok(integration) => integration,
+        Err(error) => return Err(Box::new(SolveFailure { reached, error })),
     };
-    let result = cvode.run_with_sensitivities(times, |t, y, matrix| {
-        reached.motion.push(t, y);
-        reached.matrices.extend_from_slice(matrix);
-        ControlFlow::Continue(())
-    });
-    reached.motion.finish(matches!(result, Ok(Ending::Completed)), cvode.statistics());
+    let result = integration.run_with_sensitivities(
+        times,
+        |t: f64, y: &[f64], matrix: &[f64]| {
+            reached.motion.push(t, y);
+            reached.matrices.extend_from_slice(matrix);
+            ControlFlow::Continue(())
+        },
+        |_| ControlFlow::Continue(()),
+    );
+    reached.motion.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
     match result {
         Ok(_) => Ok(reached),
-        Err(error) => Err(Box::new(SensitivityFailure { reached, error })),
-    }
-}
-
-/// A failed [`solve_with_sensitivities`] with the outputs it had reached.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct SensitivityFailure {
-    /// The outputs before the failure.
-    pub reached: SensitivityTrajectory,
-    /// What went wrong.
-    pub error: SolveError,
-}
-
-impl fmt::Display for SensitivityFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.error.fmt(f)
-    }
-}
-
-impl Error for SensitivityFailure {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        self.error.source()
+        Err(error) => Err(Box::new(SolveFailure { reached, error })),
     }
 }
 
 /// A motion with events and the derivatives of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HybridSensitivities {
+pub struct SensitivitySolution {
     /// The states and S at the output times, y⁺ and S⁺ at those of events; a terminal event is the last.
     pub trajectory: SensitivityTrajectory,
     /// What occurred, in order.
@@ -129,28 +109,28 @@ pub struct HybridSensitivities {
 }
 
 /// As [`solve_with_sensitivities`], with events: S jumps where a reset does, by
-/// [its derivatives](Events::by_parameter). `output` sees each output time with its state, and may stop the integration.
+/// [its derivatives](Events::by_parameter). The motion begins at (t0, y0); `output` sees each output time with its state, and
+/// may stop the integration.
 ///
 /// # Errors
-/// The error, with what was reached before.
+/// [`SolveFailure`] with what was reached before.
 pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     field: F,
-    t0: f64,
-    y0: &[f64],
+    (t0, y0): (f64, &[f64]),
     times: &[f64],
     options: &Options,
     sensitivities: &Sensitivities,
     events: E,
     mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<HybridSensitivities, (Box<HybridSensitivities>, SolveError)> {
+) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
     let trajectory = SensitivityTrajectory::new(field.dim(), sensitivities.len());
-    let mut reached = HybridSensitivities { trajectory, occurrences: Vec::new(), ending: None };
+    let mut reached = SensitivitySolution { trajectory, occurrences: Vec::new(), ending: None };
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let start = Cvode::with_sensitivities(field, t0, y0, &options, sensitivities);
-    let mut hybrid = match start.and_then(|cvode| cvode.with_events(events)) {
-        Ok(hybrid) => hybrid,
-        Err(error) => return Err((Box::new(reached), error)),
+    let start = Integration::with_sensitivities(field, t0, y0, &options, sensitivities);
+    let mut integration = match start.and_then(|integration| integration.with_events(events)) {
+        Ok(integration) => integration,
+        Err(error) => return Err(Box::new(SolveFailure { reached, error })),
     };
     let keep = |t: f64, y: &[f64], matrix: &[f64]| {
         reached.trajectory.motion.push(t, y);
@@ -161,12 +141,12 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
         reached.occurrences.push(occurrence.clone());
         ControlFlow::Continue(())
     };
-    let result = hybrid.run_with_sensitivities(times, keep, occurred);
+    let result = integration.run_with_sensitivities(times, keep, occurred);
     let complete = matches!(result, Ok(Ending::Completed));
-    reached.trajectory.motion.finish(complete, hybrid.statistics());
+    reached.trajectory.motion.finish(complete, integration.statistics());
     match result {
-        Ok(ending) => Ok(HybridSensitivities { ending: Some(ending), ..reached }),
-        Err(error) => Err((Box::new(reached), error)),
+        Ok(ending) => Ok(SensitivitySolution { ending: Some(ending), ..reached }),
+        Err(error) => Err(Box::new(SolveFailure { reached, error })),
     }
 }
 
@@ -174,7 +154,7 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
 /// entries of S column-major.
 ///
 /// # Errors
-/// As for [`Cvode::run_dense_with_sensitivities`], which also gives what was reached.
+/// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.
 pub fn solve_dense_with_sensitivities<F: VectorField>(
     field: F,
     t0: f64,
@@ -186,11 +166,15 @@ pub fn solve_dense_with_sensitivities<F: VectorField>(
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(Some(end).filter(|t| t.is_finite()));
     let (mut motion, mut matrix) = (DenseOutput::default(), DenseOutput::default());
-    let mut cvode = Cvode::with_sensitivities(field, t0, y0, &options, sensitivities)?;
-    cvode.run_dense_with_sensitivities(end, |of_state, of_matrix| {
-        motion.extend([of_state]);
-        matrix.extend([of_matrix]);
-        ControlFlow::Continue(())
-    })?;
+    let mut integration = Integration::with_sensitivities(field, t0, y0, &options, sensitivities)?;
+    integration.run_dense_with_sensitivities(
+        end,
+        |of_state, of_matrix| {
+            motion.extend([of_state]);
+            matrix.extend([of_matrix]);
+            ControlFlow::Continue(())
+        },
+        |_| ControlFlow::Continue(()),
+    )?;
     Ok((motion, matrix))
 }

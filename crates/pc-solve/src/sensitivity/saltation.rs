@@ -2,13 +2,18 @@
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::error::{Reason, SolveError};
+use crate::integration::integration::Integration;
+use crate::integration::stepper::Stepper;
+
+/// A projection that moves what a reset gives by no more than this, absolute or relative whichever is larger, changes nothing
+/// but rounding.
+const OFF: f64 = 1e-8;
 
 /// A function that changes at less than this part of the sum of its terms along the motion only touches zero.
 const GRAZING: f64 = 1e-9;
 
-impl<F: VectorField, E: Events> Hybrid<F, E> {
+impl<S: Stepper, E: Events> Integration<S, E> {
     /// S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
     /// ```text
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
@@ -16,7 +21,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000) 204, eqs. (37)–(43)]. The
     /// derivatives by parameters are the events' own, and those by (t, y) too where [there are such](Events::has_derivatives),
     /// else central difference quotients along the columns and along the motion.
-    pub(super) fn jump_of_sensitivities(
+    pub(crate) fn jump_of_sensitivities(
         &mut self,
         event: usize,
         t: f64,
@@ -25,16 +30,19 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         matrix: &[f64],
     ) -> Result<Vec<f64>, SolveError> {
         let dim = before.len();
+        let projects = self.is_projected(event, t, before, after)?;
         let rates_before = self.rates_at(t, before)?;
         let rates_after = self.rates_at(t, after)?;
-        let (along, size, reset_along) = self.derivative_along(event, (t, before), (1.0, &rates_before))?;
+        let (along, size, reset_along) =
+            self.derivative_along(event, (t, before), (1.0, &rates_before), projects)?;
         if along.abs() <= GRAZING * size {
             return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
         }
-        let parameters = self.engine.sensitivity_parameters().to_vec();
+        let parameters = self.engine.column_parameters().to_vec();
         let mut jumped = Vec::with_capacity(matrix.len());
         for (column, parameter) in matrix.chunks_exact(dim).zip(parameters) {
-            let (mut change, _, mut reset) = self.derivative_along(event, (t, before), (0.0, column))?;
+            let (mut change, _, mut reset) =
+                self.derivative_along(event, (t, before), (0.0, column), projects)?;
             if let Some(j) = parameter {
                 let mut by_parameter = vec![f64::NAN; dim];
                 match self.events.by_parameter(event, j, t, before, &mut by_parameter) {
@@ -65,9 +73,11 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         parameters: usize,
     ) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let projects = self.is_projected(event, t, before, after)?;
         let rates_before = self.rates_at(t, before)?;
         let rates_after = self.rates_at(t, after)?;
-        let (along, size, reset_along) = self.derivative_along(event, (t, before), (1.0, &rates_before))?;
+        let (along, size, reset_along) =
+            self.derivative_along(event, (t, before), (1.0, &rates_before), projects)?;
         if along.abs() <= GRAZING * size {
             return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
         }
@@ -76,7 +86,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         let mut unit = vec![0.0; before.len()];
         for i in 0..before.len() {
             unit[i] = 1.0;
-            let (function, _, reset) = self.derivative_along(event, (t, before), (0.0, &unit))?;
+            let (function, _, reset) = self.derivative_along(event, (t, before), (0.0, &unit), projects)?;
             unit[i] = 0.0;
             jumped.push(dot(adjoint, &reset) - shift * function);
         }
@@ -91,39 +101,58 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         Ok((jumped, by_parameters))
     }
 
+    /// Whether the [projection](VectorField::project) of the field moves what the reset gives. One that does not is none of
+    /// R: columns by parameters that move the surface leave it, and must not be brought back to where it was.
+    fn is_projected(
+        &mut self,
+        event: usize,
+        t: f64,
+        before: &[f64],
+        after: &[f64],
+    ) -> Result<bool, SolveError> {
+        let mut alone = before.to_vec();
+        self.reset_alone(event, t, &mut alone)?;
+        Ok(alone.iter().zip(after).any(|(a, b)| (a - b).abs() > OFF * b.abs().max(1.0)))
+    }
+
     fn rates_at(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         let mut rates = vec![f64::NAN; state.len()];
-        let outcome = self.engine.callbacks.field_mut().rhs(t, state, &mut rates);
+        let outcome = self.engine.field_mut().rhs(t, state, &mut rates);
         match outcome {
             Ok(()) => Ok(rates),
             Err(failure) => Err(self.failed(Reason::Saltation { t }, Some(failure))),
         }
     }
 
-    /// The derivatives of g and R along (1, v) or (0, v) of time and state, and |g_t| + Σ |g_yᵢ vᵢ| or what is known of it.
+    /// The derivatives of g and R, with the projection of the field or without, along (1, v) or (0, v) of time and state, and |g_t| + Σ |g_yᵢ vᵢ| or what is known of it.
     fn derivative_along(
         &mut self,
         event: usize,
         (t, state): (f64, &[f64]),
         (in_time, v): (f64, &[f64]),
+        projects: bool,
     ) -> Result<(f64, f64, Vec<f64>), SolveError> {
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let length = largest(v).max(in_time);
         if length == 0.0 {
             return Ok((0.0, 0.0, vec![0.0; state.len()]));
         }
-        if self.events.has_derivatives() {
+        if self.events.has_derivatives() && !projects {
             return self.own_derivative_along(event, (t, state), (in_time, v));
         }
         // As for products with ∂f/∂y: truncation and rounding are alike.
-        let least = self.engine.foresight.least_size();
+        let least = self.engine.least_size();
         let step = f64::EPSILON.cbrt() * largest(state).max(least) / length;
         let (mut values, mut states) = (Vec::new(), Vec::new());
         for sign in [1.0, -1.0] {
             let mut moved: Vec<f64> = state.iter().zip(v).map(|(y, v)| y + sign * step * v).collect();
             let at = t + sign * step * in_time;
             values.push(self.evaluate(at, &moved)?[event]);
-            self.reset(event, at, &mut moved)?;
+            if projects {
+                self.reset(event, at, &mut moved)?;
+            } else {
+                self.reset_alone(event, at, &mut moved)?;
+            }
             states.push(moved);
         }
         let quotient = |ahead: f64, behind: f64| (ahead - behind) / (2.0 * step);

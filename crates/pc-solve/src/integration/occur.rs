@@ -1,27 +1,27 @@
 //! What happens to the state at events.
 
-use crate::cvode::cvode::Ending;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, Failure, VectorField};
 
-use crate::cvode::hybrid::hybrid::Hybrid;
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::inequality;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::stepper::Stepper;
 
 /// A function is near zero after a reset within so many times what the tolerances of the state make of zero.
 const TOLERANCES: f64 = 10.0;
 
-impl<F: VectorField, E: Events> Hybrid<F, E> {
+impl<S: Stepper, E: Events> Integration<S, E> {
     /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does:
     /// by the first terminal event, else where `occurred` stops it.
-    pub(super) fn occur(
+    pub(crate) fn occur(
         &mut self,
         occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Option<Ending>, SolveError> {
         let t = self.front.t;
-        self.engine.time = t;
+        self.engine.stand_at(t);
         let mut state = self.front_state.clone();
         let mut occurrences = Vec::with_capacity(self.due.len());
         let mut matrix = self.sensitivities_before(t)?;
@@ -43,8 +43,8 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         }
         if occurrences.iter().any(|occurrence| self.events.events()[occurrence.event].resets()) {
             let values = self.evaluate(t, &state)?;
-            self.engine.restart_with_sensitivities(t, &state, &matrix)?;
-            self.engine.direction = self.direction;
+            self.engine.restart(t, &state, &matrix, self.direction)?;
+            (self.restarted, self.jumped) = (true, true);
             let noise = self.noise_after_reset(t, &state, &values);
             self.sides.jump(&values, noise);
             self.front.values = values;
@@ -66,7 +66,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         let ending = terminal.or(stopped);
         for occurrence in &occurrences {
             let event = occurrence.event;
-            let accumulates = self.histories[event].note(t, self.engine.accumulation);
+            let accumulates = self.histories[event].note(t, self.engine.limits().accumulation);
             if let (Some(t), None) = (accumulates, ending) {
                 let occurrences = self.histories[event].occurrences;
                 let reason = Reason::Accumulation { event: self.name(event), occurrences, t };
@@ -79,14 +79,14 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     /// S⁻ at the front, if a reset is to change it: no more than one, since it is not defined where several occur together.
     fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
         let resets = self.due.iter().filter(|&&event| self.events.events()[event].resets()).count();
-        if resets == 0 || self.engine.sensitivity.is_none() {
+        if resets == 0 || self.engine.column_parameters().is_empty() {
             return Ok(Vec::new());
         }
         if resets > 1 {
             let events = self.due.iter().map(|&event| self.name(event)).collect();
             return Err(self.failed(Reason::Together { events, t }, None));
         }
-        Ok(self.engine.sensitivities()?.to_vec())
+        self.engine.columns()
     }
 
     /// What each function has to exceed after a reset to be told from zero. For those that caused it that is what the
@@ -100,7 +100,7 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
         let mut perturbation = vec![0.0; values.len()];
         let mut at = vec![0.0; values.len()];
         for i in 0..state.len() {
-            moved[i] = state[i] + self.engine.foresight.tolerance(i, state[i]);
+            moved[i] = state[i] + self.engine.tolerance(i, state[i]);
             // Where a function has no value nothing is known.
             if self.events.evaluate(t, &moved, &mut at).is_ok() {
                 let changes = perturbation.iter_mut().zip(at.iter().zip(values));
@@ -118,7 +118,21 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
     }
 
     /// y⁺ of one event, in the place of y⁻.
-    pub(super) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
+    pub(crate) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
+        self.reset_alone(event, t, state)?;
+        if !self.field().has_projection() {
+            return Ok(());
+        }
+        let field = self.engine.field_mut();
+        field.restart(t, state);
+        match field.project(t, state) {
+            Ok(()) => Ok(()),
+            Err(failure) => Err(self.failed(Reason::Projection { t }, Some(failure))),
+        }
+    }
+
+    /// The same before the field projects it.
+    pub(crate) fn reset_alone(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         let mut result = self.events.reset(event, t, state);
         if let (Ok(()), Some(i)) = (&result, state.iter().position(|value| !value.is_finite())) {
             let component = self.field().component_name(i);
@@ -126,18 +140,13 @@ impl<F: VectorField, E: Events> Hybrid<F, E> {
             result = Err(Failure::fatal(NonFinite::Reset { event, component, value: state[i], t }));
         }
         if result.is_ok() {
-            let allowed = inequality::check(self.field(), state, &self.engine.inequalities);
+            let allowed = inequality::check(self.field(), state, &self.engine.limits().inequalities);
             result = allowed.map_err(Failure::fatal);
         }
         if let Err(failure) = result {
             let reason = Reason::Reset { event: self.name(event), t };
             return Err(self.failed(reason, Some(failure)));
         }
-        let Some((field, _)) = self.engine.callbacks.projection() else { return Ok(()) };
-        field.restart(t, state);
-        match field.project(t, state) {
-            Ok(()) => Ok(()),
-            Err(failure) => Err(self.failed(Reason::Projection { t }, Some(failure))),
-        }
+        Ok(())
     }
 }

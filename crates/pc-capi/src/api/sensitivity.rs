@@ -1,0 +1,94 @@
+//! Derivatives of motions by parameters.
+
+use ::pc_model::Flow;
+
+use crate::api::solver::{integrate, pc_solver};
+use crate::api::system::{Inner, Inventory, inside, pc_system};
+use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::pointer::{numbers, room};
+use crate::ffi::status::pc_status;
+use crate::machinery::engine::Integration;
+
+/// Writes the derivative of the start of the model by parameter number `parameter`, from 0: its start values may be expressions
+/// in parameters. It derives the equations twice. PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input
+/// with a table, and for a parameter in whose expression others are.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_start_by_parameter(
+    system: *const pc_system,
+    parameter: usize,
+    column: *mut f64,
+    column_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let derive = |inventory: &Inventory, inner: &mut Inner| {
+        // SAFETY: null or room for `column_length` numbers, as the preamble demands.
+        let column = unsafe { room(column, column_length, inventory.dim(), "column") }?;
+        let values = inner.field.parameters();
+        if parameter >= values.len() {
+            return Err(Fault::Index { what: "parameter", index: parameter, count: values.len() });
+        }
+        let mut model = inventory.model.clone();
+        // Those that follow others have followed when their turn comes.
+        for (place, &value) in values.iter().enumerate() {
+            let known = model.parameters().nth(place).map(|(name, known)| (name.to_owned(), known));
+            let is_table = model.parameter_values().is_table(place);
+            match known {
+                Some((name, known)) if known != value && !is_table => model.set(&name, value)?,
+                _ => {}
+            }
+        }
+        column.copy_from_slice(&Flow::start_by_parameter(&model, inventory.variables, parameter)?);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, derive) }
+}
+
+/// Has a solver integrate one more sensitivity with the motion, before the first step: the derivative of the state by parameter
+/// number `parameter`, from 0, of a start with the derivative `start`, as pc_system_start_by_parameter gives it for that of the
+/// model; NULL, of length 0, for a start that does not depend on the parameter. The model has to be one of pc_model_differentiate.
+/// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an event of the program does. By an
+/// input with a table they are the change when all its values are raised alike.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_add_sensitivity(
+    solver: *mut pc_solver,
+    parameter: usize,
+    start: *const f64,
+    start_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let add = |integration: &mut Integration, dim: usize| {
+        if start.is_null() && start_length == 0 {
+            return integration.differentiate(parameter, &vec![0.0; dim]);
+        }
+        // SAFETY: `start_length` numbers, as the preamble demands.
+        let start = unsafe { numbers(start, start_length, dim, "start") }?;
+        integration.differentiate(parameter, start)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, add) }
+}
+
+/// Writes sensitivity number `number`, from 0 in the order in which they were added, where the integration stands, as long as the
+/// state.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_sensitivity(
+    solver: *const pc_solver,
+    number: usize,
+    column: *mut f64,
+    column_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = |integration: &mut Integration, dim: usize| {
+        // SAFETY: null or room for `column_length` numbers, as the preamble demands.
+        let column = unsafe { room(column, column_length, dim, "column") }?;
+        let (matrix, count) = integration.sensitivities()?;
+        if number >= count {
+            return Err(Fault::Index { what: "sensitivity", index: number, count });
+        }
+        column.copy_from_slice(&matrix[number * dim..(number + 1) * dim]);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { integrate(solver, error, read) }
+}

@@ -1,0 +1,443 @@
+//! An integration by any method, which events may interrupt.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use pc_expr::{Direction, Event, Events, Failure, VectorField};
+
+use crate::cvode::cvode::Cvode;
+use crate::error::{InputError, NonFinite, Reason, SolveError};
+use crate::events::events::{Accumulation, History, NoEvents};
+use crate::events::root_finding::{Passage, Sample, Sides};
+use crate::integration::inequality;
+use crate::integration::options::{Options, check_length, finite};
+use crate::integration::statistics::Statistics;
+use crate::integration::stepper::Stepper;
+
+/// An integration of ẏ = f(t, y) by a [method](Stepper), with [`Events`] or without.
+///
+/// It stands at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be up to one step ahead;
+/// outputs in between are interpolated with its polynomial, so that asking for more of them changes no step. The direction of
+/// time is that of the first step. After an error or a panic of the field it stands where it last could.
+///
+/// # Events
+///
+/// Along each step the functions of the events are evaluated at states on the polynomial of the method,
+/// [projected](VectorField::project) where the field does so: at the ends of so many equal parts of the step as
+/// [asked for](crate::Options::samples_per_step), and where three of these values in sequence suggest that a function
+/// passes through zero twice. Between two of these places an even number of passages of a function may be missed; of an odd
+/// number one is found, so that it is always on the side that it is taken to be on. After a passage the rest of the step is
+/// looked at in as many parts again.
+///
+/// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass through zero within 16
+/// times that of each other do so together: their resets are applied one after the other, in the order of
+/// the events, each to the state that the one before has left. After a reset the integration
+/// [restarts](Integration::restart) with the same options.
+///
+/// A function that comes to zero, or beyond it, and is back on its side that much later touches zero: nothing occurs. One
+/// that comes to zero and stays there passes when it comes, and not when it leaves. What counts is the function as it is
+/// computed, with its rounding.
+///
+/// After a reset the events that caused it have to leave zero before they can occur again: a function that the reset has
+/// left so near to zero that the tolerances do not tell it from zero goes on to the side that it moves to.
+///
+/// CVODES has a search for roots of its own. It is not used because it knows neither projected states nor what a reset
+/// does to the functions, reports one of two roots in a step at most, and may report a root again after a restart.
+///
+/// Where the integration stands at an event, its state is y⁺: states are continuous from the right in the direction of
+/// integration. After an error or a panic it stands where it last could.
+pub struct Integration<S, E = NoEvents> {
+    /// Stands where this integration does.
+    pub(crate) engine: S,
+    pub(crate) events: E,
+    pub(super) histories: Vec<History>,
+    /// 1 or −1 since the first step.
+    pub(super) direction: Option<f64>,
+    /// Up to where it is known what occurs, the functions there, and y.
+    pub(crate) front: Sample,
+    pub(super) front_state: Vec<f64>,
+    pub(super) sides: Sides,
+    /// The sides before the front moved there.
+    pub(super) sides_before: Sides,
+    /// The events that occur at the front and have yet to be dealt with.
+    pub(super) due: Vec<usize>,
+    pub(super) noise: Vec<f64>,
+    /// The side of zero that each of those due goes on to.
+    pub(super) beyond: Vec<f64>,
+    /// y(`time`), unless `time` is the front.
+    pub(super) output: Vec<f64>,
+    /// Whether there has been no step since a new start on the way.
+    pub(super) restarted: bool,
+    /// Whether the motion has been started anew from a state that it did not come to by itself.
+    pub(super) jumped: bool,
+}
+
+/// How a [`run`](Integration::run) ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// All output times were reached.
+    Completed,
+    /// An observer stopped it.
+    Stopped,
+    /// A terminal event.
+    Event {
+        /// Its number among the events.
+        event: usize,
+    },
+}
+
+impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Integration")
+            .field("time", &self.time())
+            .field("state", &self.state())
+            .field("events", &self.events.events())
+            .field("statistics", &self.statistics())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: VectorField> Integration<Cvode<F>> {
+    /// Starts at y(t0) = y0 by CVODES, where `y0` has as many numbers as `field` has components.
+    ///
+    /// # Errors
+    /// As for [`Cvode::new`].
+    pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
+        Ok(Integration::of(Cvode::new(field, t0, y0, options)?))
+    }
+}
+
+impl<S: Stepper> Integration<S> {
+    /// By a method that has made no step.
+    pub fn of(stepper: S) -> Self {
+        let (t, state) = (stepper.time(), stepper.end_state().to_vec());
+        let sides = Sides::new(Vec::new());
+        Integration {
+            engine: stepper,
+            events: NoEvents,
+            histories: Vec::new(),
+            direction: None,
+            front: Sample { t, values: Vec::new() },
+            output: state.clone(),
+            front_state: state,
+            sides_before: sides.clone(),
+            sides,
+            due: Vec::new(),
+            noise: Vec::new(),
+            beyond: Vec::new(),
+            restarted: false,
+            jumped: false,
+        }
+    }
+
+    /// This integration, with events from where it stands.
+    ///
+    /// Its [sensitivities](crate::Cvode::with_sensitivities), if there are any, are those of the motion with its events: they
+    /// jump where a reset does. For that resets are also applied to states near by, and events that reset have to tell their
+    /// [derivatives](Events::by_parameter) by the parameters that are asked for.
+    ///
+    /// # Errors
+    /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there;
+    /// [`InputError::EventParameters`].
+    pub fn with_events<E: Events>(mut self, events: E) -> Result<Integration<S, E>, SolveError> {
+        let resets = events.events().iter().any(Event::resets);
+        let by_parameters = self.engine.column_parameters().iter().any(Option::is_some);
+        if resets && by_parameters && !events.has_parameter_derivatives() {
+            return Err(InputError::EventParameters.into());
+        }
+        let (t, state) = (self.time(), self.state().to_vec());
+        if t != self.engine.last_step().end {
+            let columns = self.engine.columns()?;
+            self.engine.restart(t, &state, &columns, None)?;
+            (self.jumped, self.restarted, self.direction) = (true, true, None);
+        }
+        let n = events.events().len();
+        let sides = Sides::new(directions(&events));
+        let mut integration = Integration {
+            engine: self.engine,
+            events,
+            histories: vec![History::default(); n],
+            direction: self.direction,
+            front: Sample { t, values: Vec::new() },
+            output: state.clone(),
+            front_state: state.clone(),
+            sides_before: sides.clone(),
+            sides,
+            due: Vec::new(),
+            noise: Vec::new(),
+            beyond: Vec::new(),
+            restarted: self.restarted,
+            jumped: self.jumped,
+        };
+        integration.front.values = integration.evaluate(t, &state)?;
+        integration.sides.pass(&integration.front.values);
+        Ok(integration)
+    }
+
+    /// Integrates to `t` and returns the state there, at once if it is where the integration stands.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Integration::advance_to).
+    pub fn state_at(&mut self, t: f64) -> Result<&[f64], SolveError> {
+        self.advance_to(t, |_| ControlFlow::Continue(()))?;
+        Ok(self.state())
+    }
+
+    /// Takes one step in the direction of `towards` and returns its end, which may lie beyond.
+    ///
+    /// # Errors
+    /// As for [`step`](Integration::step).
+    pub fn step_towards(&mut self, towards: f64) -> Result<f64, SolveError> {
+        self.step(towards, |_| ControlFlow::Continue(()))?;
+        Ok(self.time())
+    }
+}
+
+pub(super) fn directions(events: &impl Events) -> Vec<Direction> {
+    events.events().iter().map(Event::crosses).collect()
+}
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// When occurrences of an event accumulate, which is an error; as the [options](crate::Options::accumulation) say unless
+    /// given.
+    pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
+        self.engine.limits_mut().accumulation = accumulation;
+        self
+    }
+
+    /// Where the integration stands: the time last advanced to, or that of the event that stopped it.
+    pub fn time(&self) -> f64 {
+        self.engine.time()
+    }
+
+    /// y at [`time`](Integration::time).
+    pub fn state(&self) -> &[f64] {
+        if self.time() == self.front.t { &self.front_state } else { &self.output }
+    }
+
+    /// The vector field.
+    pub fn field(&self) -> &S::Field {
+        self.engine.field()
+    }
+
+    /// The events.
+    pub fn events(&self) -> &E {
+        &self.events
+    }
+
+    /// The method.
+    pub fn stepper(&self) -> &S {
+        &self.engine
+    }
+
+    /// Ends the integration and gives the vector field back.
+    pub fn into_field(self) -> S::Field {
+        self.engine.into_field()
+    }
+
+    /// Ends the integration and gives the vector field and the events back.
+    pub fn into_parts(self) -> (S::Field, E) {
+        (self.engine.into_field(), self.events)
+    }
+
+    /// The work so far, that before restarts included.
+    pub fn statistics(&self) -> Statistics {
+        self.engine.statistics()
+    }
+
+    /// Sets a time beyond which the vector field is never evaluated, or removes it.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] if it is not finite or lies behind the last step.
+    pub fn set_stop_time(&mut self, stop_time: Option<f64>) -> Result<(), SolveError> {
+        if let Some(t) = stop_time {
+            finite("the stop time", t)?;
+            let current = self.engine.last_step().end;
+            if self.direction.is_some_and(|direction| (t - current) * direction < 0.0) {
+                return Err(InputError::Behind { requested: t, current }.into());
+            }
+        }
+        self.engine.set_stop_time(stop_time)
+    }
+
+    /// Starts anew at y(t) = y, after a jump of the state, say.
+    ///
+    /// Options and stop time stay, and the [statistics](Integration::statistics) count on. A multistep method begins at order
+    /// 1; the next step may go either way. Events are on the side of zero that they are on there.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities, which
+    /// [have to be given too](Integration::restart_with_sensitivities); [`SolveError::Setup`] if CVODES refuses. The
+    /// integration is then where it was.
+    pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
+        if !self.engine.column_parameters().is_empty() {
+            return Err(InputError::Restart.into());
+        }
+        self.restart_with_columns(t, y, &[])
+    }
+
+    pub(crate) fn restart_with_columns(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+    ) -> Result<(), SolveError> {
+        finite("the start time", t)?;
+        check_length("the start", y.len(), self.field().dim())?;
+        if let Some(i) = y.iter().position(|value| !value.is_finite()) {
+            let what = format!("{} at the start", self.field().component_name(i));
+            return Err(InputError::NotFinite { what, value: y[i] }.into());
+        }
+        inequality::check(self.field(), y, &self.engine.limits().inequalities)?;
+        let values = self.evaluate(t, y)?;
+        self.engine.restart(t, y, columns, None)?;
+        (self.direction, self.restarted, self.jumped) = (None, true, true);
+        self.sides = Sides::new(directions(&self.events));
+        self.sides.pass(&values);
+        self.sides_before = self.sides.clone();
+        self.front = Sample { t, values };
+        self.front_state.copy_from_slice(y);
+        self.due.clear();
+        Ok(())
+    }
+
+    /// Changes the field where the integration stands, such as the value of an input, and [begins
+    /// anew](Integration::restart) there: what was computed ahead of [`time`](Integration::time) is forgotten.
+    ///
+    /// # Errors
+    /// As for [`restart`](Integration::restart); the field is changed nevertheless.
+    pub fn change(&mut self, change: impl FnOnce(&mut S::Field)) -> Result<(), SolveError> {
+        let (t, state) = (self.time(), self.state().to_vec());
+        change(self.engine.field_mut());
+        self.restart(t, &state)
+    }
+
+    /// Moves the front to the next event or to the end of the next step.
+    pub(super) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
+        let time = self.engine.time();
+        if self.engine.last_step().end == self.front.t {
+            if self.arrives(towards)? {
+                return Ok(());
+            }
+            self.engine.step(towards)?;
+            self.engine.stand_at(time);
+            self.restarted = false;
+            self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));
+        }
+        let to = self.engine.last_step().end;
+        if time == self.front.t {
+            self.output.copy_from_slice(&self.front_state);
+        }
+        if self.events.events().is_empty() {
+            self.front.t = to;
+            self.front_state.copy_from_slice(self.engine.end_state());
+            return Ok(());
+        }
+        let pieces = self.engine.limits().samples_per_step;
+        let (engine, events) = (&mut self.engine, &mut self.events);
+        let mut blamed = 0;
+        let mut values = |t: f64| {
+            let state = if t == to {
+                engine.end_state()
+            } else {
+                engine.interpolate(t, 0).map_err(SearchFailure::Method)?
+            };
+            values_at(events, t, state, &mut blamed).map_err(|failure| SearchFailure::Event(t, failure))
+        };
+        let mut sides = self.sides.clone();
+        let passage = match sides.first(self.front.clone(), to, pieces, &mut values) {
+            Ok(passage) => passage,
+            Err(SearchFailure::Method(error)) => return Err(self.stay(error)),
+            Err(SearchFailure::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
+        };
+        let (front, noise, due, beyond) = match passage {
+            Passage::Clear(end) => (end, Vec::new(), Vec::new(), Vec::new()),
+            Passage::Crossing(crossing) => (crossing.at, crossing.noise, crossing.events, crossing.beyond),
+        };
+        let state =
+            if front.t == to { Ok(self.engine.end_state()) } else { self.engine.interpolate(front.t, 0) };
+        match state {
+            Ok(state) => self.front_state.copy_from_slice(state),
+            Err(error) => return Err(self.stay(error)),
+        }
+        self.engine.stand_at(time);
+        self.sides_before = std::mem::replace(&mut self.sides, sides);
+        (self.front, self.noise, self.due, self.beyond) = (front, noise, due, beyond);
+        Ok(())
+    }
+
+    /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.
+    fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
+        let target = self.engine.stop_time().unwrap_or(towards);
+        let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
+        if !self.restarted || (target - self.front.t).abs() > rounding {
+            return Ok(false);
+        }
+        let time = self.time();
+        let columns = self.engine.columns()?;
+        self.engine.restart(target, &self.front_state, &columns, self.direction)?;
+        self.engine.stand_at(if time == self.front.t { target } else { time });
+        self.front.t = target;
+        Ok(true)
+    }
+
+    /// The functions at a state.
+    pub(crate) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut blamed = 0;
+        values_at(&mut self.events, t, state, &mut blamed)
+            .map_err(|failure| self.event_error(blamed, t, failure))
+    }
+
+    /// The error of the function of an event.
+    pub(crate) fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
+        let reason = Reason::Event { event: self.name(event), t };
+        self.failed(reason, Some(failure))
+    }
+
+    pub(crate) fn name(&self, event: usize) -> String {
+        self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
+    }
+
+    /// The error of something that did not succeed beyond the front, where the integration stands then.
+    pub(crate) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+        let error = self.engine.failed(reason, failure);
+        self.stay(error)
+    }
+
+    pub(super) fn stay(&mut self, mut error: SolveError) -> SolveError {
+        self.engine.stand_at(self.front.t);
+        if let SolveError::Integration(error) = &mut error {
+            error.time = self.front.t;
+            error.state.clone_from(&self.front_state);
+        }
+        error
+    }
+}
+
+/// Why the events in a step cannot be found.
+enum SearchFailure {
+    Method(SolveError),
+    Event(f64, Failure),
+}
+
+/// The functions at a state; `blamed` is the first that is not finite, or was not written before the failure.
+fn values_at(
+    events: &mut impl Events,
+    t: f64,
+    state: &[f64],
+    blamed: &mut usize,
+) -> Result<Vec<f64>, Failure> {
+    let mut values = vec![f64::NAN; events.events().len()];
+    if let Err(failure) = events.evaluate(t, state, &mut values) {
+        *blamed = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+        return Err(failure);
+    }
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values),
+        Some(i) => {
+            *blamed = i;
+            let event = events.events()[i].name().to_owned();
+            Err(Failure::recoverable(NonFinite::Event { event, value: values[i], t }))
+        }
+    }
+}

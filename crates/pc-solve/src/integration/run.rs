@@ -1,0 +1,189 @@
+//! Going on from event to event, through output times.
+
+use std::ops::ControlFlow;
+
+use pc_expr::Events;
+
+use crate::cvode::return_code::Code;
+use crate::error::{InputError, Reason, SolveError};
+use crate::events::events::Occurrence;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::{Observed, Observer};
+use crate::integration::options::finite;
+use crate::integration::stepper::Stepper;
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// Integrates to `t`, or to a terminal event before, and tells what occurs, events at `t` included, to `occurred`,
+    /// which may stop it. All that occurs together is told; if one of these events is terminal, it ends the integration, also
+    /// where `occurred` stops it.
+    ///
+    /// # Errors
+    /// [`SolveError::Input`] if `t` is not finite, lies behind or beyond the stop time; [`SolveError::Integration`] if the
+    /// integration fails, with [`Reason::Event`], [`Reason::Reset`], [`Reason::Projection`] and [`Reason::Accumulation`] for
+    /// events.
+    pub fn advance_to(
+        &mut self,
+        t: f64,
+        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.check_ahead(t)?;
+        let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        Ok(self.advance(t, t, &mut observer)?.unwrap_or(Ending::Completed))
+    }
+
+    /// Integrates through `times`, which go one way from where the integration stands, and gives each (t, y) to `output`,
+    /// which may stop it.
+    ///
+    /// The first time may be where the integration stands, the last may not. The output at the time of an event is y⁺; a
+    /// terminal event is the last output.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Integration::advance_to); outputs before the failure have been given.
+    pub fn run(
+        &mut self,
+        times: &[f64],
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.run_observed(times, Observed::new(output))
+    }
+
+    /// As [`run`](Integration::run), and tells an [`Observer`] all that there is to be told.
+    ///
+    /// # Errors
+    /// As for [`run`](Integration::run).
+    pub fn run_observed(&mut self, times: &[f64], mut observer: impl Observer) -> Result<Ending, SolveError> {
+        self.run_through(times, &mut observer, |_| Ok(()))
+    }
+
+    /// The same; each output begins by what `arrived` does there.
+    pub(crate) fn run_through(
+        &mut self,
+        times: &[f64],
+        observer: &mut impl Observer,
+        mut arrived: impl FnMut(&mut Self) -> Result<(), SolveError>,
+    ) -> Result<Ending, SolveError> {
+        let end = self.check_times(times)?;
+        for &t in times {
+            let ending = self.advance(t, end, observer)?;
+            if let Some(Ending::Stopped) = ending {
+                return Ok(Ending::Stopped);
+            }
+            arrived(self)?;
+            let flow = observer.output(self.time(), self.state());
+            if let Some(ending) = ending {
+                return Ok(ending);
+            }
+            if flow.is_break() {
+                return Ok(Ending::Stopped);
+            }
+        }
+        Ok(Ending::Completed)
+    }
+
+    /// That one more step may be taken after so many on the way to `t`.
+    pub(super) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+        if steps < self.engine.limits().max_steps {
+            return Ok(());
+        }
+        let message = format!("{steps} internal steps taken before reaching t = {t}.");
+        Err(self.failed(Reason::Cvode { code: Code::TooMuchWork, message }, None))
+    }
+
+    /// Goes to `t`, which has been checked, with steps towards `end` as far as needed.
+    fn advance(
+        &mut self,
+        t: f64,
+        end: f64,
+        observer: &mut impl Observer,
+    ) -> Result<Option<Ending>, SolveError> {
+        let mut steps = 0;
+        while !self.is_before_front(t) {
+            if !self.due.is_empty() {
+                if let Some(ending) = self.occur(&mut |occurrence| observer.occurred(occurrence))? {
+                    return Ok(Some(ending));
+                }
+                continue;
+            }
+            if t == self.front.t {
+                break;
+            }
+            self.check_steps(steps, t)?;
+            self.go_on(end)?;
+            steps += 1;
+            if observer.step(self.front.t, &self.front_state).is_break() {
+                self.engine.stand_at(self.front.t);
+                return Ok(Some(Ending::Stopped));
+            }
+        }
+        self.stand_at(t)?;
+        Ok(None)
+    }
+
+    /// Deals with what occurs where an observer has stopped the integration; how it ends, if it does.
+    pub(crate) fn settle(
+        &mut self,
+        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Option<Ending>, SolveError> {
+        let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        self.advance(self.front.t, self.front.t, &mut observer)
+    }
+
+    /// Whether it is known what occurs at `t`, and nothing does.
+    pub(crate) fn is_before_front(&self, t: f64) -> bool {
+        self.direction.is_some_and(|direction| (self.front.t - t) * direction > 0.0)
+    }
+
+    /// Stands at a time up to the front, in the last step.
+    pub(crate) fn stand_at(&mut self, t: f64) -> Result<(), SolveError> {
+        if t != self.front.t && t != self.engine.time() {
+            match self.engine.interpolate(t, 0) {
+                Ok(state) => self.output.copy_from_slice(state),
+                Err(error) => return Err(self.stay(error)),
+            }
+        }
+        self.engine.stand_at(t);
+        Ok(())
+    }
+
+    /// Checks that the integration can go on to `t`.
+    pub(super) fn check_ahead(&self, t: f64) -> Result<(), InputError> {
+        finite("the time", t)?;
+        let current = self.time();
+        if t == current {
+            return Ok(());
+        }
+        let direction = self.direction.unwrap_or(1.0_f64.copysign(t - current));
+        if (t - current) * direction < 0.0 {
+            return Err(InputError::Behind { requested: t, current });
+        }
+        match self.engine.stop_time() {
+            Some(stop_time) if (t - stop_time) * direction > 0.0 => {
+                Err(InputError::BeyondStopTime { requested: t, stop_time })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks output times and returns the last.
+    pub(super) fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
+        let &end = times.last().ok_or(InputError::NoTimes)?;
+        for (i, &t) in times.iter().enumerate() {
+            finite(&format!("output time number {i} (from 0)"), t)?;
+        }
+        let current = self.time();
+        if end == current {
+            return Err(InputError::EndIsStart { t: end });
+        }
+        let direction = 1.0_f64.copysign(end - current);
+        for (i, pair) in times.windows(2).enumerate() {
+            if (pair[1] - pair[0]) * direction <= 0.0 {
+                return Err(InputError::TimesNotMonotonic { index: i + 1, previous: pair[0], time: pair[1] });
+            }
+        }
+        if (times[0] - current) * direction < 0.0 {
+            return Err(InputError::Behind { requested: times[0], current });
+        }
+        self.check_ahead(end)?;
+        Ok(end)
+    }
+}

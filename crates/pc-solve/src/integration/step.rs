@@ -1,0 +1,120 @@
+//! Single steps, states inside them, and motions as their polynomials.
+
+use std::ops::ControlFlow;
+
+use pc_expr::Events;
+
+use crate::error::{InputError, SolveError};
+use crate::events::events::Occurrence;
+use crate::integration::dense_output::Segment;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::observer::{Observed, Observer};
+use crate::integration::stepper::Stepper;
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// Takes one step in the direction of `towards`, or the part of it before the next event, and tells what occurs at its
+    /// end, which may lie beyond `towards`, to `occurred`.
+    ///
+    /// If the integration stands inside such a step, goes to the end of that instead. It stands at y⁺ then.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Integration::advance_to); [`InputError::EndIsStart`] if `towards` is where it stands.
+    pub fn step(
+        &mut self,
+        towards: f64,
+        mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        self.check_ahead(towards)?;
+        if towards == self.time() {
+            return Err(InputError::EndIsStart { t: towards }.into());
+        }
+        if self.time() == self.front.t && self.due.is_empty() {
+            self.go_on(towards)?;
+        }
+        self.engine.stand_at(self.front.t);
+        if self.due.is_empty() {
+            return Ok(Ending::Completed);
+        }
+        Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
+    }
+
+    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the method, up to where it is
+    /// known what occurs.
+    ///
+    /// Order 0 is y itself, [projected](pc_expr::VectorField::project) where the field does so. The polynomial of a multistep
+    /// method has the degree of the order of that step.
+    ///
+    /// # Errors
+    /// [`InputError::NoStep`] before the first step, and after a reset, which makes a new start; [`InputError::OutsideStep`]
+    /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] above the degree;
+    /// [`Reason::Projection`](crate::Reason::Projection).
+    pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        self.engine.last_step().check_inside(t, order, self.front.t)?;
+        self.engine.interpolate(t, order)
+    }
+
+    /// Integrates to `end`, gives the motion as [`Segment`]s, one for each step or part of it between events, and tells what
+    /// occurs to `occurred`, after the segment that ends there.
+    ///
+    /// Only the last step is kept here: what is wanted of the others is for `segment` to keep.
+    ///
+    /// # Errors
+    /// As for [`run`](Integration::run); segments before the failure have been given.
+    pub fn run_dense(
+        &mut self,
+        end: f64,
+        mut segment: impl FnMut(Segment) -> ControlFlow<()>,
+        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        self.run_in_pieces(end, &mut observer, |integration, from, to| {
+            Ok(segment(integration.segment(from, to)?))
+        })
+    }
+
+    /// The same; `piece` is given where a segment begins and ends, with the states there, and stands at its end.
+    pub(crate) fn run_in_pieces(
+        &mut self,
+        end: f64,
+        observer: &mut impl Observer,
+        mut piece: impl FnMut(&mut Self, (f64, &[f64]), (f64, &[f64])) -> Result<ControlFlow<()>, SolveError>,
+    ) -> Result<Ending, SolveError> {
+        self.check_times(&[end])?;
+        let mut steps = 0;
+        loop {
+            let (from, state) = (self.time(), self.state().to_vec());
+            let next = if self.is_before_front(end) { end } else { self.front.t };
+            if next != from {
+                self.stand_at(next)?;
+                let reached = self.state().to_vec();
+                if piece(self, (from, &state), (next, &reached))?.is_break() {
+                    return Ok(Ending::Stopped);
+                }
+            } else if !self.due.is_empty() && from == self.front.t {
+                if let Some(ending) = self.occur(&mut |occurrence| observer.occurred(occurrence))? {
+                    return Ok(ending);
+                }
+            } else if from == end {
+                return Ok(Ending::Completed);
+            } else {
+                self.check_steps(steps, end)?;
+                self.go_on(end)?;
+                steps += 1;
+            }
+        }
+    }
+
+    /// The last step between two of its states.
+    pub(crate) fn segment(
+        &mut self,
+        (start, from): (f64, &[f64]),
+        (end, to): (f64, &[f64]),
+    ) -> Result<Segment, SolveError> {
+        let mut segment = Segment::new(start, (end, to));
+        for k in 1..=self.engine.last_step().degree.unwrap_or(0) {
+            segment.push(k, self.engine.interpolate(end, k)?);
+        }
+        segment.close(from);
+        Ok(segment)
+    }
+}
