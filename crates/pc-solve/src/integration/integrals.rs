@@ -99,6 +99,9 @@ impl Integrals {
 impl<F: VectorField> Integration<Cvode<F>> {
     /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion, which are 0 there.
     ///
+    /// A [checkpoint](Integration::checkpoint) has none of them: what goes on from one is asked for integrals anew, which begin
+    /// at 0.
+    ///
     /// # Errors
     /// As for [`Cvode::with_integrals`].
     pub fn with_integrals(
