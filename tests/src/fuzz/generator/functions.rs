@@ -38,6 +38,9 @@ const SMOOTH: [&str; 12] = [
     "abs(u)^2",
 ];
 
+/// √(uv) in several words, and its square.
+const ROOTS_OF_TWO: [&str; 3] = ["sqrt(u*v)", "sqrt(u)*sqrt(v)", "(sqrt(u)*sqrt(v))^2"];
+
 /// Functions that a coordinate may be of another, with their derivatives.
 const CARRIED: [(&str, &str); 11] = [
     ("u^2", "2*u"),
@@ -92,10 +95,8 @@ impl Builder {
     /// √(uv), as it is or in two.
     pub(super) fn root_of_two(&mut self, names: &[String]) -> Expression {
         let [u, v] = [(); 2].map(|()| Expression::symbol(self.random.pick(names)));
-        with(
-            self.random.pick(&["sqrt(u*v)", "sqrt(u)*sqrt(v)", "(sqrt(u)*sqrt(v))^2"]),
-            &[("u", u), ("v", v)],
-        )
+        let text = self.random.pick(&ROOTS_OF_TWO[..]);
+        with(text, &[("u", u), ("v", v)])
     }
 
     /// A function that a coordinate may be of another, with its derivative.
