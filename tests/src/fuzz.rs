@@ -21,6 +21,7 @@ pub mod execution;
 pub mod expression;
 pub mod generator;
 pub mod random;
+mod regular;
 pub mod report;
 pub mod shrink;
 pub mod specimen;

@@ -266,3 +266,41 @@ fn parts_without_a_derivative_are_no_hindrance() {
         }
     }
 }
+
+/// A velocity that a constraint keeps at zero, but for the rounding of a start, does not belie the energy.
+#[test]
+fn rounding_of_a_velocity_that_vanishes_is_no_change() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| v[0].square() + v[1].square() - x[1].sin())
+        .build()
+        .unwrap();
+    let level = Constraint::new("level", system.quasi_velocities()[1]);
+    let held = system.with_multipliers(&[level]).unwrap();
+    let start = [0.0, 1.0, 0.5, -1.2e-32];
+    let kept = held.kept(&["energy"]).unwrap();
+    assert!(held.compile().unwrap().keep(kept, 0.0, &start).is_ok());
+    // One that does move is told from rounding.
+    let kept = held.kept(&["energy"]).unwrap();
+    let refused = held.compile().unwrap().keep(kept, 0.0, &[0.0, 1.0, 0.5, -1e-8]).map(|_| ()).unwrap_err();
+    assert!(matches!(refused, MechError::NotAnIntegral { .. }), "{refused}");
+}
+
+/// On its way the motion is tried on the constraints: off them by the errors of steps, their reactions would do work.
+#[test]
+fn energy_is_kept_along_a_steep_curve() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| v[0].square() + v[1].square() - x[1])
+        .build()
+        .unwrap();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let curve = Constraint::new("curve", y - (20.0 * x).sin() / 4.0);
+    let held = system.with_multipliers(&[curve]).unwrap();
+    let kept = held.kept(&["energy"]).unwrap();
+    let slope = 5.0 * (20.0f64 * 0.1).cos();
+    let start = [0.1, (20.0f64 * 0.1).sin() / 4.0, 4.0, 4.0 * slope];
+    assert!(held.compile().unwrap().keep(kept, 0.0, &start).is_ok());
+}

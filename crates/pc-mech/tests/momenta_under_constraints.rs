@@ -148,3 +148,26 @@ fn momenta_determine_velocities_with_the_constraints() {
         assert!((found - expected).abs() < 1e-12, "{rates:?}"); // Newton's method to rounding
     }
 }
+
+/// At a given speed a velocity and its opposite satisfy the constraint; the momentum of a convex L says which it is, whatever
+/// the guess.
+#[test]
+fn the_momentum_tells_a_velocity_from_its_opposite() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0 + v[0].powi(4) / 20.0)
+        .build()
+        .unwrap();
+    let v: Vec<Expr<'_>> = system.quasi_velocities().to_vec();
+    let speed = Constraint::nonlinear("speed", v[0].square() + v[1].square() - 1.0);
+    let held = system.with_multipliers(&[speed]).unwrap();
+    let mut transform = held.legendre_transform(&[0.6, 0.8]).unwrap();
+    for velocity in [[0.6, 0.8], [-0.6, 0.8], [-0.6, -0.8], [0.28, -0.96]] {
+        let state = [0.0, 0.0, velocity[0], velocity[1]];
+        let momenta = transform.to_momenta(0.0, &state).unwrap();
+        let found = transform.to_quasi_velocities(0.0, &momenta).unwrap();
+        let near = found.iter().zip(&state).all(|(a, b)| (a - b).abs() < 1e-14);
+        assert!(near, "{found:?}, not {state:?}");
+    }
+}

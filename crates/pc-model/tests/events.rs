@@ -138,4 +138,15 @@ fn every_message() {
         found.contains("`omega` cannot be reset: it is a quasi-velocity that a constraint keeps at zero"),
         "{found}"
     );
+
+    // A velocity that one keeps: it would be dropped without a word.
+    let found = reset(&format!("{POINT}[constraints]\nlevel = \"y'\"\n"), "\"y'\"");
+    assert!(
+        found.contains("`y'` cannot be reset: it is a velocity that a constraint keeps at zero"),
+        "{found}"
+    );
+    assert!(
+        found.contains("an event can reset x, y, x'\n") || found.ends_with("an event can reset x, y, x'"),
+        "{found}"
+    );
 }

@@ -24,6 +24,9 @@ pub const TOLERANCE: f64 = 1e-12;
 /// A difference that ordinary rounding makes. Where one is larger, it is measured how far rounding is amplified.
 const ORDINARY: f64 = 1e-14;
 
+/// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
+const OTHER: f64 = 1e-9;
+
 /// How much is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -364,6 +367,11 @@ impl Second {
                 self.derivation.scatter(&mut seconds, scattered, &wanted, first.free.as_deref())?;
                 if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
                     self.scatter_first(first, &derived, &values, &mut seconds);
+                    if self.has_other_velocities(first, &derived, &values, &seconds)? {
+                        let why = "at some states the momenta are those of other velocities, too";
+                        agreement.leave_out(&first.form, why);
+                        continue;
+                    }
                 }
             }
             for (place, (label, _)) in first.wanted.iter().enumerate() {
@@ -408,6 +416,38 @@ impl Second {
                 }
             }
         }
+    }
+
+    /// Whether a form in momenta reads other velocities from those of a place, which satisfy the constraints, too, and have the
+    /// same momenta: where L is not convex in η, these do not determine η.
+    fn has_other_velocities(
+        &self,
+        first: &First<'_>,
+        derived: &Derived,
+        values: &[f64],
+        seconds: &[Sized],
+    ) -> Result<bool, Passed> {
+        let (Some(free), wanted) = (&first.free, first.quantities()) else { return Ok(false) };
+        let exact = Rounding::none();
+        let at = &derived.place;
+        let column = |s: usize| wanted.iter().position(|wanted| *wanted == Quantity::Column(s));
+        let eta: Option<Vec<f64>> = (0..self.columns.len()).map(|s| Some(values[column(s)?])).collect();
+        let Some(eta) = eta else { return Ok(false) };
+        let Ok(w) = self.derivation.velocities_of(at.t, &at.x, &eta) else { return Ok(false) };
+        let other = Place { w, ..at.clone() };
+        let fastest = other.w.iter().chain(&at.w).fold(0.0f64, |fastest, w| fastest.max(w.abs()));
+        let moved = other.w.iter().zip(&at.w).any(|(a, b)| (a - b).abs() > OTHER * fastest);
+        let violated = self.derivation.constraints(&self.derivation.kept, &other, &exact)?;
+        if !moved || violated.iter().any(|phi| !within(phi.abs(), OTHER * fastest.max(1.0))) {
+            return Ok(false);
+        }
+        let Ok(there) = self.derivation.at(&other, &exact) else { return Ok(false) };
+        let there = self.derivation.quantities(&there, &wanted, Some(free), &exact)?;
+        let mut momenta = wanted.iter().zip(seconds.iter().zip(&there));
+        Ok(momenta.all(|(wanted, (here, there))| {
+            let is_momentum = matches!(wanted, Quantity::Momentum(_));
+            !is_momentum || within((here.value - there.value).abs(), OTHER * here.size)
+        }))
     }
 
     fn columns_at(&self, at: &Place) -> Result<Vec<f64>, Irregular> {

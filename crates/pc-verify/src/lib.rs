@@ -31,6 +31,7 @@ mod quantities;
 mod rounding;
 mod states;
 mod structure;
+mod summands;
 mod term;
 #[cfg(test)]
 mod tests;

@@ -27,7 +27,10 @@ pub(crate) fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> 
     let svd = a.clone().svd(true, true);
     let threshold = RANK * svd.singular_values.max();
     let rank = svd.singular_values.iter().filter(|&&value| value > threshold).count();
-    Some((svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?, rank))
+    let inverse = svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?;
+    // The decomposition may be wrong by some thousand roundings: a step of Schulz squares that, and leaves the rank.
+    let product = a * &inverse;
+    Some((&inverse * 2.0 - &inverse * product, rank))
 }
 
 /// The numbers of rows none of which is a combination of those before, by the method of Gram and Schmidt.

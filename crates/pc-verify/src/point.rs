@@ -73,6 +73,10 @@ impl<'a, T: Number> Point<'a, T> {
         Point { knows_velocities: false, ..self }
     }
 
+    pub(crate) fn text(&self) -> &Text {
+        self.text
+    }
+
     fn round(&self, value: T) -> T {
         value.rounded(self.rounding)
     }

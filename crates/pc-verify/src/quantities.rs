@@ -115,7 +115,7 @@ impl Derivation {
             Quantity::MomentumRate(f) => of_momenta(&|momenta| momenta.rates[f]),
             Quantity::FreeEnergy => of_momenta(&|momenta| momenta.energy),
             Quantity::FreeEnergyRate => of_momenta(&|momenta| momenta.energy_rate),
-            Quantity::Observed(_) => Sized { value: observed[place], size: 0.0 },
+            Quantity::Observed(_) => observed[place],
         };
         let sized = |(place, wanted)| {
             let Sized { value, size } = quantity((place, wanted));
@@ -175,13 +175,17 @@ impl Derivation {
         derived: &Derived,
         wanted: &[Quantity],
         rounding: &Rounding,
-    ) -> Result<Vec<f64>, Irregular> {
+    ) -> Result<Vec<Sized>, Irregular> {
         let mut reactions = vec![0.0; self.on_positions.len()];
         self.kept.iter().zip(&derived.reactions).for_each(|(&a, &value)| reactions[a] = value);
         let point = self.still(&derived.place, rounding).on_motion(derived.accelerations.clone(), reactions);
         let value = |wanted: &Quantity| match wanted {
-            Quantity::Observed(j) => point.value(&self.text.observed[*j].1),
-            _ => Ok(0.0),
+            Quantity::Observed(j) => {
+                let term = &self.text.observed[*j].1;
+                let size = rounding.suspended(|| point.largest_term(term))?;
+                Ok(Sized { value: point.value(term)?, size })
+            }
+            _ => Ok(Sized::default()),
         };
         wanted.iter().map(value).collect()
     }

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::derivation::{Derivation, NEWTON, Place, SETTLED};
 use crate::error::Irregular;
-use crate::linear::{matrix, pseudo_inverse};
+use crate::linear::pseudo_inverse;
 use crate::rounding::{Random, Rounding};
 use crate::text::Velocities;
 
@@ -135,11 +135,16 @@ fn size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |size, value| if value.abs() <= size { size } else { value.abs() })
 }
 
-/// The shortest solution of C ξ = −rest.
+/// The shortest solution of C ξ = −rest. Each constraint counts as much as any other, however large its coefficients are.
 fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>, Irregular> {
-    let (inverse, _) =
-        pseudo_inverse(&matrix(rows, columns)).ok_or(Irregular::NotFinite { what: "a constraint" })?;
-    let step = -(inverse * DMatrix::from_column_slice(rest.len(), 1, rest));
+    let scale = |row: &Vec<f64>| match size(row) {
+        0.0 => 1.0,
+        largest => largest.recip(),
+    };
+    let scales: Vec<f64> = rows.iter().map(scale).collect();
+    let scaled = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j] * scales[i]);
+    let (inverse, _) = pseudo_inverse(&scaled).ok_or(Irregular::NotFinite { what: "a constraint" })?;
+    let step = -(inverse * DMatrix::from_fn(rest.len(), 1, |i, _| rest[i] * scales[i]));
     if step.iter().all(|step| step.is_finite()) {
         Ok(step.iter().copied().collect())
     } else {

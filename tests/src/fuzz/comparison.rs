@@ -117,7 +117,9 @@ pub fn between(specimen: &Specimen, start: &Start, model: &Execution, twin: &Exe
     let name_in_twin = |name: &str| match name {
         "energy" => (!drifts).then(|| name.to_owned()),
         // Which of several that follow from each other is dropped is a choice.
-        reaction if reaction.starts_with("λ_") => (!start.redundant).then(|| name.to_owned()),
+        reaction if ["λ_", "F_", "N_"].iter().any(|of| reaction.starts_with(of)) => {
+            (!start.redundant).then(|| name.to_owned())
+        }
         integral if integral.starts_with("i_") => None,
         name if carried.contains(&name) || eta.iter().any(|eta| eta == name) => {
             Some(format!("{SHOWN}{name}"))

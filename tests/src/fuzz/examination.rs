@@ -8,17 +8,21 @@ use std::time::Duration;
 
 use super::comparison::{self, Finding};
 use super::emission;
-use super::execution::{Forms, GIVEN_UP, Motion, Refusal, execute};
+use super::execution::{Forms, GIVEN_UP, Refusal, execute};
 use super::generator;
+use super::regular::stays_regular;
 use super::specimen::Specimen;
 use super::start::Start;
 use super::text;
 
-/// How far from zero a coordinate is that has not passed it between two rows.
-const MARGIN: f64 = 0.05;
-
 /// A finding in the motion that a model is compared with.
 const TWIN_DISAGREES: &str = "second derivation disagrees in ordinary velocities";
+
+/// A motion that runs into a place where its frame is singular: a refusal that is right.
+const SINGULAR: &str = "integration, up to where the frame is singular";
+
+/// A motion that ends, in ordinary velocities as well.
+const BOTH: &str = "integration, in ordinary velocities, too";
 
 /// The main thread of the program has as much.
 const STACK: usize = 8 << 20;
@@ -107,11 +111,15 @@ fn examine_texts(
             examined.rightly_refused = undetermined;
             let twin = twin.map(|twin| execute("twin.toml", twin, Forms { all: false, emitted: false }));
             match (refusal.stage, twin) {
-                (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, &twin.motion) => {
+                (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, start, &twin.motion) => {
                     examined.findings.push(Finding {
                         kind: "given up, though not in ordinary velocities",
                         detail: refusal.message,
                     });
+                }
+                (GIVEN_UP, Some(Ok(_))) => examined.refusals.push(Refusal { stage: SINGULAR, ..refusal }),
+                (GIVEN_UP, Some(Err(twin))) if twin.stage == GIVEN_UP => {
+                    examined.refusals.push(Refusal { stage: BOTH, ..refusal });
                 }
                 _ => examined.refusals.push(refusal),
             }
@@ -133,7 +141,10 @@ fn examine_texts(
         Ok(twin) => {
             let second = comparison::second(&twin).map(|finding| Finding { kind: TWIN_DISAGREES, ..finding });
             examined.findings.extend(second);
-            examined.findings.extend(comparison::between(specimen, start, &execution, &twin));
+            // Past a place where the frame is singular the model has no motion to be compared.
+            if stays_regular(specimen, start, &twin.motion) {
+                examined.findings.extend(comparison::between(specimen, start, &execution, &twin));
+            }
         }
         Err(refusal) => {
             let message = refusal.message;
@@ -141,13 +152,6 @@ fn examine_texts(
         }
     }
     examined
-}
-
-/// Whether all coordinates stay positive: beyond zero, roots of them end, and with these the frame.
-fn stays_regular(specimen: &Specimen, twin: &Motion) -> bool {
-    let place = |name: &String| twin.columns.iter().position(|column| column == name);
-    let mut places = specimen.chart.iter().filter_map(|x| place(&x.name));
-    places.all(|place| twin.rows.iter().all(|row| row[place] > MARGIN))
 }
 
 thread_local! {

@@ -218,7 +218,7 @@ fn conserved(equations: &Equations<'_>) -> Vec<String> {
 fn emission(name: &str, assembly: &Assembly<'_>, equations: &Equations<'_>) -> Result<Emission, Refusal> {
     let refused = |error: pc_mech::MechError| Refusal::new("emission", &error);
     let system = equations.system();
-    let state = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let state = system.state();
     let start = assembly.start_of(&state);
     let routines = vec![Routine { name: "rhs", outputs: Some(state.len()) }];
     let source = Emitted::new(equations, |language: Language| EmitOptions::new(language, name), routines);

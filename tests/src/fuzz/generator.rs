@@ -1,6 +1,7 @@
 //! Random models, section by section.
 
 mod bodies;
+mod drives;
 mod energies;
 mod events;
 mod functions;
@@ -36,6 +37,9 @@ pub(super) fn empty() -> Specimen {
         dissipation: Vec::new(),
         forces: Vec::new(),
         bodies: Vec::new(),
+        gravity: None,
+        states: Vec::new(),
+        inputs: Vec::new(),
         outputs: Vec::new(),
         events: Vec::new(),
         velocities: Vec::new(),
@@ -77,6 +81,11 @@ impl Builder {
         self.outputs();
         if self.random.chance(30) {
             self.events();
+        }
+        self.drives();
+        self.gravity();
+        if !self.specimen.events.is_empty() {
+            self.further_resets();
         }
         self.specimen
     }

@@ -80,11 +80,14 @@ fn candidates(specimen: &Specimen) -> Vec<Specimen> {
 type Remove = fn(&mut Specimen, usize);
 
 /// The lists of a specimen, each with its length and how an entry is removed.
-fn lists(specimen: &Specimen) -> [(usize, Remove); 9] {
+fn lists(specimen: &Specimen) -> [(usize, Remove); 12] {
     [
         (specimen.events.len(), |specimen, i| _ = specimen.events.remove(i)),
         (specimen.bodies.len(), |specimen, i| _ = specimen.bodies.remove(i)),
         (specimen.constraints.len(), |specimen, i| _ = specimen.constraints.remove(i)),
+        (usize::from(specimen.gravity.is_some()), |specimen, _| specimen.gravity = None),
+        (specimen.states.len(), |specimen, i| _ = specimen.states.remove(i)),
+        (specimen.inputs.len(), |specimen, i| _ = specimen.inputs.remove(i)),
         (specimen.forces.len(), |specimen, i| _ = specimen.forces.remove(i)),
         (specimen.dissipation.len(), |specimen, i| _ = specimen.dissipation.remove(i)),
         (specimen.potential.len(), |specimen, i| _ = specimen.potential.remove(i)),

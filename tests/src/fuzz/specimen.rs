@@ -159,6 +159,33 @@ pub struct Event {
     pub reset: Vec<(String, Expression)>,
 }
 
+/// A first-order state.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its name.
+    pub name: String,
+    /// Where it starts.
+    pub start: f64,
+    /// Its rate.
+    pub rate: Expression,
+}
+
+/// A function of time that the text gives in numbers.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// The same at all times.
+    Constant(f64),
+    /// A table.
+    Table {
+        /// In order.
+        times: Vec<f64>,
+        /// One for each.
+        values: Vec<f64>,
+        /// `linear`, `cubic` or `hold`.
+        interpolation: &'static str,
+    },
+}
+
 /// A random model.
 #[derive(Clone, Debug)]
 pub struct Specimen {
@@ -184,6 +211,12 @@ pub struct Specimen {
     pub forces: Vec<(String, Expression)>,
     /// Bodies.
     pub bodies: Vec<Body>,
+    /// The acceleration with which bodies fall.
+    pub gravity: Option<[f64; 3]>,
+    /// First-order states, which stand in forces.
+    pub states: Vec<State>,
+    /// Inputs, which stand in forces.
+    pub inputs: Vec<(String, Input)>,
     /// Functions that are asked for.
     pub outputs: Vec<(String, Expression)>,
     /// Events.
@@ -261,6 +294,7 @@ impl Specimen {
         for body in &mut self.bodies {
             all.extend(body.position.iter_mut().chain(body.force.iter_mut().flatten()));
         }
+        all.extend(self.states.iter_mut().map(|state| &mut state.rate));
         for event in &mut self.events {
             all.push(&mut event.when);
             all.extend(event.reset.iter_mut().map(|(_, value)| value));

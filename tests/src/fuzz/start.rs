@@ -5,7 +5,7 @@ use num_dual::Dual64;
 
 use super::comparison::exceeds;
 use super::expression::{Expression, Values};
-use super::specimen::{Restricts, Specimen};
+use super::specimen::{Input, Restricts, Specimen};
 
 /// A start that misses the constraints by more is none: it is found to rounding where there is one.
 const RESIDUAL: f64 = 1e-12;
@@ -108,6 +108,17 @@ fn values(specimen: &Specimen, velocities: &[f64]) -> Values {
     values.insert("t".to_owned(), Dual64::new(specimen.t_start, 1.0));
     for (name, value) in &specimen.parameters {
         values.insert(name.clone(), Dual64::from(*value));
+    }
+    for state in &specimen.states {
+        values.insert(state.name.clone(), Dual64::from(state.start));
+    }
+    for (name, input) in &specimen.inputs {
+        // No constraint and no reset has it: any of its values will do.
+        let value = match input {
+            Input::Constant(value) => *value,
+            Input::Table { values, .. } => values.first().copied().unwrap_or(f64::NAN),
+        };
+        values.insert(name.clone(), Dual64::from(value));
     }
     for (coordinate, &velocity) in specimen.chart.iter().zip(velocities) {
         values.insert(coordinate.name.clone(), Dual64::new(coordinate.start, velocity));

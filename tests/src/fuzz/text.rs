@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::execution::{ATOL, RTOL, SAMPLES};
 use super::expression::Expression;
-use super::specimen::{Body, Frame, Restricts, Specimen, Turning, at_rest};
+use super::specimen::{Body, Frame, Input, Restricts, Specimen, State, Turning, at_rest};
 use super::start::Start;
 
 /// Before the names of outputs that show what is no coordinate or quasi-velocity of a twin.
@@ -73,7 +73,12 @@ pub fn twin(specimen: &Specimen, start: &Start) -> Option<String> {
             return Vec::new();
         }
         let rows = velocities.iter().flatten().map(|row| row.substitute(&event.reset));
-        specimen.chart.iter().zip(rows).map(|(x, row)| (format!("{}'", x.name), row)).collect()
+        let velocities = specimen.chart.iter().zip(rows).map(|(x, row)| (format!("{}'", x.name), row));
+        let is_same = |name: &String| {
+            let mut states = specimen.states.iter().map(|state| &state.name);
+            specimen.chart.iter().any(|x| x.name == *name) || states.any(|state| state == name)
+        };
+        velocities.chain(event.reset.iter().filter(|(name, _)| is_same(name)).cloned()).collect()
     });
     Some(text.simulation(specimen))
 }
@@ -164,6 +169,19 @@ impl Text {
             energies.map(|(name, terms)| (name, quoted(&Expression::sum(terms.clone())))),
         );
         specimen.bodies.iter().for_each(|body| self.body(body, turned));
+        if let Some(gravity) = &specimen.gravity {
+            let _ = writeln!(self.0, "[gravity]\nacceleration = {gravity:?}");
+        }
+        let state =
+            |state: &State| format!("{{ start = {}, rate = \"{}\" }}", number(state.start), state.rate);
+        self.section("states", specimen.states.iter().map(|s| (&s.name, state(s))));
+        let input = |input: &Input| match input {
+            Input::Constant(value) => number(*value),
+            Input::Table { times, values, interpolation } => {
+                format!("{{ times = {times:?}, values = {values:?}, interpolation = \"{interpolation}\" }}")
+            }
+        };
+        self.section("inputs", specimen.inputs.iter().map(|(name, of)| (name, input(of))));
     }
 
     fn body(&mut self, body: &Body, turned: bool) {

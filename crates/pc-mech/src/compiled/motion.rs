@@ -402,7 +402,12 @@ impl Motion {
         y: &[f64],
         mut factor: impl FnMut() -> f64,
     ) -> Result<(Vec<f64>, Vec<f64>), MechError> {
-        let state: Vec<f64> = y.iter().map(|y| y * factor()).collect();
+        // Constraints mix velocities: what one of them leaves of another is rounding of the largest.
+        let moving = self.coordinates()..y.len() - self.states();
+        let fastest = y[moving.clone()].iter().fold(0.0f64, |fastest, eta| fastest.max(eta.abs()));
+        let least = |i: usize| if moving.contains(&i) { fastest } else { 0.0 };
+        let by = |(i, &y): (usize, &f64)| y + (factor() - 1.0) * y.abs().max(least(i));
+        let state: Vec<f64> = y.iter().enumerate().map(by).collect();
         let mut rates = vec![0.0; y.len()];
         let outcome = match &mut self.form {
             Form::Staged(staged) => staged.perturbed_rhs((t, &state, &self.parameters), &mut rates, factor),

@@ -388,29 +388,39 @@ impl<'g> Multipliers<'g> {
         let system = &self.equations.system;
         check_length("the guess of the quasi-velocities", guess, system.quasi_velocities.len())?;
         let momenta = system.momentum_symbols();
-        let nearby = self.free_legendre_equations(&momenta);
+        let nearby = self.free_legendre_equations(&momenta, guess);
         let equations = self.legendre_equations(&momenta, guess)?;
-        LegendreTransform::solving(system, &momenta, &equations, nearby.as_ref())
+        LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// M η = y − p_0 of a quadratic L: what the equations with multipliers say of momenta of which the constraints hold.
-    fn free_legendre_equations(&self, momenta: &[Expr<'g>]) -> Option<FirstOrder<'g>> {
-        let (system, eta) = (&self.equations.system, self.quasi_velocities());
-        let Quadratic { matrix: mass, linear: at_rest, .. } =
-            quadratic(self.graph(), system.lagrangian, eta)?;
-        Some(FirstOrder {
+    /// M η = y − p_0 of a quadratic L, p(η) = y of any other: what the equations with multipliers say of momenta of which the
+    /// constraints hold.
+    fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
+        let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
+        let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {
+            Some(Quadratic { matrix: mass, linear: at_rest, .. }) => {
+                (mass, momenta.iter().zip(&at_rest).map(|(&y, &p)| y - p).collect(), None)
+            }
+            None => {
+                let left = system.momenta();
+                let rows: Vec<Vec<Expr<'g>>> = left.iter().map(|&p| graph.gradient(p, eta)).collect();
+                let mass = Matrix::from_fn(eta.len(), eta.len(), |i, j| rows[i][j]);
+                (mass, momenta.to_vec(), Some(Implicit { left, guess: guess.to_vec() }))
+            }
+        };
+        FirstOrder {
             state: system.state_with(momenta),
             parameters: system.parameters.clone(),
             unknowns: eta.to_vec(),
             multipliers: 0,
             mass,
-            implicit: None,
-            right: momenta.iter().zip(&at_rest).map(|(&y, &p)| y - p).collect(),
+            implicit,
+            right,
             rates: Vec::new(),
             observables: Vec::new(),
             conserved: 0,
             ..self.first_order()
-        })
+        }
     }
 
     /// The equations with w = (η, μ); nothing changes by them.

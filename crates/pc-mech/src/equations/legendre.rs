@@ -105,7 +105,7 @@ struct Implicit {
     /// Number of unknowns.
     size: usize,
     /// Equations of η alone, whose solution is where the method begins.
-    nearby: Option<Linear>,
+    nearby: Option<Box<QuasiVelocities>>,
     /// Where it begins if these have none.
     guess: Vec<f64>,
 }
@@ -141,7 +141,8 @@ impl Canonical<'_> {
 }
 
 impl QuasiVelocities {
-    /// η, the first unknowns of these equations, in numbers; where they are not linear, from the solution of those `nearby`.
+    /// η, the first unknowns of these equations, in numbers; where they are not linear, from the solution of those `nearby`,
+    /// which have one where several velocities satisfy the constraints, as ±v satisfy v² = 1.
     fn solved(
         equations: &FirstOrder<'_>,
         nearby: Option<&FirstOrder<'_>>,
@@ -154,17 +155,36 @@ impl QuasiVelocities {
             newton: Newton::new(equations, implicit, Backend::Interpreter)?,
             solver: Solver::new(size, equations.multipliers),
             size,
-            nearby: nearby.map(Linear::new).transpose()?,
+            nearby: nearby.map(|nearby| QuasiVelocities::solved(nearby, None).map(Box::new)).transpose()?,
             guess: implicit.guess.clone(),
         })))
+    }
+
+    /// Writes η.
+    fn solve(&mut self, at: (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), Fault> {
+        match self {
+            QuasiVelocities::Closed(program) => evaluate(program, at, eta),
+            QuasiVelocities::Linear(linear) => {
+                let solution = linear.solve(at)?;
+                eta.copy_from_slice(&solution[..eta.len()]);
+                Ok(())
+            }
+            QuasiVelocities::Implicit(implicit) => implicit.solve(at, eta),
+        }
     }
 }
 
 impl Implicit {
     /// Writes η.
     fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), Fault> {
-        let nearby = self.nearby.as_mut().and_then(|nearby| nearby.solve(at).ok());
-        let mut guess = nearby.unwrap_or_else(|| self.guess.clone());
+        let mut guess = self.guess.clone();
+        if let Some(nearby) = &mut self.nearby {
+            let found = nearby.solve(at, eta);
+            if found.is_ok() {
+                guess[..eta.len()].copy_from_slice(eta);
+                guess[eta.len()..].fill(0.0);
+            }
+        }
         guess.resize(self.size, 0.0);
         self.newton.begin_at(&guess);
         let mut known = [state, &vec![0.0; self.size]].concat();
@@ -272,13 +292,7 @@ impl LegendreTransform {
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
         let moving = &mut result[self.moving()];
-        let outcome = match &mut self.quasi_velocities {
-            QuasiVelocities::Closed(program) => evaluate(program, (t, state, &self.parameters), moving),
-            QuasiVelocities::Linear(linear) => linear.solve((t, state, &self.parameters)).map(|solution| {
-                moving.copy_from_slice(&solution[..moving.len()]);
-            }),
-            QuasiVelocities::Implicit(implicit) => implicit.solve((t, state, &self.parameters), moving),
-        };
+        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
         outcome.map_err(|fault| self.error(fault, t, state))?;
         Ok(result)
     }

@@ -72,7 +72,11 @@ impl<'g> Assembler<'g, '_> {
                 name.text = coordinate.to_owned();
                 return Err(self.not_a_coordinate(&name));
             };
+            let vanishes = vanishes(bound, self.graph.symbol(name));
             return match self.is_lagrangian_form() {
+                true if vanishes => {
+                    refuse(self.not_reset(name, "a velocity that a constraint keeps at zero", bound))
+                }
                 true => Ok(n + place),
                 false => refuse(self.not_reset(name, "a velocity that quasi-velocities give", bound)),
             };
@@ -107,10 +111,11 @@ impl<'g> Assembler<'g, '_> {
         let document = self.model.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
         let states = document.states.iter().map(|state| state.name.text.clone());
+        let moving = |name: &String| !vanishes(bound, self.graph.symbol(name));
         let velocities: Vec<String> = match self.is_lagrangian_form() {
-            true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).collect(),
+            true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).filter(moving).collect(),
             false => {
-                let moving = |name: &&String| !vanishes(bound, self.graph.symbol(name.as_str()));
+                let moving = |name: &&String| moving(name);
                 document.quasi_velocities.iter().map(|eta| &eta.name.text).filter(moving).cloned().collect()
             }
         };

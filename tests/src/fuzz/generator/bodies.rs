@@ -36,6 +36,17 @@ impl Builder {
         self.specimen.bodies.push(Body { name: "B".to_owned(), mass, position, force, turning });
     }
 
+    /// A direction in which bodies fall.
+    pub(super) fn gravity(&mut self) {
+        if self.specimen.bodies.is_empty() || !self.random.chance(40) {
+            return;
+        }
+        let mut along =
+            [0.0; 3].map(|_| if self.random.chance(30) { 0.0 } else { self.random.decimal(-2.0, 2.0) });
+        along[2] -= 2.0;
+        self.specimen.gravity = Some(along);
+    }
+
     fn angular_velocity(&mut self) -> [Expression; 3] {
         let rates = self.rates();
         let names = self.shown();

@@ -2,7 +2,7 @@
 
 use super::Builder;
 use crate::fuzz::expression::Expression;
-use crate::fuzz::specimen::Event;
+use crate::fuzz::specimen::{Event, Restricts};
 use crate::fuzz::start::Start;
 
 impl Builder {
@@ -33,6 +33,33 @@ impl Builder {
         let terminal = self.random.chance(15);
         let reset = if terminal || self.random.chance(20) { Vec::new() } else { self.reset() };
         self.specimen.events.push(Event { name: "e".to_owned(), when, direction, terminal, reset });
+    }
+
+    /// New values also of a coordinate or a first-order state, and a function with several zeros close to each other.
+    pub(super) fn further_resets(&mut self) {
+        let shown = self.moving();
+        // A carried coordinate, or a constraint on positions, would have to move with it.
+        let free = self.specimen.carried.is_empty()
+            && self.specimen.constraints.iter().all(|c| c.restricts == Restricts::Velocities);
+        let coordinate = (free && !shown.is_empty()).then(|| self.random.pick(&shown).clone());
+        let states = self.specimen.states.iter().map(|state| state.name.clone());
+        let names: Vec<String> = coordinate.into_iter().chain(states).collect();
+        let span = self.specimen.t_end - self.specimen.t_start;
+        let terminal = self.specimen.events[0].terminal;
+        for name in names {
+            if !terminal && self.random.chance(25) {
+                let change = Expression::Number(self.random.decimal(0.02, 0.3));
+                let value = Expression::sum(vec![Expression::symbol(&name).times(0.9), change]);
+                self.specimen.events[0].reset.push((name, value));
+            }
+        }
+        let event = &mut self.specimen.events[0];
+        if event.direction == "both" && event.reset.is_empty() && self.random.chance(40) {
+            // Apart by more than the places at which a step is looked at.
+            let apart = span * self.random.number(0.06, 0.15);
+            let other = Expression::sum(vec![event.when.clone(), Expression::Number(-apart)]);
+            event.when = Expression::product(vec![event.when.clone(), other]);
+        }
     }
 
     /// New values of one or two rates.

@@ -4,7 +4,7 @@ use super::Builder;
 use crate::fuzz::expression::Expression;
 
 /// Functions of a positive number u that have no zero there, or none that matters.
-const REGULAR: [&str; 12] = [
+const REGULAR: [&str; 15] = [
     "sqrt(u)",
     "sqrt(1 + u^2)",
     "exp(u)",
@@ -17,10 +17,13 @@ const REGULAR: [&str; 12] = [
     "u^2",
     "1 + tanh(u)",
     "sqrt(p*u)",
+    "sqrt(1 + u^2)^2",
+    "1 + abs(u)^2",
+    "sqrt(p)*sqrt(u)",
 ];
 
 /// Functions of any number.
-const SMOOTH: [&str; 10] = [
+const SMOOTH: [&str; 12] = [
     "sin(u)",
     "cos(u)",
     "u",
@@ -31,10 +34,15 @@ const SMOOTH: [&str; 10] = [
     "sqrt(1 + u^2)",
     "1/(2 + u^2)",
     "u^3/3",
+    "sqrt(1 + u^2)^2/2",
+    "abs(u)^2",
 ];
 
+/// √(uv) in several words, and its square.
+const ROOTS_OF_TWO: [&str; 3] = ["sqrt(u*v)", "sqrt(u)*sqrt(v)", "(sqrt(u)*sqrt(v))^2"];
+
 /// Functions that a coordinate may be of another, with their derivatives.
-const CARRIED: [(&str, &str); 8] = [
+const CARRIED: [(&str, &str); 11] = [
     ("u^2", "2*u"),
     ("sin(u)", "cos(u)"),
     ("cos(u)", "-sin(u)"),
@@ -43,6 +51,9 @@ const CARRIED: [(&str, &str); 8] = [
     ("exp(u/2)", "exp(u/2)/2"),
     ("u^3/3 + u", "u^2 + 1"),
     ("log(1 + u)", "1/(1 + u)"),
+    ("sqrt(1 + u^2)^2", "2*u"),
+    ("abs(u)^2/2", "sqrt(u)^2"),
+    ("sqrt(2*u)", "sqrt(2)*sqrt(u)/(2*u)"),
 ];
 
 /// Sums of functions of positive u and v that vanish, though no two terms are alike.
@@ -79,6 +90,13 @@ impl Builder {
             false => Expression::symbol("p"),
         };
         with(text, &[("u", name), ("p", p)])
+    }
+
+    /// √(uv), as it is or in two.
+    pub(super) fn root_of_two(&mut self, names: &[String]) -> Expression {
+        let [u, v] = [(); 2].map(|()| Expression::symbol(self.random.pick(names)));
+        let text = self.random.pick(&ROOTS_OF_TWO[..]);
+        with(text, &[("u", u), ("v", v)])
     }
 
     /// A function that a coordinate may be of another, with its derivative.

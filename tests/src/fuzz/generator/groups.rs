@@ -136,6 +136,9 @@ impl Builder {
             });
         }
         self.specimen.frame = Frame::Group { eta, velocities, inverse };
+        if !shown.is_empty() && self.random.chance(25) {
+            self.carry();
+        }
     }
 
     /// P of w = P u, lower triangular with ones on the diagonal.

@@ -49,7 +49,10 @@ impl Builder {
                     let own = &names[i..=i];
                     let of = if self.random.chance(40) { own } else { &names[..] };
                     let regular = self.random.chance(50);
-                    let function = self.function(regular, of);
+                    let function = match self.random.chance(8) {
+                        true => self.root_of_two(&names),
+                        false => self.function(regular, of),
+                    };
                     let factor = if self.random.chance(50) { 1.0 } else { self.random.decimal(-1.0, 1.0) };
                     lower.push((i, j, function.times(factor)));
                 }
@@ -75,12 +78,14 @@ impl Builder {
     }
 
     /// One or two more coordinates that are functions of others.
-    fn carry(&mut self) {
+    pub(super) fn carry(&mut self) {
         let Some(velocities) = self.specimen.chart_velocities() else { return };
+        let places: Vec<usize> =
+            (0..self.specimen.chart.len()).filter(|&i| self.specimen.chart[i].shown).collect();
         for i in 0..=self.random.below(2) {
             // Rather the later ones, whose rates have more terms.
-            let of = self.random.below(self.specimen.chart.len());
-            let of = of.max(self.random.below(self.specimen.chart.len()));
+            let place = self.random.below(places.len());
+            let of = places[place.max(self.random.below(places.len()))];
             let name = self.specimen.chart[of].name.clone();
             let (value, derivative) = self.carried_function(&name);
             let factor = if self.random.chance(70) { 1.0 } else { self.random.decimal(0.3, 1.2) };

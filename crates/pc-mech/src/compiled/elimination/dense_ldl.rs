@@ -1,15 +1,20 @@
-//! M = L D Lᵀ in numbers.
+//! M = L D Lᵀ in numbers, and with pivoting where that meets a vanishing minor of a regular M.
 
 use std::mem::MaybeUninit;
 
 use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization, cholesky_in_place};
 use faer::linalg::cholesky::ldlt::{factor, solve};
+use faer::linalg::solvers::FullPivLu;
+use faer::prelude::Solve;
 use faer::{Mat, MatMut, Par};
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::pivots;
 use crate::compiled::failure::Fault;
+
+/// Pivots of complete pivoting this small against the largest are rounding.
+const DEPENDENT: f64 = 1e-13;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
 #[derive(Clone, Debug)]
@@ -19,6 +24,8 @@ pub(crate) struct DenseLdl {
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
+    /// The factors with complete pivoting, where M has none without.
+    pivoted: Option<FullPivLu<f64>>,
 }
 
 impl DenseLdl {
@@ -29,6 +36,7 @@ impl DenseLdl {
             sizes: vec![0.0; k],
             pivots: vec![0.0; k],
             scratch: vec![MaybeUninit::uninit(); scratch.unaligned_bytes_required()],
+            pivoted: None,
         }
     }
 
@@ -41,7 +49,7 @@ impl DenseLdl {
         for s in 0..self.sizes.len() {
             self.sizes[s] = self.matrix[(s, s)];
         }
-        self.eliminate()
+        self.eliminate().or_else(|fault| self.eliminate_pivoted(lower, values, fault))
     }
 
     /// The same of a matrix whose diagonal is the sum of terms of these sizes.
@@ -56,7 +64,7 @@ impl DenseLdl {
     ) -> Result<(), Fault> {
         self.take(lower, values);
         self.sizes.iter_mut().zip(sizes).for_each(|(place, size)| *place = size);
-        self.eliminate()
+        self.eliminate().or_else(|fault| self.eliminate_pivoted(lower, values, fault))
     }
 
     fn take(&mut self, lower: &Pattern, values: &[f64]) {
@@ -66,7 +74,27 @@ impl DenseLdl {
         }
     }
 
+    /// A matrix of both signs may be regular though one of its leading minors vanishes, as ((0, 1), (1, 0)) is.
+    ///
+    /// # Errors
+    /// The `fault` that elimination without pivoting met, if M is singular.
+    #[cold]
+    fn eliminate_pivoted(&mut self, lower: &Pattern, values: &[f64], fault: Fault) -> Result<(), Fault> {
+        self.take(lower, values);
+        let (k, m) = (self.sizes.len(), &self.matrix);
+        let factors = FullPivLu::new(Mat::from_fn(k, k, |i, j| m[(i.max(j), i.min(j))]).as_ref());
+        let pivots = || (0..k).map(|s| factors.U()[(s, s)].abs());
+        // What the entries are sums of may be larger than they are.
+        let largest = pivots().chain(self.sizes.iter().map(|size| size.abs())).fold(0.0, f64::max);
+        if !pivots().all(|pivot| pivot > DEPENDENT * largest) {
+            return Err(fault);
+        }
+        self.pivoted = Some(factors);
+        Ok(())
+    }
+
     fn eliminate(&mut self) -> Result<(), Fault> {
+        self.pivoted = None;
         let k = self.sizes.len();
         let outcome = cholesky_in_place(
             self.matrix.as_mut(),
@@ -92,6 +120,11 @@ impl DenseLdl {
     /// Replaces each of the columns, of length k, by M⁻¹ times it.
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         let k = self.sizes.len();
+        if let Some(factors) = &self.pivoted {
+            let columns = MatMut::from_column_major_slice_mut(columns, k, columns.len() / k.max(1));
+            factors.solve_in_place(columns);
+            return;
+        }
         let (l, d) = (self.matrix.as_ref(), self.matrix.as_ref().diagonal());
         let columns = MatMut::from_column_major_slice_mut(columns, k, columns.len() / k.max(1));
         solve::solve_in_place(l, d, columns, Par::Seq, MemStack::new(&mut []));
@@ -116,6 +149,28 @@ mod tests {
         for (found, expected) in columns.iter().zip([1.0, 2.0, 3.0, 0.0, 1.0, 0.0]) {
             assert!((found - expected).abs() < 1e-15);
         }
+    }
+
+    /// The second leading minor of ((a², a, 1), (a, 1, 0), (1, 0, 1)) is 0, its determinant −1.
+    #[test]
+    fn a_minor_that_vanishes_is_no_singularity() {
+        let a = 1.0 / 3.0f64;
+        let mut ldl = factorised([a * a, a, 1.0, 1.0, 0.0, 1.0]).unwrap();
+        let mut column = [a * a + 2.0 * a + 3.0, a + 2.0, 4.0];
+        ldl.solve(&mut column);
+        for (found, expected) in column.iter().zip([1.0, 2.0, 3.0]) {
+            // 27 operations with numbers up to 4
+            assert!((found - expected).abs() < 27.0 * 4.0 * f64::EPSILON, "{column:?}");
+        }
+        // Without pivoting it is solved with again.
+        ldl.factorise(
+            &Pattern::from_columns(3, [vec![0, 1, 2], vec![1, 2], vec![2]]),
+            &[2.0, 0.0, 0.0, 4.0, 0.0, 1.0],
+        )
+        .unwrap();
+        let mut column = [2.0, 4.0, 1.0];
+        ldl.solve(&mut column);
+        assert_eq!(column, [1.0, 1.0, 1.0]);
     }
 
     #[test]

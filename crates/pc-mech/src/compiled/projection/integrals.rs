@@ -1,6 +1,6 @@
 //! First integrals that a motion is brought back to.
 
-use pc_expr::{Backend, Evaluator, Expr, Program};
+use pc_expr::{Backend, Evaluator, Expr, Program, VectorField};
 
 use crate::compiled::failure::{Fault, check_finite};
 use crate::compiled::first_order::FirstOrder;
@@ -181,6 +181,10 @@ impl Motion {
         for _ in 0..STEPS {
             let Ok(next) = self.runge_kutta(now, &state, step) else { break };
             (now, state) = (now + step, next);
+            // Off the constraints reactions do work.
+            if self.project(now, &mut state).is_err() {
+                break;
+            }
             let Ok(rates) = self.rates(now, &state) else { break };
             self.check(integrals, now, &state, &rates)?;
             step *= 2.0;

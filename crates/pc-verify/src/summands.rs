@@ -1,0 +1,35 @@
+//! How large the summands of a term are: of what cancels, so many roundings are left.
+
+use crate::error::Irregular;
+use crate::number::Number;
+use crate::point::Point;
+use crate::term::Term;
+
+impl Point<'_, f64> {
+    /// The largest summand of a term, led through its sums, products and definitions: |x| + |y| for x − y, however small this is.
+    /// What stands inside a function or a power counts as known; rounding errors made at will show how that errs.
+    pub(crate) fn largest_term(&self, term: &Term) -> Result<f64, Irregular> {
+        Ok(match term {
+            Term::Negative(inner) => self.largest_term(inner)?,
+            Term::Definition(j) => match self.text().definitions.get(*j) {
+                Some(definition) => self.largest_term(definition)?,
+                None => self.value(term)?.abs(),
+            },
+            Term::Sum(terms) => {
+                let sizes = terms.iter().map(|(_, term)| self.largest_term(term));
+                sizes.collect::<Result<Vec<f64>, Irregular>>()?.into_iter().fold(0.0, f64::max)
+            }
+            Term::Product(factors) => {
+                let mut product = 1.0f64;
+                for (divided, factor) in factors {
+                    product *= match divided {
+                        true => self.value(factor)?.real().abs().recip(),
+                        false => self.largest_term(factor)?,
+                    };
+                }
+                product
+            }
+            _ => self.value(term)?.abs(),
+        })
+    }
+}
