@@ -3,7 +3,7 @@
 use pc_algebra::{Matrix, determinant};
 use pc_expr::{Expr, Graph, Style};
 
-use crate::book::expanded;
+use crate::book::{expanded, sum_of_products};
 use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::ldl::Factors;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
@@ -276,6 +276,13 @@ impl<'g> Canonical<'g> {
                 (left, expanded(&self.system, right, &self.momenta, style))
             })
             .collect()
+    }
+
+    /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none of those that
+    /// are no polynomials, which are written as they [are](Canonical::right_hand_side).
+    pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
+        let right = self.right.iter();
+        right.map(|&right| sum_of_products(&self.system, right, &self.momenta, page)).collect()
     }
 
     /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as
