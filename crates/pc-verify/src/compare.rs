@@ -4,12 +4,14 @@ use std::fmt;
 
 use pc_mech::{Folding, Graph};
 use pc_model::{Assembly, Flow, Model, Variables};
+use pc_print::Form;
 
 use crate::derivation::{Completing, Derivation, Derived, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::first::First;
 use crate::linear::pseudo_inverse;
-use crate::printed::FORMS;
+use crate::printed::{FORMS, printed_name};
+use crate::projected::{DIRECTIONS, Layout};
 use crate::quantities::{Free, Quantity, Sized};
 use crate::resultants::Resultant;
 use crate::rounding::{Random, Rounding, UNIT, within};
@@ -24,7 +26,7 @@ use crate::text::{Text, Velocities};
 pub const TOLERANCE: f64 = 1e-12;
 
 /// A difference that ordinary rounding makes. Where one is larger, it is measured how far rounding is amplified.
-const ORDINARY: f64 = 1e-14;
+pub(crate) const ORDINARY: f64 = 1e-14;
 
 /// How much is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +49,8 @@ impl Default for Options {
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
+    /// The number of these at which equations were only compared along random virtual velocities, the model being large.
+    pub projected: usize,
     /// States that were passed over since the equations are singular or not defined there.
     pub skipped: usize,
     /// Why the last of these was.
@@ -62,13 +66,24 @@ pub struct Agreement {
 }
 
 impl fmt::Display for Agreement {
-    /// `agrees to 3e-15 at 100 states`
+    /// `agrees to 3e-15 at 97 states, 3 not comparable: the equations for the accelerations are singular`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = if self.states == 1 { "" } else { "s" };
         if self.error == 0.0 {
-            write!(f, "agrees to the last digit at {} state{plural}", self.states)
+            write!(f, "agrees to the last digit at {} state{plural}", self.states)?;
         } else {
-            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)
+            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)?;
+        }
+        match self.projected {
+            0 => {}
+            all if all == self.states => write!(f, " along {DIRECTIONS} random virtual velocities")?,
+            some => write!(f, ", at {some} of them along {DIRECTIONS} random virtual velocities")?,
+        }
+        match (self.skipped, &self.reason) {
+            (0, _) => Ok(()),
+            (skipped, reason) => {
+                write!(f, ", {skipped} not comparable: {}", reason.as_deref().unwrap_or("not regular"))
+            }
         }
     }
 }
@@ -90,6 +105,8 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     let mut agreement = second.nothing_yet();
     let mut firsts = Vec::new();
     let flow = Flow::new(&observed, &assembly, Variables::QuasiVelocities)?;
+    let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second.columns) };
+    let wholly = second.wholly(options.states);
     firsts.push(First::flow("poincare", flow, &second, &assembly, &mut agreement));
     match Flow::new(&observed, &assembly, Variables::Momenta) {
         Ok(flow) => firsts.push(First::flow("canonical", flow, &second, &assembly, &mut agreement)),
@@ -102,7 +119,14 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         Err(reason) => agreement.leave_out("emit", &reason),
     }
     let page = Graph::with_folding(Folding::Structural);
-    for form in FORMS {
+    let printable = FORMS.into_iter().filter(|&form| match second.too_large_for(form, &plain) {
+        Some(reason) => {
+            agreement.leave_out(&printed_name(form), reason);
+            false
+        }
+        None => true,
+    });
+    for form in printable.collect::<Vec<_>>() {
         firsts.extend(First::printed(form, &plain, &second, &page, &mut agreement));
     }
     let mut number = 0;
@@ -110,12 +134,32 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         let seed = (options.seed << 32) as usize + number;
         number += 1;
         let compared = second.derivation.random(&second.start, seed).map_err(Passed::from);
-        match compared.and_then(|place| second.compare(&mut firsts, &place, &mut agreement)) {
+        let outcome = compared.and_then(|place| match agreement.states < wholly {
+            true => second.compare(&mut firsts, &place, &mut agreement),
+            false => second.compare_projected("poincare", &mut large, &place, &mut agreement),
+        });
+        match outcome {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
         }
     }
     agreement.finished(&firsts, number)
+}
+
+/// Terms that are evaluated in some milliseconds.
+const LONG: usize = 100_000;
+
+/// Terms that are evaluated for all states together, in a second or so.
+const ALL_STATES: usize = 5_000_000;
+
+/// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
+/// a second, and ten times that with each two more.
+const MOST_INVERTED: usize = 9;
+
+/// A large model in quasi-velocities.
+struct Projection {
+    flow: Flow,
+    layout: Layout,
 }
 
 /// States that are tried for each that is to be compared.
@@ -139,6 +183,13 @@ impl From<Irregular> for Passed {
 }
 
 impl Agreement {
+    /// A difference, relative to the size of its terms.
+    fn note(&mut self, error: f64, label: &str) {
+        if error > self.error || self.quantity.is_empty() {
+            (self.error, self.quantity) = (error, label.to_owned());
+        }
+    }
+
     pub(crate) fn leave_out(&mut self, what: &str, reason: &str) {
         let line = format!("{what}: {reason}");
         if !self.not_compared.contains(&line) {
@@ -162,17 +213,18 @@ impl Agreement {
             let reason = self.reason.unwrap_or_else(|| "none was tried".to_owned());
             return Err(VerifyError::NothingCompared { tried, reason });
         }
-        let missing = |first: &First<'_>| self.states - first.compared;
+        let wholly = self.states - self.projected;
+        let missing = |first: &First<'_>| wholly - first.compared;
         let partly: Vec<&First<'_>> = firsts.iter().filter(|first| missing(first) > 0).collect();
         let lines: Vec<String> = partly
             .iter()
-            .map(|first| format!("{} at {} of {} states", first.form, missing(first), self.states))
+            .map(|first| format!("{} at {} of {} states", first.form, missing(first), wholly))
             .collect();
         for (line, first) in lines.iter().zip(partly) {
             self.leave_out(line, first.reason.as_deref().unwrap_or("not tried"));
         }
         let compared = firsts.iter().filter(|first| first.compared > 0);
-        self.forms = compared.map(|first| first.form.clone()).collect();
+        self.forms.extend(compared.map(|first| first.form.clone()));
         Ok(self)
     }
 }
@@ -264,19 +316,100 @@ impl Second {
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
         let mut flow = flow.clone();
+        if self.cost() > LONG && !flow.has_momenta() {
+            return self.agrees_projected(form, flow, t, state, agreement);
+        }
         let mut row = flow.row(t, state);
         row.truncate(flow.names.len());
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
-        let (x, eta) = row.split_at(self.start.x.len());
-        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
-        let place = self.derivation.velocities_of(t, x, eta);
-        let place = place.map(|w| Place { t, x: x.to_vec(), w, z: z.to_vec() });
-        let compared = place.map_err(Passed::from);
+        let compared = self.place(t, &row).map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
         }
         agreement.finished(&firsts, 1)
+    }
+
+    /// The place of coordinates, columns and first-order states.
+    fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
+        let (x, eta) = row.split_at(self.start.x.len());
+        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
+        let w = self.derivation.velocities_of(t, x, eta)?;
+        Ok(Place { t, x: x.to_vec(), w, z: z.to_vec() })
+    }
+
+    /// The same as [`agrees`](Second::agrees) along random virtual velocities.
+    fn agrees_projected(
+        &self,
+        form: &str,
+        mut flow: Flow,
+        t: f64,
+        state: &[f64],
+        mut agreement: Agreement,
+    ) -> Result<Agreement, VerifyError> {
+        let mut row = flow.row(t, state);
+        row.truncate(flow.names.len());
+        let layout = Layout::of(&flow, &self.columns);
+        let mut large = Projection { flow, layout };
+        let place = self.place(t, &row).map_err(Passed::from);
+        match place.and_then(|place| self.compare_projected(form, &mut large, &place, &mut agreement)) {
+            Ok(()) => agreement.states += 1,
+            Err(passed) => agreement.pass_over(passed)?,
+        }
+        agreement.leave_out("multipliers, integrals and outputs", "the model is large");
+        agreement.forms.push(form.to_owned());
+        agreement.finished(&[], 1)
+    }
+
+    /// Compares the equations with the second derivation at a place along random virtual velocities.
+    fn compare_projected(
+        &self,
+        form: &str,
+        large: &mut Projection,
+        at: &Place,
+        agreement: &mut Agreement,
+    ) -> Result<(), Passed> {
+        let columns = |at: &Place| self.derivation.columns(&self.derivation.still(at, &Rounding::none()));
+        let residuals = self.derivation.projected(&mut large.flow, &large.layout, at, &columns)?;
+        for (label, residual) in residuals {
+            let error = error(residual.value, Sized { value: 0.0, ..residual });
+            if !within(error, TOLERANCE) {
+                return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
+                    form: form.to_owned(),
+                    quantity: format!("what should vanish of {label}"),
+                    first: residual.value,
+                    second: 0.0,
+                    size: residual.size,
+                    t: at.t,
+                    state: self.named(at, &columns(at)?),
+                }))));
+            }
+            agreement.note(error, &label);
+        }
+        agreement.projected += 1;
+        Ok(())
+    }
+
+    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    pub fn is_long(&self, flow: &Flow) -> bool {
+        self.cost() > LONG && flow.has_momenta()
+    }
+
+    /// Why a printed form is not derived only to be compared.
+    fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
+        if form == Form::Voronets && assembly.bound.multipliers().is_none() {
+            return None; // the same as Lagrange's, and not derived
+        }
+        if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {
+            return Some("the mass matrix would be inverted in symbols");
+        }
+        (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
+    }
+
+    /// At how many of so many states all equations are compared.
+    fn wholly(&self, states: usize) -> usize {
+        let affordable = ALL_STATES / self.cost().max(1);
+        states.min(affordable.max(1))
     }
 
     #[cfg(test)]
@@ -293,6 +426,7 @@ impl Second {
     fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
             states: 0,
+            projected: 0,
             skipped: 0,
             reason: None,
             error: 0.0,
@@ -415,15 +549,12 @@ impl Second {
                     second: two.value,
                     size: two.size,
                     t: here.derived.place.t,
-                    state: self.named(here),
+                    state: self.named(&here.derived.place, &here.columns),
                 }))));
             }
         }
         for ((label, _), (&one, &two)) in pairs() {
-            let error = error(one, two);
-            if error > agreement.error || agreement.quantity.is_empty() {
-                (agreement.error, agreement.quantity) = (error, label.clone());
-            }
+            agreement.note(error(one, two), label);
         }
         first.compared += 1;
         Ok(())
@@ -455,11 +586,10 @@ impl Second {
         }
     }
 
-    fn named(&self, here: &Here) -> Vec<(String, f64)> {
-        let at = &here.derived.place;
+    fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
         let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
         let states = self.derivation.text.names.states.iter().zip(&at.z);
-        let all = coordinates.chain(self.columns.iter().zip(&here.columns)).chain(states);
+        let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
         all.map(|(name, &value)| (name.clone(), value)).collect()
     }
 }

@@ -29,6 +29,7 @@ mod linear;
 mod number;
 mod point;
 mod printed;
+mod projected;
 mod quantities;
 mod resultants;
 mod rounding;

@@ -18,6 +18,17 @@ use crate::rounding::Rounding;
 /// The forms that are printed.
 pub(crate) const FORMS: [Form; 4] = [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Voronets];
 
+/// What a printed form is called.
+pub(crate) fn printed_name(form: Form) -> String {
+    let form = match form {
+        Form::Poincare => "poincare",
+        Form::Canonical => "canonical",
+        Form::Lagrange => "lagrange",
+        Form::Voronets => "voronets",
+    };
+    format!("{form} as printed")
+}
+
 /// What is compared, with its name.
 pub(crate) type Candidates = Vec<(String, Option<Quantity>)>;
 
@@ -157,13 +168,7 @@ impl<'g> Printed<'g> {
     }
     /// The name of the form.
     pub(crate) fn name(&self) -> String {
-        let form = match self.form {
-            Form::Poincare => "poincare",
-            Form::Canonical => "canonical",
-            Form::Lagrange => "lagrange",
-            Form::Voronets => "voronets",
-        };
-        format!("{form} as printed")
+        printed_name(self.form)
     }
 
     /// What is compared, in the order of the [values](Printed::values), with the free quasi-velocities.
