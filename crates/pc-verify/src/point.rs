@@ -9,6 +9,9 @@ use crate::rounding::Rounding;
 use crate::term::{Function, Term};
 use crate::text::{Body, Text, Turning, Velocities};
 
+/// Definitions that may be nested in calls; with more of them those before are evaluated in order.
+const DEEP: usize = 64;
+
 /// Time, coordinates and velocities w as numbers, with all that follows from them.
 pub(crate) struct Point<'a, T: Number> {
     text: &'a Text,
@@ -208,6 +211,18 @@ impl<'a, T: Number> Point<'a, T> {
         if let Some(value) = self.definitions[j].get() {
             return Ok(*value);
         }
+        if j >= DEEP {
+            // One made of the other, each would cost a call. What fails is asked for again where it is needed.
+            for before in 0..j {
+                if self.definitions[before].get().is_none() {
+                    let _ = self.evaluate_definition(before);
+                }
+            }
+        }
+        self.evaluate_definition(j)
+    }
+
+    fn evaluate_definition(&self, j: usize) -> Result<T, Irregular> {
         if self.open[j].replace(true) {
             return Err(Unable::Circular { name: self.text.names.definitions[j].clone() }.into());
         }
