@@ -74,8 +74,8 @@ impl Verification {
         }
         if !places.is_empty() {
             let places = places.join(" and at ");
-            lines
-                .insert(0, format!("by a second derivation, which agrees to {worst:.0e} at {places}{along}"));
+            let closely = if worst == 0.0 { "the last digit".to_owned() } else { format!("{worst:.0e}") };
+            lines.insert(0, format!("by a second derivation, which agrees to {closely} at {places}{along}"));
         }
         lines.dedup();
         lines
