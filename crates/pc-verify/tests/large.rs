@@ -1,5 +1,7 @@
 //! Large models, of which most states are compared along random virtual velocities only.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 use std::fmt::Write;
 
 use pc_mech::Graph;

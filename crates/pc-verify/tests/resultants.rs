@@ -1,5 +1,7 @@
 //! Reactions as forces and torques on bodies, derived twice.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
 use pc_model::{Document, Model, Source};
 use pc_verify::{Agreement, Options, verify};
 
