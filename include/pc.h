@@ -659,6 +659,14 @@ pc_status pc_model_project_start(pc_model *model,
                                  pc_error **error);
 
 /**
+ * Has a start that is moved to where the constraints are satisfied keep the value of this coordinate or quasi-velocity: the others
+ * follow. Without pc_model_project_start it says nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+ */
+pc_status pc_model_hold_start(pc_model *model,
+                              const char *name,
+                              pc_error **error);
+
+/**
  * Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
  * is yes.
  */
@@ -677,8 +685,8 @@ pc_status pc_model_differentiate(pc_model *model,
 /**
  * The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
  * wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
- * pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
- * pc_model_differentiate, pc_model_add_external_force.
+ * pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
+ * pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force.
  */
 pc_status pc_model_text(const pc_model *model,
                         char **text,

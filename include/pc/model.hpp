@@ -187,6 +187,7 @@ public:
     model &start_time(double t) { return say(pc_model_set_start_time, t); }
     model &keep(const std::string &integral) { return say(pc_model_keep, integral.c_str()); }
     model &project_start(bool yes = true) { return say(pc_model_project_start, yes); }
+    model &hold_start(const std::string &name) { return say(pc_model_hold_start, name.c_str()); }
     model &observe_reactions(bool yes = true) { return say(pc_model_observe_reactions, yes); }
     model &differentiate(bool yes = true) { return say(pc_model_differentiate, yes); }
 

@@ -9,7 +9,7 @@
 //! The rest serves several tests: nonholonomic systems described by closures ([`nonholonomic`]), the definition
 //! of the equations in numbers, which has the library evaluate expressions and nothing else ([`definition`],
 //! over the numbers of [`dual`]), a measure for what rounding may do to a program ([`magnitude`]) and a
-//! workbench for emitted source ([`emitted`]). Random models have a room of their own ([`fuzz`]).
+//! workbench for emitted source ([`emitted`]). Models of tests are derived twice ([`verified`]). Random models have a room of their own ([`fuzz`]).
 
 pub mod classical;
 pub mod closed_form;
@@ -21,6 +21,7 @@ pub mod magnitude;
 pub mod malformed;
 pub mod nonholonomic;
 pub mod reference;
+pub mod verified;
 
 /// The programs of the README, compiled and run.
 #[cfg(doctest)]

@@ -8,6 +8,7 @@ use std::array::from_fn;
 use pc_mech::{Graph, Motion, VectorField};
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_solve::{Events, Method, Options, solve};
+use pc_tests::verified::derived_twice;
 
 const BICYCLE: &str = include_str!("../mechanisms/whipple-bicycle.toml");
 const SQUEEZER: &str = include_str!("../mechanisms/squeezer.toml");
@@ -16,7 +17,7 @@ const SLIDER_CRANK: &str = include_str!("../mechanisms/slider-crank.toml");
 const RATTLEBACK: &str = include_str!("../mechanisms/rattleback.toml");
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// A motion and what a table shows of its start and end.

@@ -8,6 +8,7 @@ use pc_model::{Builtin, Document, Model, Source};
 use pc_solve::{Method, Options, solve};
 use pc_tests::classical::SplitMix64;
 use pc_tests::closed_form::{appell_hamel, constant_speed};
+use pc_tests::verified::derived_twice;
 
 /// What is asked of an integration at rtol = 1e-12 of motions over a few times their own unit.
 const TOLERANCE: f64 = 1e-8;
@@ -31,7 +32,7 @@ potential = "g*y"
 "#;
 
 fn constant_speed_model() -> Model {
-    Model::new(Document::parse(Source::new("speed.toml", CONSTANT_SPEED)).unwrap())
+    derived_twice(Document::parse(Source::new("speed.toml", CONSTANT_SPEED)).unwrap())
 }
 
 fn machine() -> Model {

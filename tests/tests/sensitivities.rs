@@ -8,6 +8,7 @@ use pc_solve::{
     AdjointOptions, Failure, Functional, Method, Options, Sensitivities, VectorField, adjoint_gradient,
     solve, solve_with_sensitivities,
 };
+use pc_tests::verified::derived_twice;
 
 /// A motion with its start, compiled with these derivatives.
 fn motion(name: &str, options: CompileOptions) -> (Motion, Vec<f64>) {
@@ -128,7 +129,7 @@ t_end = 1.5
 /// nearest on the surface.
 #[test]
 fn derivatives_on_a_surface() {
-    let model = Model::new(Document::from_bytes("spheroid.toml", SPHEROID.as_bytes()).unwrap());
+    let model = derived_twice(Document::from_bytes("spheroid.toml", SPHEROID.as_bytes()).unwrap());
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
     let Form::Held(held) = assembly.bound.form() else { panic!("no multipliers") };

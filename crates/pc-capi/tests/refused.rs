@@ -54,6 +54,8 @@ fn nulls_are_refused_everywhere() {
         pc_model_keep(real.0, null);
         pc_model_keep(no_model, name);
         pc_model_project_start(no_model, 1);
+        pc_model_hold_start(no_model, name);
+        pc_model_hold_start(real.0, null);
         pc_model_observe_reactions(no_model, 1);
         pc_model_differentiate(no_model, 1);
         pc_model_text(no_model, text_place);

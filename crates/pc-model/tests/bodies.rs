@@ -1,10 +1,15 @@
 //! `[bodies.NAME]`: what they add to the energy and the forces, and every refusal in full.
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::{Expr, Graph, System};
 use pc_model::{Category, Document, Model, ModelError, Source};
 
+use verified::derived_twice;
+
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn system<'g>(graph: &'g Graph, text: &str) -> System<'g> {

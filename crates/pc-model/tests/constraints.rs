@@ -2,9 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::{Graph, VectorField};
 use pc_model::{Category, Document, Form, Model, ModelError, Source};
 use pc_nonholo::{Kind, Redundant};
+
+use verified::derived_twice;
 
 /// A point in a vertical plane, below the origin.
 const BELOW: &str = "x = 0.6\ny = -0.8\n";
@@ -36,7 +41,7 @@ kinetic = "m/2*(x'^2 + y'^2) + m*a*omega*(cos(phi)*y' - sin(phi)*x') + (J + m*a^
 const BLADE: &str = "blade = \"-sin(phi)*x' + cos(phi)*y'\"\n";
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Assembled, compiled and evaluated at its start, or why not.

@@ -2,11 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use std::fmt::Write;
 use std::thread;
 
 use pc_mech::Graph;
 use pc_model::{Document, Model, ModelError, Source};
+
+use verified::derived_twice;
 
 /// An oscillator with definitions before it, that moves in the potential given.
 fn oscillator(definitions: &str, potential: &str) -> Model {
@@ -14,7 +19,7 @@ fn oscillator(definitions: &str, potential: &str) -> Model {
         "[definitions]\n{definitions}[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
          potential = \"{potential}\"\n"
     );
-    Model::new(Document::parse(Source::new("m.toml", &text)).unwrap())
+    derived_twice(Document::parse(Source::new("m.toml", &text)).unwrap())
 }
 
 /// With so little stack that each of them may not cost a call.

@@ -3,8 +3,13 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::{Graph, VectorField};
 use pc_model::{Category, Document, Form, Model, ModelError, Source};
+
+use verified::derived_twice;
 
 /// A pendulum of length one in Cartesian coordinates, by its angular velocity.
 const PENDULUM: &str = r#"[coordinates]
@@ -37,7 +42,7 @@ potential = "0.3*x"
 "#;
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Names, state and rates at the start.

@@ -1,8 +1,13 @@
 //! `[events.NAME]`: what becomes of it, and every refusal in full.
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_expr::Direction;
 use pc_mech::Graph;
 use pc_model::{Category, Document, Model, ModelError, Source};
+
+use verified::derived_twice;
 
 const PENDULUM: &str = r#"[parameters]
 l = 1.0
@@ -31,7 +36,7 @@ kinetic = "(x'^2 + y'^2)/2"
 "#;
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn error(text: &str) -> ModelError {

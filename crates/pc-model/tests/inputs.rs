@@ -2,11 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use std::fs;
 
 use pc_expr::Events;
 use pc_mech::{Conservation, Graph, VectorField};
 use pc_model::{Category, Document, Flow, Model, Source, Variables};
+
+use verified::derived_twice;
 
 fn text(inputs: &str) -> String {
     format!(
@@ -16,7 +21,7 @@ fn text(inputs: &str) -> String {
 }
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn flow(model: &Model, variables: Variables) -> Flow {
@@ -138,7 +143,7 @@ fn a_column_of_a_file_beside_the_model() {
     let read = |column: &str| {
         let text = text(&format!("u = {{ file = \"x.csv\", {column} }}"));
         let name = directory.join("m.toml").display().to_string();
-        Model::new(Document::parse(Source::new(&name, text)).unwrap())
+        derived_twice(Document::parse(Source::new(&name, text)).unwrap())
     };
     let mut good = flow(&read("column = \"u\""), Variables::QuasiVelocities);
     assert_eq!(pull(&mut good, 1.75), [1.5, 3.0]);

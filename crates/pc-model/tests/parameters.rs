@@ -2,15 +2,20 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::Graph;
 use pc_model::{Category, Document, Model, Source};
+
+use verified::derived_twice;
 
 fn model(parameters: &str) -> Model {
     let text = format!(
         "[parameters]\n{parameters}[definitions]\nhalf = \"m/2\"\n[coordinates]\nx = 1.0\n[lagrangian]\n\
          kinetic = \"half*x'^2\"\n"
     );
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap())
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap())
 }
 
 fn values(model: &Model) -> Vec<f64> {

@@ -2,12 +2,17 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::Graph;
-use pc_model::{Document, Model, Source};
+use pc_model::{Document, Source};
+
+use verified::derived_twice;
 
 /// The observables at the start, by name.
 fn observed(text: &str, all: bool) -> Vec<(String, f64)> {
-    let mut model = Model::new(Document::parse(Source::new("model.toml", text)).unwrap());
+    let mut model = derived_twice(Document::parse(Source::new("model.toml", text)).unwrap());
     model.observe_reactions(all);
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
@@ -82,12 +87,12 @@ potential = "10*z"
 #[test]
 fn a_reaction_of_nothing_is_no_name() {
     let wrong = HELD.replace("λ_first - 10*λ_second", "λ_third");
-    let model = Model::new(Document::parse(Source::new("model.toml", &wrong)).unwrap());
+    let model = derived_twice(Document::parse(Source::new("model.toml", &wrong)).unwrap());
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("the name `λ_third` is not declared"), "{error}");
     // … and a reaction is none of the things that determine the motion.
     let circular = HELD.replace("-2*x - 3*y", "-2*x - 3*y + λ_first");
-    let model = Model::new(Document::parse(Source::new("model.toml", &circular)).unwrap());
+    let model = derived_twice(Document::parse(Source::new("model.toml", &circular)).unwrap());
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("the name `λ_first` is not declared"), "{error}");
 }

@@ -2,11 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::{Graph, Motion, VectorField};
 use pc_model::{Document, Model, ModelError, Source};
 
+use verified::derived_twice;
+
 fn model(text: &str) -> Model {
-    let mut model = Model::new(Document::parse(Source::new("m.toml", text)).unwrap());
+    let mut model = derived_twice(Document::parse(Source::new("m.toml", text)).unwrap());
     model.observe_reactions(true);
     model
 }

@@ -2,9 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_expr::Events;
 use pc_mech::{Graph, VectorField};
 use pc_model::{Category, Document, Flow, Model, Source, Variables};
+
+use verified::derived_twice;
 
 /// A pendulum on a motor with its current, under a controller with its integral.
 const MOTOR: &str = r#"[parameters]
@@ -37,7 +42,7 @@ slope = "d(i)"
 "#;
 
 fn model(text: &str) -> Model {
-    Model::new(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
+    derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn flow(text: &str, variables: Variables) -> Flow {

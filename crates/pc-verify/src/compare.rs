@@ -1,15 +1,19 @@
 //! The comparison of the two derivations.
 
 use std::fmt;
-use std::sync::Arc;
 
-use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
+use pc_mech::{Folding, Graph};
 use pc_model::{Assembly, Flow, Model, Variables};
+use pc_print::Form;
 
 use crate::derivation::{Completing, Derivation, Derived, Place};
 use crate::error::{Disagreement, Irregular, VerifyError};
+use crate::first::First;
 use crate::linear::pseudo_inverse;
-use crate::quantities::{Free, Quantity, REPETITIONS, Sized};
+use crate::printed::{FORMS, printed_name};
+use crate::projected::{DIRECTIONS, Layout};
+use crate::quantities::{Free, Quantity, Sized};
+use crate::resultants::Resultant;
 use crate::rounding::{Random, Rounding, UNIT, within};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
@@ -22,7 +26,7 @@ use crate::text::{Text, Velocities};
 pub const TOLERANCE: f64 = 1e-12;
 
 /// A difference that ordinary rounding makes. Where one is larger, it is measured how far rounding is amplified.
-const ORDINARY: f64 = 1e-14;
+pub(crate) const ORDINARY: f64 = 1e-14;
 
 /// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
 const OTHER: f64 = 1e-9;
@@ -48,6 +52,8 @@ impl Default for Options {
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
+    /// The number of these at which equations were only compared along random virtual velocities, the model being large.
+    pub projected: usize,
     /// States that were passed over since the equations are singular or not defined there.
     pub skipped: usize,
     /// Why the last of these was.
@@ -63,13 +69,24 @@ pub struct Agreement {
 }
 
 impl fmt::Display for Agreement {
-    /// `agrees to 3e-15 at 100 states`
+    /// `agrees to 3e-15 at 97 states, 3 not comparable: the equations for the accelerations are singular`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = if self.states == 1 { "" } else { "s" };
         if self.error == 0.0 {
-            write!(f, "agrees to the last digit at {} state{plural}", self.states)
+            write!(f, "agrees to the last digit at {} state{plural}", self.states)?;
         } else {
-            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)
+            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)?;
+        }
+        match self.projected {
+            0 => {}
+            all if all == self.states => write!(f, " along {DIRECTIONS} random virtual velocities")?,
+            some => write!(f, ", at {some} of them along {DIRECTIONS} random virtual velocities")?,
+        }
+        match (self.skipped, &self.reason) {
+            (0, _) => Ok(()),
+            (skipped, reason) => {
+                write!(f, ", {skipped} not comparable: {}", reason.as_deref().unwrap_or("not regular"))
+            }
         }
     }
 }
@@ -91,6 +108,8 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     let mut agreement = second.nothing_yet();
     let mut firsts = Vec::new();
     let flow = Flow::new(&observed, &assembly, Variables::QuasiVelocities)?;
+    let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second.columns) };
+    let wholly = second.wholly(options.states);
     firsts.push(First::flow("poincare", flow, &second, &assembly, &mut agreement));
     match Flow::new(&observed, &assembly, Variables::Momenta) {
         Ok(flow) => firsts.push(First::flow("canonical", flow, &second, &assembly, &mut agreement)),
@@ -102,18 +121,48 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }
-    agreement.forms = firsts.iter().map(|first| first.form.clone()).collect();
+    let page = Graph::with_folding(Folding::Structural);
+    let printable = FORMS.into_iter().filter(|&form| match second.too_large_for(form, &plain) {
+        Some(reason) => {
+            agreement.leave_out(&printed_name(form), reason);
+            false
+        }
+        None => true,
+    });
+    for form in printable.collect::<Vec<_>>() {
+        firsts.extend(First::printed(form, &plain, &second, &page, &mut agreement));
+    }
     let mut number = 0;
     while agreement.states < options.states && number < TRIES * options.states {
         let seed = (options.seed << 32) as usize + number;
         number += 1;
         let compared = second.derivation.random(&second.start, seed).map_err(Passed::from);
-        match compared.and_then(|place| second.compare(&mut firsts, &place, &mut agreement)) {
+        let outcome = compared.and_then(|place| match agreement.states < wholly {
+            true => second.compare(&mut firsts, &place, &mut agreement),
+            false => second.compare_projected("poincare", &mut large, &place, &mut agreement),
+        });
+        match outcome {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
         }
     }
-    agreement.finished(number)
+    agreement.finished(&firsts, number)
+}
+
+/// Terms that are evaluated in some milliseconds.
+const LONG: usize = 100_000;
+
+/// Terms that are evaluated for all states together, in a second or so.
+const ALL_STATES: usize = 5_000_000;
+
+/// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
+/// a second, and ten times that with each two more.
+const MOST_INVERTED: usize = 9;
+
+/// A large model in quasi-velocities.
+struct Projection {
+    flow: Flow,
+    layout: Layout,
 }
 
 /// States that are tried for each that is to be compared.
@@ -137,7 +186,14 @@ impl From<Irregular> for Passed {
 }
 
 impl Agreement {
-    fn leave_out(&mut self, what: &str, reason: &str) {
+    /// A difference, relative to the size of its terms.
+    fn note(&mut self, error: f64, label: &str) {
+        if error > self.error || self.quantity.is_empty() {
+            (self.error, self.quantity) = (error, label.to_owned());
+        }
+    }
+
+    pub(crate) fn leave_out(&mut self, what: &str, reason: &str) {
         let line = format!("{what}: {reason}");
         if !self.not_compared.contains(&line) {
             self.not_compared.push(line);
@@ -155,11 +211,23 @@ impl Agreement {
         }
     }
 
-    fn finished(self, tried: usize) -> Result<Agreement, VerifyError> {
+    fn finished(mut self, firsts: &[First<'_>], tried: usize) -> Result<Agreement, VerifyError> {
         if self.states == 0 {
             let reason = self.reason.unwrap_or_else(|| "none was tried".to_owned());
             return Err(VerifyError::NothingCompared { tried, reason });
         }
+        let wholly = self.states - self.projected;
+        let missing = |first: &First<'_>| wholly - first.compared;
+        let partly: Vec<&First<'_>> = firsts.iter().filter(|first| missing(first) > 0).collect();
+        let lines: Vec<String> = partly
+            .iter()
+            .map(|first| format!("{} at {} of {} states", first.form, missing(first), wholly))
+            .collect();
+        for (line, first) in lines.iter().zip(partly) {
+            self.leave_out(line, first.reason.as_deref().unwrap_or("not tried"));
+        }
+        let compared = firsts.iter().filter(|first| first.compared > 0);
+        self.forms.extend(compared.map(|first| first.form.clone()));
         Ok(self)
     }
 }
@@ -167,10 +235,10 @@ impl Agreement {
 /// The second derivation of a model.
 #[derive(Clone, Debug)]
 pub struct Second {
-    derivation: Derivation,
+    pub(crate) derivation: Derivation,
     /// What the columns of a table are called.
     columns: Vec<String>,
-    start: Place,
+    pub(crate) start: Place,
     external: Vec<String>,
 }
 
@@ -251,20 +319,100 @@ impl Second {
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
         let mut flow = flow.clone();
+        if self.cost() > LONG && !flow.has_momenta() {
+            return self.agrees_projected(form, flow, t, state, agreement);
+        }
         let mut row = flow.row(t, state);
         row.truncate(flow.names.len());
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
-        agreement.forms.push(form.to_owned());
-        let (x, eta) = row.split_at(self.start.x.len());
-        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
-        let place = self.derivation.velocities_of(t, x, eta);
-        let place = place.map(|w| Place { t, x: x.to_vec(), w, z: z.to_vec() });
-        let compared = place.map_err(Passed::from);
+        let compared = self.place(t, &row).map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
         }
-        agreement.finished(1)
+        agreement.finished(&firsts, 1)
+    }
+
+    /// The place of coordinates, columns and first-order states.
+    fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
+        let (x, eta) = row.split_at(self.start.x.len());
+        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
+        let w = self.derivation.velocities_of(t, x, eta)?;
+        Ok(Place { t, x: x.to_vec(), w, z: z.to_vec() })
+    }
+
+    /// The same as [`agrees`](Second::agrees) along random virtual velocities.
+    fn agrees_projected(
+        &self,
+        form: &str,
+        mut flow: Flow,
+        t: f64,
+        state: &[f64],
+        mut agreement: Agreement,
+    ) -> Result<Agreement, VerifyError> {
+        let mut row = flow.row(t, state);
+        row.truncate(flow.names.len());
+        let layout = Layout::of(&flow, &self.columns);
+        let mut large = Projection { flow, layout };
+        let place = self.place(t, &row).map_err(Passed::from);
+        match place.and_then(|place| self.compare_projected(form, &mut large, &place, &mut agreement)) {
+            Ok(()) => agreement.states += 1,
+            Err(passed) => agreement.pass_over(passed)?,
+        }
+        agreement.leave_out("multipliers, integrals and outputs", "the model is large");
+        agreement.forms.push(form.to_owned());
+        agreement.finished(&[], 1)
+    }
+
+    /// Compares the equations with the second derivation at a place along random virtual velocities.
+    fn compare_projected(
+        &self,
+        form: &str,
+        large: &mut Projection,
+        at: &Place,
+        agreement: &mut Agreement,
+    ) -> Result<(), Passed> {
+        let columns = |at: &Place| self.derivation.columns(&self.derivation.still(at, &Rounding::none()));
+        let residuals = self.derivation.projected(&mut large.flow, &large.layout, at, &columns)?;
+        for (label, residual) in residuals {
+            let error = error(residual.value, Sized { value: 0.0, ..residual });
+            if !within(error, TOLERANCE) {
+                return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
+                    form: form.to_owned(),
+                    quantity: format!("what should vanish of {label}"),
+                    first: residual.value,
+                    second: 0.0,
+                    size: residual.size,
+                    t: at.t,
+                    state: self.named(at, &columns(at)?),
+                }))));
+            }
+            agreement.note(error, &label);
+        }
+        agreement.projected += 1;
+        Ok(())
+    }
+
+    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    pub fn is_long(&self, flow: &Flow) -> bool {
+        self.cost() > LONG && flow.has_momenta()
+    }
+
+    /// Why a printed form is not derived only to be compared.
+    fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
+        if form == Form::Voronets && assembly.bound.multipliers().is_none() {
+            return None; // the same as Lagrange's, and not derived
+        }
+        if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {
+            return Some("the mass matrix would be inverted in symbols");
+        }
+        (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
+    }
+
+    /// At how many of so many states all equations are compared.
+    fn wholly(&self, states: usize) -> usize {
+        let affordable = ALL_STATES / self.cost().max(1);
+        states.min(affordable.max(1))
     }
 
     #[cfg(test)]
@@ -281,6 +429,7 @@ impl Second {
     fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
             states: 0,
+            projected: 0,
             skipped: 0,
             reason: None,
             error: 0.0,
@@ -294,22 +443,28 @@ impl Second {
         agreement
     }
 
-    /// The column of this name, or what a constraint of this name fixes at 0.
-    fn velocity(&self, name: &str) -> Option<Quantity> {
-        let column = self.columns.iter().position(|column| column == name).map(Quantity::Column);
-        let constraint = || self.derivation.text.names.constraints.iter().any(|c| c == name);
-        column.or_else(|| constraint().then_some(Quantity::Zero))
+    /// The quasi-velocity of this name: a column, what a constraint fixes at 0, or a velocity.
+    pub(crate) fn free(&self, name: &str) -> Option<Free> {
+        let column = self.columns.iter().position(|column| column == name).map(Free::Column);
+        column.or_else(|| {
+            completing(&self.derivation.text, name).map(|completing| match completing {
+                Completing::Velocity(i) => Free::Velocity(i),
+                Completing::Constraint(a) => Free::Constraint(a),
+            })
+        })
     }
 
-    /// The quasi-velocity of this name.
-    fn free(&self, name: &str) -> Option<Free> {
-        let column = self.columns.iter().position(|column| column == name).map(Free::Column);
-        let constraints = &self.derivation.text.names.constraints;
-        column.or_else(|| constraints.iter().position(|c| c == name).map(Free::Constraint))
+    /// Its value.
+    pub(crate) fn velocity(&self, name: &str) -> Option<Quantity> {
+        self.free(name).map(|free| match free {
+            Free::Column(s) => Quantity::Column(s),
+            Free::Velocity(i) => Quantity::Velocity(i),
+            Free::Constraint(_) => Quantity::Zero,
+        })
     }
 
     /// The rate of a component of the state.
-    fn rate(&self, name: &str) -> Option<Quantity> {
+    pub(crate) fn rate(&self, name: &str) -> Option<Quantity> {
         let coordinates = &self.derivation.text.names.coordinates;
         let coordinate = coordinates.iter().position(|x| x == name).map(Quantity::Velocity);
         let states = &self.derivation.text.names.states;
@@ -317,29 +472,26 @@ impl Second {
         coordinate.or_else(state).or_else(|| {
             self.velocity(name).map(|quantity| match quantity {
                 Quantity::Column(s) => Quantity::ColumnRate(s),
+                Quantity::Velocity(i) => Quantity::Acceleration(i),
                 other => other,
             })
         })
     }
 
     /// An observable.
-    fn observable(&self, name: &str) -> Option<Quantity> {
+    pub(crate) fn observable(&self, name: &str) -> Option<Quantity> {
         let text = &self.derivation.text;
         if name == "energy" {
             return Some(Quantity::Energy);
         }
         let observed = text.observed.iter().position(|(known, _)| known == name).map(Quantity::Observed);
-        observed.or_else(|| {
+        let names = &text.names;
+        let reaction = || {
             let constraint = name.strip_prefix("λ_")?;
-            text.names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
-        })
-    }
-
-    /// Whether an observable is a component of a reaction on a body, as in `F_CONSTRAINT_BODY_x`.
-    fn is_body_reaction(&self, name: &str) -> bool {
-        let rest = name.strip_prefix("F_").or_else(|| name.strip_prefix("N_"));
-        let constraints = &self.derivation.text.names.constraints;
-        rest.is_some_and(|rest| constraints.iter().any(|c| rest.starts_with(&format!("{c}_"))))
+            names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
+        };
+        let resultant = || Resultant::named(name, &names.constraints, &names.bodies).map(Quantity::Resultant);
+        observed.or_else(reaction).or_else(resultant)
     }
 
     /// How many terms of the text are evaluated for the equations at one state, roughly.
@@ -348,67 +500,91 @@ impl Second {
         (k * (k + 1) / 2 + 4 * k + 4).saturating_mul(self.derivation.text.terms())
     }
 
-    /// Compares all that is compiled with the second derivation at a place.
+    /// Compares all forms with the second derivation at a place: at least one of them.
     fn compare(&self, firsts: &mut [First<'_>], at: &Place, agreement: &mut Agreement) -> Result<(), Passed> {
-        let columns = self.columns_at(at)?;
-        let exact = Rounding::none();
-        let derived = self.derivation.at(at, &exact)?;
+        let here = Here::new(&self.derivation, self.derivation.at(at, &Rounding::none())?)?;
         let mut scattered = None;
-        let mut differences = Vec::new();
+        let (mut compared, mut irregular) = (0, None);
         for first in firsts {
-            let (wanted, free) = (first.quantities(), first.free.as_deref());
-            let mut seconds = self.derivation.quantities(&derived, &wanted, free, &exact)?;
-            let values = first.values(at, &columns)?;
-            if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
-                if scattered.is_none() {
-                    scattered = Some(self.derivation.scattered(&derived)?);
+            match self.compare_form(first, &here, &mut scattered, agreement) {
+                Ok(()) => compared += 1,
+                Err(Passed::Irregular(reason)) => {
+                    first.reason = Some(reason.to_string());
+                    irregular = Some(reason);
                 }
-                let scattered = scattered.as_deref().unwrap_or_default();
-                self.derivation.scatter(&mut seconds, scattered, &wanted, first.free.as_deref())?;
-                if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
-                    self.scatter_first(first, &derived, &values, &mut seconds);
-                    if self.has_other_velocities(first, &derived, &values, &seconds)? {
-                        let why = "at some states the momenta are those of other velocities, too";
-                        agreement.leave_out(&first.form, why);
-                        continue;
-                    }
-                }
-            }
-            for (place, (label, _)) in first.wanted.iter().enumerate() {
-                let (one, two) = (values[place], seconds[place]);
-                let error = error(one, two);
-                if !within(error, TOLERANCE) {
-                    return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
-                        form: first.form.clone(),
-                        quantity: label.clone(),
-                        first: one,
-                        second: two.value,
-                        size: two.size,
-                        t: at.t,
-                        state: self.named(at, &columns),
-                    }))));
-                }
-                differences.push((error, label.clone()));
+                Err(error) => return Err(error),
             }
         }
-        for (error, label) in differences {
-            if error > agreement.error || agreement.quantity.is_empty() {
-                (agreement.error, agreement.quantity) = (error, label);
+        match irregular {
+            Some(reason) if compared == 0 => Err(Passed::Irregular(reason)),
+            _ => Ok(()),
+        }
+    }
+
+    fn compare_form(
+        &self,
+        first: &mut First<'_>,
+        here: &Here,
+        scattered: &mut Option<Vec<(Rounding, Here)>>,
+        agreement: &mut Agreement,
+    ) -> Result<(), Passed> {
+        let (wanted, exact) = (first.quantities(), Rounding::none());
+        let free = first.free.clone();
+        let mut seconds = self.derivation.quantities(&here.derived, &wanted, free.as_deref(), &exact)?;
+        let values = first.values(&self.derivation, here)?;
+        if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
+            if scattered.is_none() {
+                *scattered = Some(self.scattered(&here.derived)?);
+            }
+            let scattered = scattered.as_deref().unwrap_or_default();
+            self.derivation.scatter(&mut seconds, scattered, &wanted, free.as_deref())?;
+            if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
+                self.scatter_first(first, scattered, &values, &mut seconds);
+                if self.has_other_velocities(first, &here.derived, &values, &seconds)? {
+                    let why = "at some states the momenta are those of other velocities, too";
+                    agreement.leave_out(&first.form, why);
+                    return Ok(());
+                }
             }
         }
+        let pairs = || first.wanted.iter().zip(values.iter().zip(&seconds));
+        for ((label, _), (&one, &two)) in pairs() {
+            if !within(error(one, two), TOLERANCE) {
+                return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
+                    form: first.form.clone(),
+                    quantity: label.clone(),
+                    first: one,
+                    second: two.value,
+                    size: two.size,
+                    t: here.derived.place.t,
+                    state: self.named(&here.derived.place, &here.columns),
+                }))));
+            }
+        }
+        for ((label, _), (&one, &two)) in pairs() {
+            agreement.note(error(one, two), label);
+        }
+        first.compared += 1;
         Ok(())
+    }
+
+    fn scattered(&self, derived: &Derived) -> Result<Vec<(Rounding, Here)>, Irregular> {
+        let all = self.derivation.scattered(derived)?.into_iter();
+        all.map(|(rounding, derived)| Ok((rounding, Here::new(&self.derivation, derived)?))).collect()
     }
 
     /// Raises sizes to how far the values of the first derivation scatter, in units of rounding, at states that differ by
     /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly.
-    fn scatter_first(&self, first: &mut First<'_>, derived: &Derived, values: &[f64], seconds: &mut [Sized]) {
-        for seed in 1..=REPETITIONS {
-            let rounding = Rounding::made(seed);
-            let near = self.derivation.near(&derived.place, &derived.velocity_sizes, &rounding);
+    fn scatter_first(
+        &self,
+        first: &mut First<'_>,
+        scattered: &[(Rounding, Here)],
+        values: &[f64],
+        seconds: &mut [Sized],
+    ) {
+        for (_, near) in scattered {
             // Where it has no values there it says nothing of rounding.
-            let Ok(moved) = self.columns_at(&near).and_then(|columns| first.values(&near, &columns)) else {
-                continue;
-            };
+            let Ok(moved) = first.values(&self.derivation, near) else { continue };
             for ((second, value), moved) in seconds.iter_mut().zip(values).zip(moved) {
                 let scatter = (moved - value).abs() / UNIT;
                 if scatter.is_finite() {
@@ -450,16 +626,36 @@ impl Second {
         }))
     }
 
-    fn columns_at(&self, at: &Place) -> Result<Vec<f64>, Irregular> {
-        let exact = Rounding::none();
-        self.derivation.columns(&self.derivation.still(at, &exact))
-    }
-
     fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
         let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
         let states = self.derivation.text.names.states.iter().zip(&at.z);
         let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
         all.map(|(name, &value)| (name.clone(), value)).collect()
+    }
+}
+
+/// The second derivation at a place.
+#[derive(Clone, Debug)]
+pub(crate) struct Here {
+    pub(crate) derived: Derived,
+    /// The columns there.
+    pub(crate) columns: Vec<f64>,
+}
+
+impl Here {
+    fn new(derivation: &Derivation, derived: Derived) -> Result<Here, Irregular> {
+        let exact = Rounding::none();
+        let columns = derivation.columns(&derivation.still(&derived.place, &exact))?;
+        Ok(Here { derived, columns })
+    }
+
+    /// The value of a quasi-velocity.
+    pub(crate) fn velocity(&self, velocity: Free) -> f64 {
+        match velocity {
+            Free::Column(s) => self.columns[s],
+            Free::Velocity(i) => self.derived.velocities[i],
+            Free::Constraint(_) => 0.0,
+        }
     }
 }
 
@@ -491,219 +687,5 @@ impl Derivation {
             largest = pseudo_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
         }
         largest
-    }
-}
-
-/// Equations of the first derivation, compiled.
-struct First<'g> {
-    form: String,
-    /// Names of what is compared, with what it is.
-    wanted: Vec<(String, Quantity)>,
-    /// Places of these among the values of the first derivation.
-    places: Vec<usize>,
-    /// The columns that are free quasi-velocities, where momenta or energies of these are compared.
-    free: Option<Vec<Free>>,
-    compiled: Compiled<'g>,
-}
-
-enum Compiled<'g> {
-    /// What is integrated, with what each quasi-velocity of the system is.
-    Flow { flow: Box<Flow>, quasi_velocities: Vec<Quantity> },
-    /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
-    /// state.
-    Emitted {
-        motion: Box<Motion>,
-        free: Vec<Free>,
-        energy_rate: EnergyRate<'g>,
-        /// The inputs that are read from tables, with their places among the parameters.
-        tables: Vec<(usize, Arc<Table>)>,
-    },
-}
-
-/// dH/dt as a function of time, coordinates, quasi-velocities and parameters.
-struct EnergyRate<'g> {
-    graph: &'g Graph,
-    rate: Expr<'g>,
-    inputs: Vec<Expr<'g>>,
-    parameters: Vec<(Expr<'g>, f64)>,
-}
-
-impl EnergyRate<'_> {
-    fn at(&self, t: f64, state: &[f64]) -> f64 {
-        let values = std::iter::once(t).chain(state.iter().copied());
-        let mut place: Vec<_> = self.inputs.iter().copied().zip(values).collect();
-        place.extend(&self.parameters);
-        self.graph.evaluate(&[self.rate], &place).map_or(f64::NAN, |values| values[0])
-    }
-}
-
-impl<'g> First<'g> {
-    /// What is integrated.
-    fn flow(
-        form: &str,
-        flow: Flow,
-        second: &Second,
-        assembly: &Assembly<'_>,
-        agreement: &mut Agreement,
-    ) -> First<'g> {
-        let system = &assembly.system;
-        let names: Vec<String> = system.quasi_velocities().iter().map(ToString::to_string).collect();
-        let of_name = |name: &String| second.velocity(name).unwrap_or(Quantity::Zero);
-        let quasi_velocities = names.iter().map(of_name).collect();
-        let n = flow.motion.coordinates();
-        let state = flow.motion.names();
-        let canonical = flow.has_momenta();
-        let columns = flow.free_quasi_velocities().iter().map(|&s| second.free(&names[s]));
-        let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
-        let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
-        let moving = n..state.len() - flow.motion.states();
-        for (i, name) in state.iter().enumerate() {
-            let momentum = (canonical && moving.contains(&i)).then(|| {
-                let known = free.is_some();
-                known.then(|| Quantity::Momentum(i - n))
-            });
-            candidates.push((name.clone(), momentum.unwrap_or(Some(Quantity::Zero))));
-        }
-        for (i, name) in state.iter().enumerate() {
-            let momentum = || free.is_some().then(|| Quantity::MomentumRate(i - n));
-            let rate = if canonical && moving.contains(&i) { momentum() } else { second.rate(name) };
-            candidates.push((format!("the rate of {name}"), rate));
-        }
-        let shown = flow.names.len() - flow.motion.states();
-        for (i, name) in flow.names.iter().enumerate() {
-            let is_velocity = (n..shown).contains(&i);
-            candidates
-                .push((name.clone(), if is_velocity { second.velocity(name) } else { Some(Quantity::Zero) }));
-        }
-        candidates.extend(
-            flow.motion.observable_names().iter().map(|name| (name.clone(), second.observable(name))),
-        );
-        // What is given to it: coordinates, first-order states, and the quasi-velocities where these are its state.
-        let (dim, columns) = (state.len(), 2 * state.len());
-        let inputs = [
-            0..if canonical { n } else { dim },
-            moving.end..dim,
-            columns..columns + n,
-            columns + shown..columns + flow.names.len(),
-        ];
-        let compiled = Compiled::Flow { flow: Box::new(flow), quasi_velocities };
-        First::comparing(form, candidates, &inputs, second, free, compiled, agreement)
-    }
-
-    /// What is written as source.
-    fn emitted(
-        model: &Model,
-        assembly: &Assembly<'g>,
-        second: &Second,
-        agreement: &mut Agreement,
-    ) -> Result<First<'g>, String> {
-        let equations = assembly
-            .equations()
-            .map_err(|error| model.constraint_error(error).diagnostic().message.clone())?;
-        let system = equations.system();
-        let motion = equations.compile_for(Backend::Interpreter).map_err(|error| error.to_string())?;
-        let column = |eta: &Expr<'_>| {
-            let name = eta.to_string();
-            second.free(&name).ok_or_else(|| format!("`{name}` is not a column"))
-        };
-        let free: Vec<Free> = system.quasi_velocities().iter().map(column).collect::<Result<_, _>>()?;
-        let rates = motion.names().iter().map(|name| (format!("the rate of {name}"), second.rate(name)));
-        let observables = motion.observable_names().iter().map(|name| match second.observable(name) {
-            Some(Quantity::Energy) => (name.clone(), Some(Quantity::FreeEnergy)),
-            other => (name.clone(), other),
-        });
-        let mut candidates: Vec<(String, Option<Quantity>)> = rates.chain(observables).collect();
-        if second.derivation.text.tables.is_empty() {
-            candidates.push(("the rate of energy".to_owned(), Some(Quantity::FreeEnergyRate)));
-        } else {
-            agreement.leave_out("the rate of energy", "that of an input is not known");
-        }
-        let system = assembly.free_system().map_err(|error| error.to_string())?;
-        if !system.quasi_velocities().iter().map(column).eq(free.iter().map(|&f| Ok(f))) {
-            return Err("its quasi-velocities are not those of the free system".to_owned());
-        }
-        let frame = system.frame();
-        let energy_rate = EnergyRate {
-            graph: system.graph(),
-            rate: system.energy_rate(),
-            inputs: std::iter::once(frame.time()).chain(system.state()).collect(),
-            parameters: system.parameters().to_vec(),
-        };
-        let tables = second.derivation.text.tables.clone();
-        let compiled =
-            Compiled::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };
-        Ok(First::comparing("emit", candidates, &[], second, Some(free), compiled, agreement))
-    }
-
-    /// Compares those candidates that the second derivation has, but for what is given to the first.
-    fn comparing(
-        form: &str,
-        candidates: Vec<(String, Option<Quantity>)>,
-        inputs: &[std::ops::Range<usize>],
-        second: &Second,
-        free: Option<Vec<Free>>,
-        compiled: Compiled<'g>,
-        agreement: &mut Agreement,
-    ) -> First<'g> {
-        let (mut wanted, mut places) = (Vec::new(), Vec::new());
-        for (place, (label, quantity)) in candidates.into_iter().enumerate() {
-            match quantity {
-                _ if inputs.iter().any(|inputs| inputs.contains(&place)) => {}
-                Some(quantity) => {
-                    wanted.push((label, quantity));
-                    places.push(place);
-                }
-                None if second.is_body_reaction(&label) => {
-                    agreement.leave_out("reactions as forces and torques on bodies", "it does not have them");
-                }
-                None => agreement.leave_out(&label, "it does not have it"),
-            }
-        }
-        First { form: form.to_owned(), wanted, places, free, compiled }
-    }
-
-    fn quantities(&self) -> Vec<Quantity> {
-        self.wanted.iter().map(|(_, quantity)| quantity.clone()).collect()
-    }
-
-    /// What is compared at a place with these columns.
-    fn values(&mut self, at: &Place, columns: &[f64]) -> Result<Vec<f64>, Irregular> {
-        let form = &self.form;
-        let refused = |message: String| Irregular::Refused { form: form.clone(), message };
-        let values = match &mut self.compiled {
-            Compiled::Flow { flow, quasi_velocities } => {
-                let value = |quantity: &Quantity| match quantity {
-                    Quantity::Column(s) => columns[*s],
-                    _ => 0.0,
-                };
-                let mut all = at.x.clone();
-                all.extend(quasi_velocities.iter().map(value));
-                all.extend(&at.z);
-                let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
-                let mut rates = vec![f64::NAN; state.len()];
-                let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
-                evaluated.map_err(|failure| refused(failure.to_string()))?;
-                let row = flow.row(at.t, &state);
-                [state, rates, row].concat()
-            }
-            Compiled::Emitted { motion, free, energy_rate, tables } => {
-                for (place, table) in tables {
-                    motion.parameters_mut()[*place] = table.at(at.t).unwrap_or(f64::NAN);
-                }
-                let mut state = at.x.clone();
-                state.extend(free.iter().map(|&f| match f {
-                    Free::Column(column) => columns[column],
-                    Free::Constraint(_) => 0.0,
-                }));
-                state.extend(&at.z);
-                let mut rates = vec![f64::NAN; state.len()];
-                let evaluated = motion.rhs(at.t, &state, &mut rates);
-                evaluated.map_err(|failure| refused(failure.to_string()))?;
-                let observed = motion.observe(at.t, &state);
-                let rate = energy_rate.at(at.t, &state);
-                [rates, observed, vec![rate]].concat()
-            }
-        };
-        Ok(self.places.iter().map(|&place| values[place]).collect())
     }
 }

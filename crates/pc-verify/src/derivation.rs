@@ -37,6 +37,13 @@ pub(crate) struct Direction {
     pub(crate) z: Vec<f64>,
 }
 
+/// A virtual velocity: the direction of w, and the displacement of the coordinates b w.
+#[derive(Clone, Debug)]
+pub(crate) struct Virtual {
+    pub(crate) w: Direction,
+    pub(crate) x: Vec<f64>,
+}
+
 impl Place {
     /// In the direction of w_s.
     pub(crate) fn along_velocity(&self, s: usize) -> Direction {
@@ -119,9 +126,9 @@ pub(crate) struct Derived {
 
 /// Terms that are summed, and the largest of them.
 #[derive(Clone, Copy, Debug, Default)]
-struct Balance {
-    sum: f64,
-    largest: f64,
+pub(crate) struct Balance {
+    pub(crate) sum: f64,
+    pub(crate) largest: f64,
 }
 
 impl Balance {
@@ -281,28 +288,37 @@ impl Derivation {
         Ok(all)
     }
 
-    /// The parts of Q_s: of forces on coordinates and quasi-velocities, of dissipation −∂R/∂w_s, and (8) of forces and torques
+    /// The parts of Q along virtual velocities, Q_s where these are of unit w_s: of forces on coordinates and quasi-velocities, of dissipation −∂R/∂w_s, and (8) of forces and torques
     /// on bodies.
-    fn forces(&self, at: &Place, frame: &[Vec<f64>], rounding: &Rounding) -> Result<Vec<Balance>, Irregular> {
-        let (text, k) = (&self.text, at.w.len());
+    pub(crate) fn forces(
+        &self,
+        at: &Place,
+        along: &[Virtual],
+        rounding: &Rounding,
+    ) -> Result<Vec<Balance>, Irregular> {
+        let text = &self.text;
         let still = self.still(at, rounding);
-        let mut forces = vec![Balance::default(); k];
+        let mut forces = vec![Balance::default(); along.len()];
         for (on, force) in &text.forces {
             let value = still.value(force)?;
             match (*on, &text.velocities) {
-                (Forced::Coordinate(i), _) => (0..k).for_each(|s| forces[s].add(value * frame[s][i])),
-                (Forced::QuasiVelocity(s), Velocities::Quasi(_)) => forces[s].add(value),
+                (Forced::Coordinate(i), _) => {
+                    forces.iter_mut().zip(along).for_each(|(sum, along)| sum.add(value * along.x[i]));
+                }
+                (Forced::QuasiVelocity(s), Velocities::Quasi(_)) => {
+                    forces.iter_mut().zip(along).for_each(|(sum, along)| sum.add(value * along.w.w[s]));
+                }
                 (Forced::QuasiVelocity(q), Velocities::Ordinary(definitions)) => {
-                    for (s, sum) in forces.iter_mut().enumerate() {
-                        let point = self.once(at, &at.along_velocity(s), rounding);
+                    for (sum, along) in forces.iter_mut().zip(along) {
+                        let point = self.once(at, &along.w, rounding);
                         sum.add(value * point.value(&definitions[q])?.eps);
                     }
                 }
             }
         }
-        for (s, sum) in forces.iter_mut().enumerate() {
-            let varied = self.once(at, &at.along_velocity(s), rounding);
-            let displaced = self.once(at, &at.along(frame[s].clone()), rounding);
+        for (sum, along) in forces.iter_mut().zip(along) {
+            let varied = self.once(at, &along.w, rounding);
+            let displaced = self.once(at, &at.along(along.x.clone()), rounding);
             if let Some(dissipation) = &text.dissipation {
                 sum.add(-varied.value(dissipation)?.eps);
             }
@@ -357,7 +373,8 @@ impl Derivation {
             work[s] = self.once(at, &at.along(frame[s].clone()), rounding).lagrangian()?.eps;
         }
         let transposed = self.transposed(at, &velocity, &frame, &momenta, rounding)?;
-        let forces = self.forces(at, &frame, rounding)?;
+        let unit = |s: usize| Virtual { w: at.along_velocity(s), x: frame[s].clone() };
+        let forces = self.forces(at, &(0..k).map(unit).collect::<Vec<_>>(), rounding)?;
         let rows = self.constraint_matrix(&self.kept, at, rounding)?;
         let drift = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
 

@@ -23,11 +23,15 @@
 mod compare;
 mod derivation;
 mod error;
+mod first;
 mod force_function;
 mod linear;
 mod number;
 mod point;
+mod printed;
+mod projected;
 mod quantities;
+mod resultants;
 mod rounding;
 mod states;
 mod structure;

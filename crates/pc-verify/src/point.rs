@@ -4,9 +4,13 @@ use std::cell::{Cell, OnceCell};
 
 use crate::error::{Irregular, Unable};
 use crate::number::Number;
+use crate::resultants::Resultants;
 use crate::rounding::Rounding;
 use crate::term::{Function, Term};
 use crate::text::{Body, Text, Turning, Velocities};
+
+/// Definitions that may be nested in calls; with more of them those before are evaluated in order.
+const DEEP: usize = 64;
 
 /// Time, coordinates and velocities w as numbers, with all that follows from them.
 pub(crate) struct Point<'a, T: Number> {
@@ -22,6 +26,8 @@ pub(crate) struct Point<'a, T: Number> {
     accelerations: Option<Vec<T>>,
     /// λ, where it is known.
     reactions: Option<Vec<f64>>,
+    /// What they are on bodies, where that is known.
+    resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
     /// The definitions that are being evaluated.
     open: Vec<Cell<bool>>,
@@ -56,6 +62,7 @@ impl<'a, T: Number> Point<'a, T> {
             knows_velocities: true,
             accelerations: None,
             reactions: None,
+            resultants: None,
             definitions: vec![OnceCell::new(); text.definitions.len()],
             open: vec![Cell::new(false); text.definitions.len()],
             velocities: OnceCell::new(),
@@ -66,6 +73,11 @@ impl<'a, T: Number> Point<'a, T> {
     /// The same on a motion of which accelerations and reactions are known.
     pub(crate) fn on_motion(self, accelerations: Vec<T>, reactions: Vec<f64>) -> Point<'a, T> {
         Point { accelerations: Some(accelerations), reactions: Some(reactions), ..self }
+    }
+
+    /// The same with what reactions are on bodies.
+    pub(crate) fn with_resultants(self, resultants: Option<Resultants>) -> Point<'a, T> {
+        Point { resultants, ..self }
     }
 
     /// The same without w.
@@ -156,6 +168,10 @@ impl<'a, T: Number> Point<'a, T> {
                 let reaction = self.reactions.as_ref().and_then(|reactions| reactions.get(*a));
                 T::constant(*reaction.ok_or(Unable::NoReaction)?)
             }
+            Term::Resultant(resultant) => {
+                let known = self.resultants.as_ref().ok_or(Unable::NoReaction)?;
+                T::constant(known.get(*resultant).value)
+            }
             Term::Rate(inner) => self.rate(inner)?,
             Term::Sum(terms) => {
                 let mut sum = T::constant(0.0);
@@ -188,7 +204,7 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// The value of a parameter, or of an input at this time, which has no known rate.
-    fn parameter(&self, j: usize) -> f64 {
+    pub(crate) fn parameter(&self, j: usize) -> f64 {
         match self.text.tables.iter().find(|(place, _)| *place == j) {
             Some((_, table)) => table.at(self.t.real()).unwrap_or(f64::NAN),
             None => self.text.parameters[j],
@@ -199,6 +215,18 @@ impl<'a, T: Number> Point<'a, T> {
         if let Some(value) = self.definitions[j].get() {
             return Ok(*value);
         }
+        if j >= DEEP {
+            // One made of the other, each would cost a call. What fails is asked for again where it is needed.
+            for before in 0..j {
+                if self.definitions[before].get().is_none() {
+                    let _ = self.evaluate_definition(before);
+                }
+            }
+        }
+        self.evaluate_definition(j)
+    }
+
+    fn evaluate_definition(&self, j: usize) -> Result<T, Irregular> {
         if self.open[j].replace(true) {
             return Err(Unable::Circular { name: self.text.names.definitions[j].clone() }.into());
         }
@@ -271,20 +299,29 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// L, the kinetic energy of the bodies included.
     pub(crate) fn lagrangian(&self) -> Result<T, Irregular> {
-        let part = |term: &Option<Term>| term.as_ref().map_or(Ok(T::constant(0.0)), |term| self.value(term));
-        let text = self.text;
-        let mut lagrangian = part(&text.lagrangian)? + part(&text.kinetic)? - part(&text.potential)?;
-        for body in &text.bodies {
+        let mut lagrangian = self.own_lagrangian()?;
+        for body in &self.text.bodies {
             lagrangian += self.kinetic_energy(body)? + self.force_function(body)?;
         }
         Ok(self.round(lagrangian))
     }
 
+    /// L without that of the bodies.
+    pub(crate) fn own_lagrangian(&self) -> Result<T, Irregular> {
+        let part = |term: &Option<Term>| term.as_ref().map_or(Ok(T::constant(0.0)), |term| self.value(term));
+        let text = self.text;
+        Ok(part(&text.lagrangian)? + part(&text.kinetic)? - part(&text.potential)?)
+    }
+
+    /// ṙ
+    pub(crate) fn velocity(&self, body: &Body) -> Result<Vec<T>, Irregular> {
+        body.position.iter().map(|part| self.rate(part)).collect()
+    }
+
     /// m v²/2 + ω·Iω/2
     fn kinetic_energy(&self, body: &Body) -> Result<T, Irregular> {
         let mut twice = T::constant(0.0);
-        for part in &body.position {
-            let v = self.rate(part)?;
+        for v in self.velocity(body)? {
             twice += v * v;
         }
         twice *= self.value(&body.mass)?;

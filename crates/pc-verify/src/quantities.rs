@@ -1,8 +1,10 @@
 //! What is compared, with the size of the rounding errors in it.
 
+use crate::compare::Here;
 use crate::derivation::{Derivation, Derived, Direction};
 use crate::error::Irregular;
 use crate::linear::{matrix, solve};
+use crate::resultants::{Resultant, Resultants};
 use crate::rounding::{Rounding, UNIT, within};
 
 /// A quantity that both derivations have.
@@ -10,6 +12,8 @@ use crate::rounding::{Rounding, UNIT, within};
 pub(crate) enum Quantity {
     /// ẋ_i
     Velocity(usize),
+    /// ẍ_i
+    Acceleration(usize),
     /// ż_j
     StateRate(usize),
     /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
@@ -20,6 +24,8 @@ pub(crate) enum Quantity {
     Zero,
     /// λ_α by the number of the constraint.
     Reaction(usize),
+    /// What a reaction is on a body.
+    Resultant(Resultant),
     /// y·η − L of all velocities.
     Energy,
     /// y_f of the free quasi-velocities, by their place among these.
@@ -39,6 +45,8 @@ pub(crate) enum Free {
     Column(usize),
     /// What a constraint fixes at 0.
     Constraint(usize),
+    /// ẋ_i
+    Velocity(usize),
 }
 
 /// A value, and how large the terms are that it is made up of.
@@ -95,13 +103,19 @@ impl Derivation {
             return Err(Irregular::IllConditioned);
         }
         let along = motion(derived);
-        let columns = self.columns(&self.once(at, &along, rounding))?;
+        let moving = self.once(at, &along, rounding);
+        let columns = self.columns(&moving)?;
         let column_sizes = self.column_sizes(derived)?;
+        let accelerates = wanted.iter().any(|quantity| matches!(quantity, Quantity::Acceleration(_)));
+        let acceleration_sizes = if accelerates { self.acceleration_sizes(derived)? } else { Vec::new() };
+        let velocities = moving.velocities()?;
         let energy = self.energy(derived, rounding)?;
-        let observed = self.observed(derived, wanted, rounding)?;
+        let resultants = self.needed_resultants(derived, wanted, rounding)?;
+        let observed = self.observed(derived, wanted, resultants.clone(), rounding)?;
         let of_momenta = |pick: &dyn Fn(&Momenta) -> Sized| momenta.as_ref().map(pick).unwrap_or_default();
         let quantity = |(place, wanted): (usize, &Quantity)| match *wanted {
             Quantity::Velocity(i) => Sized { value: derived.velocities[i], size: 0.0 },
+            Quantity::Acceleration(i) => Sized { value: velocities[i].eps, size: acceleration_sizes[i] },
             Quantity::StateRate(j) => Sized { value: derived.state_rates[j], size: 0.0 },
             Quantity::Column(s) => Sized { value: columns[s].re, size: column_sizes[s].0 },
             Quantity::ColumnRate(s) => Sized { value: columns[s].eps, size: column_sizes[s].1 },
@@ -110,6 +124,9 @@ impl Derivation {
                 Some(place) => Sized { value: derived.reactions[place], size: derived.reaction_sizes[place] },
                 None => Sized::default(),
             },
+            Quantity::Resultant(resultant) => {
+                resultants.as_ref().map(|all| all.get(resultant)).unwrap_or_default()
+            }
             Quantity::Energy => energy,
             Quantity::Momentum(f) => of_momenta(&|momenta| momenta.values[f]),
             Quantity::MomentumRate(f) => of_momenta(&|momenta| momenta.rates[f]),
@@ -137,12 +154,12 @@ impl Derivation {
     pub(crate) fn scatter(
         &self,
         quantities: &mut [Sized],
-        scattered: &[(Rounding, Derived)],
+        scattered: &[(Rounding, Here)],
         wanted: &[Quantity],
         free: Option<&[Free]>,
     ) -> Result<(), Irregular> {
-        for (rounding, derived) in scattered {
-            let moved = self.quantities(derived, wanted, free, rounding)?;
+        for (rounding, near) in scattered {
+            let moved = self.quantities(&near.derived, wanted, free, rounding)?;
             for (quantity, moved) in quantities.iter_mut().zip(moved) {
                 quantity.size = quantity.size.max((moved.value - quantity.value).abs() / UNIT);
             }
@@ -161,6 +178,16 @@ impl Derivation {
         Ok(rows.iter().map(both).collect())
     }
 
+    /// |b_is| times the terms of ẇ_s, the largest for each ẋ_i.
+    fn acceleration_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
+        let frame = self.frame(&derived.place, &Rounding::none())?;
+        let led = |i: usize| {
+            let terms = frame.iter().zip(&derived.acceleration_sizes).map(|(b, size)| (b[i] * size).abs());
+            terms.fold(0.0, f64::max)
+        };
+        Ok((0..derived.velocities.len()).map(led).collect())
+    }
+
     /// p·(w − b_0) − L, which is y·η − L.
     fn energy(&self, derived: &Derived, rounding: &Rounding) -> Result<Sized, Irregular> {
         let at = &derived.place;
@@ -169,16 +196,34 @@ impl Derivation {
         Ok(sum(terms.chain([-derived.lagrangian])))
     }
 
+    /// What reactions are on bodies, where that is wanted or stands in what is observed.
+    fn needed_resultants(
+        &self,
+        derived: &Derived,
+        wanted: &[Quantity],
+        rounding: &Rounding,
+    ) -> Result<Option<Resultants>, Irregular> {
+        let needs = |quantity: &Quantity| match quantity {
+            Quantity::Resultant(_) => true,
+            Quantity::Observed(j) => self.text.observed[*j].1.has_resultants(),
+            _ => false,
+        };
+        let needed = wanted.iter().any(needs);
+        needed.then(|| self.resultants(derived, rounding)).transpose()
+    }
+
     /// The integrals and outputs wanted, at the places where they are wanted.
     fn observed(
         &self,
         derived: &Derived,
         wanted: &[Quantity],
+        resultants: Option<Resultants>,
         rounding: &Rounding,
     ) -> Result<Vec<Sized>, Irregular> {
         let mut reactions = vec![0.0; self.on_positions.len()];
         self.kept.iter().zip(&derived.reactions).for_each(|(&a, &value)| reactions[a] = value);
         let point = self.still(&derived.place, rounding).on_motion(derived.accelerations.clone(), reactions);
+        let point = point.with_resultants(resultants);
         let value = |wanted: &Quantity| match wanted {
             Quantity::Observed(j) => {
                 let term = &self.text.observed[*j].1;
@@ -206,7 +251,7 @@ impl Derivation {
         let (mut rows, mut rates) = (vec![vec![0.0; k]; k], vec![vec![0.0; k]; k]);
         for s in 0..k {
             let point = self.twice(at, &at.along_velocity(s), &motion, rounding);
-            let columns = self.columns(&point)?;
+            let (columns, velocities) = (self.columns(&point)?, point.velocities()?);
             for (place, &a) in binding.iter().enumerate() {
                 let value = point.velocity_constraint(a, self.on_positions[a])?;
                 (rows[place][s], rates[place][s]) = (value.re.eps, value.eps.eps);
@@ -214,6 +259,7 @@ impl Derivation {
             for (place, &f) in free.iter().enumerate() {
                 let value = match f {
                     Free::Column(column) => columns[column],
+                    Free::Velocity(i) => velocities[i],
                     Free::Constraint(a) => point.velocity_constraint(a, self.on_positions[a])?,
                 };
                 (rows[l + place][s], rates[l + place][s]) = (value.re.eps, value.eps.eps);
@@ -250,11 +296,13 @@ impl Derivation {
         };
         let (values, momentum_rates): (Vec<Sized>, Vec<Sized>) =
             (0..free.len()).map(of).map(|[value, rate]| (value, rate)).unzip();
-        let columns = self.columns(&self.once(at, &motion, &exact))?;
-        let sizes = self.column_sizes(derived)?;
+        let point = self.once(at, &motion, &exact);
+        let (columns, velocities) = (self.columns(&point)?, point.velocities()?);
+        let (sizes, acceleration_sizes) = (self.column_sizes(derived)?, self.acceleration_sizes(derived)?);
         // Those that constraints fix at 0 do not contribute.
         let moving = free.iter().enumerate().filter_map(|(f, &free)| match free {
             Free::Column(column) => Some((f, columns[column], sizes[column].1)),
+            Free::Velocity(i) => Some((f, velocities[i], acceleration_sizes[i])),
             Free::Constraint(_) => None,
         });
         let moving: Vec<_> = moving.collect();
@@ -281,14 +329,16 @@ fn natural_size(derived: &Derived, quantity: &Quantity) -> f64 {
     let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
     match quantity {
         Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
-        Quantity::ColumnRate(_) => (velocity * velocity).max(largest(&[&derived.accelerations])),
+        Quantity::ColumnRate(_) | Quantity::Acceleration(_) => {
+            (velocity * velocity).max(largest(&[&derived.accelerations]))
+        }
         Quantity::Momentum(_) => momentum,
         Quantity::MomentumRate(_)
         | Quantity::Reaction(_)
         | Quantity::Energy
         | Quantity::FreeEnergy
         | Quantity::FreeEnergyRate => (momentum * velocity).max(largest(&[&derived.momentum_rates])),
-        Quantity::StateRate(_) | Quantity::Observed(_) => 0.0,
+        Quantity::StateRate(_) | Quantity::Observed(_) | Quantity::Resultant(_) => 0.0,
     }
 }
 

@@ -3,6 +3,7 @@
 use pc_expr::parse::{Ast, AstKind, Factor, Sign};
 
 use crate::error::Unable;
+use crate::resultants::Resultant;
 
 /// An expression, names replaced by their places.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub(crate) enum Term {
     Definition(usize),
     /// λ_α
     Reaction(usize),
+    /// What a reaction is on a body.
+    Resultant(Resultant),
     /// The total time derivative.
     Rate(Box<Term>),
     /// Terms; those with `true` are subtracted.
@@ -89,6 +92,18 @@ impl Term {
         }
     }
 
+    /// Whether what a reaction is on a body stands in it.
+    pub(crate) fn has_resultants(&self) -> bool {
+        match self {
+            Term::Resultant(_) => true,
+            Term::Sum(parts) | Term::Product(parts) => parts.iter().any(|(_, part)| part.has_resultants()),
+            Term::Negative(inner) | Term::Rate(inner) => inner.has_resultants(),
+            Term::Power(base, exponent) => base.has_resultants() || exponent.has_resultants(),
+            Term::Call(_, arguments) => arguments.iter().any(Term::has_resultants),
+            _ => false,
+        }
+    }
+
     /// Whether there are velocities in it; `definitions` says so of those above, and none is known of one that is not among
     /// them.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
@@ -103,7 +118,8 @@ impl Term {
             | Term::Coordinate(_)
             | Term::Parameter(_)
             | Term::State(_)
-            | Term::Reaction(_) => Some(false),
+            | Term::Reaction(_)
+            | Term::Resultant(_) => Some(false),
             Term::Definition(j) => definitions.get(*j).copied(),
             Term::Sum(parts) | Term::Product(parts) => any(&mut parts.iter().map(|(_, part)| part)),
             Term::Negative(inner) => inner.has_velocities(definitions),
@@ -123,6 +139,7 @@ pub(crate) struct Names {
     pub(crate) states: Vec<String>,
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
+    pub(crate) bodies: Vec<String>,
 }
 
 impl Names {
@@ -167,6 +184,7 @@ impl Names {
                 .or_else(|| place(&self.quasi_velocities, name).map(Term::QuasiVelocity))
                 .or_else(|| place(&self.definitions, name).map(Term::Definition))
                 .or_else(reaction)
+                .or_else(|| Resultant::named(name, &self.constraints, &self.bodies).map(Term::Resultant))
                 .ok_or_else(|| unknown(name)),
         }
     }

@@ -95,6 +95,7 @@ impl Text {
             states: document.states.iter().map(|state| state.name.text.clone()).collect(),
             definitions: named(&document.definitions),
             constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
+            bodies: document.bodies.iter().map(|body| body.name.text.clone()).collect(),
         };
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
@@ -179,6 +180,11 @@ impl Text {
         };
         let all = velocities.iter().chain(&self.definitions).chain(&self.constraints).chain(energy);
         all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
+    }
+
+    /// Whether there is energy beside that of bodies.
+    pub(crate) fn has_own_energy(&self) -> bool {
+        self.lagrangian.is_some() || self.kinetic.is_some()
     }
 
     /// n

@@ -25,6 +25,8 @@ pub(crate) struct Contents {
     /// On what external forces act.
     pub(crate) external: Vec<String>,
     projects_start: bool,
+    /// What a start that is moved keeps.
+    held: Vec<String>,
     pub(crate) observes_reactions: bool,
     differentiates: bool,
 }
@@ -49,6 +51,9 @@ impl Contents {
             model.external_force(on)?;
         }
         model.project_start(self.projects_start);
+        for name in &self.held {
+            model.hold_start(name)?;
+        }
         model.observe_reactions(self.observes_reactions);
         model.differentiate_by_parameters(self.differentiates);
         Ok(model)
@@ -61,6 +66,7 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         kept: Vec::new(),
         external: Vec::new(),
         projects_start: false,
+        held: Vec::new(),
         observes_reactions: false,
         differentiates: false,
     };
@@ -249,6 +255,24 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
+/// Has a start that is moved to where the constraints are satisfied keep the value of this coordinate or quasi-velocity: the others
+/// follow. Without pc_model_project_start it says nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_hold_start(
+    model: *mut pc_model,
+    name: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let hold = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        contents.held.push(name.to_owned());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, hold) }
+}
+
 /// Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
 /// is yes.
 #[unsafe(no_mangle)]
@@ -283,8 +307,8 @@ pub unsafe extern "C" fn pc_model_differentiate(
 
 /// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
 /// wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
-/// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
-/// pc_model_differentiate, pc_model_add_external_force.
+/// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
+/// pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

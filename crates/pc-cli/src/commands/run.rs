@@ -179,7 +179,7 @@ pub fn integrate_saved(
     let Solution { trajectory, occurrences, ending } = solved;
     if let (Some(verification), Some((t, y))) = (&mut verification, trajectory.last())
         && t != plan.t_start
-        && !verification.is_long()
+        && !verification.is_long(&flow)
     {
         verification.compare(&flow, &assembly, "the end", t, y)?;
     }

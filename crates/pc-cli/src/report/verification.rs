@@ -28,8 +28,8 @@ impl Verification {
     }
 
     /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
-    pub fn is_long(&self) -> bool {
-        self.second.as_ref().is_ok_and(|second| second.cost() > LONG)
+    pub fn is_long(&self, flow: &Flow) -> bool {
+        self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }
 
     /// Compares at one state.
@@ -58,12 +58,15 @@ impl Verification {
         if let Err(error) = &self.second {
             return vec![error.to_string()];
         }
-        let (mut places, mut worst, mut lines) = (Vec::new(), 0.0f64, Vec::new());
+        let (mut places, mut worst, mut lines, mut along) = (Vec::new(), 0.0f64, Vec::new(), "");
         for (place, outcome) in &self.outcomes {
             match outcome {
                 Ok(agreement) => {
                     places.push(*place);
                     worst = worst.max(agreement.error);
+                    if agreement.projected > 0 {
+                        along = " along random virtual velocities";
+                    }
                     lines.extend(agreement.not_compared.iter().map(|what| format!("but for {what}")));
                 }
                 Err(error) => lines.push(format!("not at {place}: {error}")),
@@ -71,27 +74,21 @@ impl Verification {
         }
         if !places.is_empty() {
             let places = places.join(" and at ");
-            lines.insert(0, format!("by a second derivation, which agrees to {worst:.0e} at {places}"));
+            let closely = if worst == 0.0 { "the last digit".to_owned() } else { format!("{worst:.0e}") };
+            lines.insert(0, format!("by a second derivation, which agrees to {closely} at {places}{along}"));
         }
         lines.dedup();
         lines
     }
 }
 
-/// Terms that are evaluated in some milliseconds.
-const LONG: usize = 100_000;
-
 /// An agreement in the lines of a report of so many columns.
 pub fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
     match outcome {
         Ok(agreement) => {
-            let passed_over = match agreement.skipped {
-                0 => String::new(),
-                skipped => format!(", {skipped} singular ones passed over"),
-            };
             let more = agreement.not_compared.iter();
             let more = more.map(|what| clipped(&format!("not compared: {what}"), width));
-            [format!("{agreement}{passed_over}")].into_iter().chain(more).collect()
+            [clipped(&agreement.to_string(), width)].into_iter().chain(more).collect()
         }
         Err(VerifyError::Unable(unable)) => vec![clipped(&format!("not made: {unable}"), width)],
         Err(error) => vec![clipped(&error.to_string(), width)],
@@ -114,6 +111,7 @@ pub fn object(outcome: &Result<Agreement, VerifyError>) -> Value {
     match outcome {
         Ok(agreement) => json!({
             "states": agreement.states,
+            "projected": agreement.projected,
             "skipped": agreement.skipped,
             "reason": agreement.reason,
             "error": agreement.error,

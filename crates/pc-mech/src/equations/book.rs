@@ -21,6 +21,13 @@ impl<'g> Equations<'g> {
             })
             .collect()
     }
+
+    /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none of those that
+    /// are no polynomials, which are written as they [are](Equations::right_hand_side).
+    pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
+        let variables = &self.system.quasi_velocities;
+        self.right.iter().map(|&right| sum_of_products(&self.system, right, variables, page)).collect()
+    }
 }
 
 /// An expression as a sum of products of `variables`, if it is a polynomial in them.
@@ -30,18 +37,27 @@ pub(crate) fn expanded<'g>(
     variables: &[Expr<'g>],
     style: Style,
 ) -> String {
+    // Written in a graph of its own, which merges nothing back to the nested form.
+    let page = Graph::with_folding(Folding::Structural);
+    let written = sum_of_products(system, expression, variables, &page);
+    written.map_or_else(|| expression.display(style), |written| written.display(style))
+}
+
+/// The same in the graph of a page, symbols in book order; none of what is no polynomial.
+pub(crate) fn sum_of_products<'g, 'p>(
+    system: &System<'g>,
+    expression: Expr<'g>,
+    variables: &[Expr<'g>],
+    page: &'p Graph,
+) -> Option<Expr<'p>> {
     let graph = system.graph();
     let parameters: Vec<Expr<'g>> = system.parameters.iter().map(|&(symbol, _)| symbol).collect();
-    let Some(mut polynomial) = graph.polynomial(expression, variables) else {
-        return expression.display(style);
-    };
+    let mut polynomial = graph.polynomial(expression, variables)?;
     for (_, coefficient) in &mut polynomial.terms {
         *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
     }
-    // Written in a graph of its own, which merges nothing back to the nested form; symbols in book order.
-    let page = Graph::with_folding(Folding::Structural);
     for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
         page.symbol(&symbol.symbol_name().unwrap_or_default());
     }
-    polynomial.expanded(graph, &page).display(style)
+    Some(polynomial.expanded(graph, page))
 }

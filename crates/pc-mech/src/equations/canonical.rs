@@ -7,7 +7,7 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
-use crate::equations::book::expanded;
+use crate::equations::book::{expanded, sum_of_products};
 use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::MechError;
 use crate::stability::steady::check_length;
@@ -276,6 +276,13 @@ impl<'g> Canonical<'g> {
                 (left, expanded(&self.system, right, &self.momenta, style))
             })
             .collect()
+    }
+
+    /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none of those that
+    /// are no polynomials, which are written as they [are](Canonical::right_hand_side).
+    pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
+        let right = self.right.iter();
+        right.map(|&right| sum_of_products(&self.system, right, &self.momenta, page)).collect()
     }
 
     /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as

@@ -1,0 +1,103 @@
+//! `--keep`, `--samples-per-step` and `--accumulation` of `pc run`.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+fn pc(model: &str, arguments: &[&str]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args([&["run", "-"], arguments].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    child.wait_with_output().expect("pc ends")
+}
+
+fn said(output: &Output, code: i32) -> String {
+    let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    text
+}
+
+/// The first row of a table, without the time.
+fn start(output: &Output) -> Vec<f64> {
+    said(output, 0);
+    let text = String::from_utf8(output.stdout.clone()).expect("UTF-8");
+    let row = text.lines().nth(1).expect("a row");
+    row.split(',').skip(1).map(|number| number.parse().expect("a number")).collect()
+}
+
+const CIRCLE: &str = r#"
+[coordinates]
+x = 0.6
+y = 1.0
+[constraints]
+circle = "x^2 + y^2 - 1"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+[simulation]
+t_end = 0.1
+samples = 2
+"#;
+
+#[test]
+fn a_start_that_is_moved_keeps_what_is_named() {
+    // Newton's method ends at roundings of numbers near 1.
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
+    let kept = start(&pc(CIRCLE, &["--project-start", "--keep", "x"]));
+    assert!(kept[0] == 0.6 && near(kept[1], 0.8), "{kept:?}");
+    let other = CIRCLE.replace("y = 1.0", "y = 0.28");
+    let kept = start(&pc(&other, &["--project-start", "--keep", "y"]));
+    assert!(near(kept[0], 0.96) && kept[1] == 0.28, "{kept:?}");
+    let moved = start(&pc(CIRCLE, &["--project-start"]));
+    assert!(moved[0] < 0.58 && near(moved[0].hypot(moved[1]), 1.0), "{moved:?}");
+}
+
+#[test]
+fn what_cannot_be_named_is_refused() {
+    let unknown = said(&pc(CIRCLE, &["--project-start", "--keep", "x,z"]), 2);
+    assert!(unknown.contains("`z`") && unknown.contains("x, y"), "{unknown}");
+    let alone = said(&pc(CIRCLE, &["--keep", "x"]), 2);
+    assert!(alone.contains("--project-start"), "{alone}");
+}
+
+/// How often an event occurred, from `NAME  N times` of the summary.
+fn times(summary: &str, event: &str) -> usize {
+    let (_, rest) = summary.split_once(&format!("{event}  ")).expect("the event");
+    rest.split(' ').next().expect("a number").parse().expect("a number")
+}
+
+/// sin 8x vanishes at x = t = kπ/8, 50 times up to 20; steps of a body that nothing moves are long.
+#[test]
+fn zeros_within_a_step_are_found_where_it_is_sampled_densely() {
+    let model = "[coordinates]\nx = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+                 [events.cross]\nwhen = \"sin(8*x)\"\n[simulation]\nt_end = 20.0\nsamples = 2\n";
+    let found = |parts: &str| {
+        let output = pc(model, &["--samples-per-step", parts]);
+        times(&said(&output, 0), "cross")
+    };
+    assert_eq!(found("300"), 50);
+    assert!(found("1") < 50);
+    let none = said(&pc(model, &["--samples-per-step", "0"]), 2);
+    assert!(none.contains("--samples-per-step"), "{none}");
+}
+
+/// Flight n of a ball lasts eⁿ of the first, e = 0.5: what is left falls below a part p after log p/log e bounces or so.
+#[test]
+fn bounces_are_followed_to_the_part_that_is_asked_for() {
+    let model = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"9.81*y\"\n[events.bounce]\nwhen = \"y\"\n\
+                 direction = \"falling\"\nreset = { \"y'\" = \"-0.5*y'\" }\n[simulation]\nt_end = 3.0\nsamples = 4\n";
+    let followed = |part: &str| {
+        let output = pc(model, &["--accumulation", part]);
+        let text = String::from_utf8(output.stderr).expect("UTF-8");
+        assert!(output.status.code() != Some(0), "{text}");
+        times(&text, "bounce") as f64
+    };
+    let (coarse, fine) = (followed("1e-2"), followed("1e-6"));
+    // 1e4 more closely is log 1e4/log 2 = 13.3 bounces more.
+    assert!((fine - coarse - 13.3).abs() < 1.5, "{coarse} and {fine}");
+    let negative = said(&pc(model, &["--accumulation=-1"]), 2);
+    assert!(negative.contains("--accumulation"), "{negative}");
+}
