@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use super::{c, rust};
-use crate::codegen::codegen::{Body, Calls, Language, Layout, Place};
+use crate::codegen::layout::{Body, Calls, Language, Layout, Place};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 

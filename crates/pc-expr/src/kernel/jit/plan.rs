@@ -8,7 +8,7 @@
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-use super::JitOptions;
+use super::options::JitOptions;
 
 /// Programs of more instructions than this are cut into several functions.
 const WHOLE: usize = 50_000;
