@@ -44,11 +44,11 @@ mod time_profile;
 pub use calculus::collect::Polynomial;
 pub use codegen::layout::{Body, Calls, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
-pub use graph::dag::Folding;
 pub use graph::evaluate::Scalar;
 pub use graph::expr::Expr;
 pub use graph::function::Function;
 pub use graph::graph::Graph;
+pub use graph::node::Folding;
 pub use graph::number::Number;
 pub use kernel::evaluator::{Backend, Evaluator, compile};
 #[cfg(feature = "jit")]

@@ -6,9 +6,9 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Folding, Node, NodeId};
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 use crate::identity::fingerprint::{Fingerprint, First};

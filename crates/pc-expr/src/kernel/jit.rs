@@ -2,7 +2,7 @@
 //!
 //! A program becomes machine code in three steps, one file each: `plan` decides what is computed when and what waits
 //! in memory, `emit` writes that down as Cranelift's intermediate code with `sincos` writing sines and cosines in
-//! line, and `host` knows the processor and owns the code that results.
+//! line, and `assembly` owns the code that results. `host` knows the processor; `jit` is the kernel.
 
 #![expect(
     unsafe_code,

@@ -3,10 +3,11 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::ExprError;
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 use crate::program::angle_addition::{Compositions, SignedAngle, compositions};

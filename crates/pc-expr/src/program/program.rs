@@ -2,7 +2,7 @@
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
-use crate::print::text::{Binding, Piece, number};
+use crate::print::piece::{Binding, Piece, number};
 
 /// A register of the tape: constants first, then inputs, then one for each instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
