@@ -10,10 +10,8 @@ use crate::identity::roots::Value;
 
 /// sin, cos and exp of q·z are composed from those of z/FRACTION where that is an integer multiple.
 const FRACTION: i32 = 12;
-
 /// Largest such multiple.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
-
 /// Sums inside the argument of a sine or exponential are opened up to so many terms; what is left counts as one term.
 const MAX_TERMS: usize = 1 << 14;
 

@@ -1,6 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Expr, Failure, Pattern, TimeDependence, VectorField};
+use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Layout;
 use crate::compiled::elimination::cost;
@@ -8,7 +8,7 @@ use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::Fault;
 use crate::compiled::first_order::FirstOrder;
-use crate::compiled::in_momenta::InMomenta;
+use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::Surface;
@@ -49,6 +49,39 @@ enum Form {
     Unrolled(Box<Unrolled>),
     Staged(Box<Staged>),
     InMomenta(Box<InMomenta>),
+}
+
+/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
+///
+///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
+///
+/// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
+///
+///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
+///
+/// First-order states z follow in both.
+#[derive(Clone, Debug)]
+pub(crate) struct InMomenta {
+    pub(super) transform: LegendreTransform,
+    pub(super) inner: Box<Motion>,
+    pub(super) quasi_velocities: usize,
+    /// ẏ of (t, (x, η, z, η̇)).
+    pub(super) transport: Evaluator,
+    /// By x and z and, where these are asked for, by the parameters.
+    pub(super) jacobian: Option<Slopes>,
+    pub(super) parameter_jacobian: Option<Slopes>,
+    /// x, η, z, then η̇.
+    pub(super) known: Vec<f64>,
+    pub(super) full: Pattern,
+}
+
+/// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
+/// ∂ẏ/∂η and of M.
+#[derive(Clone, Debug)]
+pub(super) struct Slopes {
+    pub(super) symbols: usize,
+    pub(super) multipliers: usize,
+    pub(super) entries: Evaluator,
 }
 
 impl<'g> Equations<'g> {

@@ -5,7 +5,6 @@ use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, shape};
 use crate::system::bodies::velocity::Bodies;
-use crate::system::builder::SystemBuilder;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///
@@ -29,11 +28,6 @@ pub struct System<'g> {
 }
 
 impl<'g> System<'g> {
-    /// Starts the description of a system whose expressions live in `graph`.
-    pub fn builder(graph: &'g Graph) -> SystemBuilder<'g> {
-        SystemBuilder::new(graph)
-    }
-
     /// The graph of all its expressions.
     pub fn graph(&self) -> &'g Graph {
         self.frame.graph()
@@ -83,7 +77,7 @@ impl<'g> System<'g> {
         &self.parameters
     }
 
-    /// The parameters that are [functions of time](SystemBuilder::signal).
+    /// The parameters that are [functions of time](crate::SystemBuilder::signal).
     pub fn signals(&self) -> &[Expr<'g>] {
         &self.signals
     }
@@ -109,7 +103,7 @@ impl<'g> System<'g> {
         &self.forces
     }
 
-    /// The symbols in Q that stand for [external forces](SystemBuilder::external_force), each with the name of the
+    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the name of the
     /// quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
