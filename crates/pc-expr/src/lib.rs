@@ -50,6 +50,8 @@ pub use graph::function::Function;
 pub use graph::graph::Graph;
 pub use graph::node::Folding;
 pub use graph::number::Number;
+pub use identity::echelon::ResidueEchelon;
+pub use identity::prime_field::Residue;
 pub use kernel::evaluator::{Backend, Evaluator, compile};
 #[cfg(feature = "jit")]
 pub use kernel::jit::{Jit, JitError, JitOptions};

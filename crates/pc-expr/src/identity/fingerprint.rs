@@ -9,11 +9,10 @@
 //! is an unknown keyed by its arguments. A fingerprint depends on names and structure only, so two graphs agree on it.
 
 use crate::graph::number::Number;
-use crate::identity::prime_field::{Element, mix};
+use crate::identity::prime_field::{Residue, mix};
 
-/// The first of the two fields.
-pub(crate) type First = Element<1>;
-type Second = Element<45>;
+type First = Residue<1>;
+type Second = Residue<45>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub(crate) struct Fingerprint(First, Second);
@@ -28,12 +27,12 @@ impl Fingerprint {
             Number::Rational { num, den } => {
                 Fingerprint::integer(num).times(Fingerprint::integer(den).powi(-1))
             }
-            Number::Real(value) => Fingerprint(Element::dyadic(value), Element::dyadic(value)),
+            Number::Real(value) => Fingerprint(Residue::dyadic(value), Residue::dyadic(value)),
         }
     }
 
     pub(crate) fn integer(value: i64) -> Fingerprint {
-        Fingerprint(Element::integer(value), Element::integer(value))
+        Fingerprint(Residue::integer(value), Residue::integer(value))
     }
 
     pub(crate) fn symbol(name: &str) -> Fingerprint {
@@ -42,11 +41,11 @@ impl Fingerprint {
     }
 
     pub(crate) fn random(key: u64) -> Fingerprint {
-        Fingerprint(Element::random(mix(key)), Element::random(mix(key) ^ 1))
+        Fingerprint(Residue::random(mix(key)), Residue::random(mix(key) ^ 1))
     }
 
     /// The value in the first field.
-    pub(crate) fn first(self) -> First {
+    pub(crate) fn first(self) -> Residue {
         self.0
     }
 
@@ -57,7 +56,7 @@ impl Fingerprint {
 
     /// The rational constant, if this is one with numerator and denominator up to 2²⁰.
     pub(crate) fn small_rational(self) -> Option<(i64, i64)> {
-        self.0.small_rational().filter(|&(p, q)| Element::integer(p) == Element::integer(q) * self.1)
+        self.0.small_rational().filter(|&(p, q)| Residue::integer(p) == Residue::integer(q) * self.1)
     }
 
     pub(crate) fn has_canonical_sign(self) -> bool {
