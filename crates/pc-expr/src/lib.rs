@@ -42,7 +42,7 @@ mod program;
 mod time_profile;
 
 pub use calculus::collect::Polynomial;
-pub use codegen::layout::{Body, Calls, Language, Layout, Place, Slot};
+pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
 pub use graph::evaluate::Scalar;
 pub use graph::expr::Expr;

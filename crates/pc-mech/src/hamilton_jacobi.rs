@@ -5,7 +5,7 @@ mod roots;
 use pc_algebra::{Matrix, Neighbourhood};
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::equations::canonical::Canonical;
 use crate::error::{MechError, shape};
 use crate::numeric::newton;
@@ -192,7 +192,7 @@ impl<'g> CompleteIntegral<'g> {
         let mut values = vec![0.0; k * (k + 2)];
         self.values.eval(t, x, &parameters, &mut values);
         match check_finite(&values, &self.values, (t, x, &parameters)) {
-            Err(Fault::Expr(error)) => Err(error.into()),
+            Err(EvaluationFailure::Expr(error)) => Err(error.into()),
             _ => Ok(values),
         }
     }

@@ -5,7 +5,7 @@
 //! local constant.
 
 use crate::codegen::function_body::Printer;
-use crate::codegen::layout::{Body, Language, Layout};
+use crate::codegen::layout::{FunctionBody, Language, Layout};
 use crate::program::program::Program;
 
 impl Program {
@@ -37,7 +37,7 @@ impl Program {
     ///
     /// # Panics
     /// If `layout` has not as many identifiers as there are inputs without time, or not as many slots as outputs.
-    pub fn emit(&self, language: Language, layout: &Layout) -> Body {
+    pub fn emit(&self, language: Language, layout: &Layout) -> FunctionBody {
         assert_eq!(layout.inputs.len(), self.state_len() + self.parameters_len(), "identifiers of inputs");
         assert_eq!(layout.slots.len(), self.outputs_len(), "slots of outputs");
         Printer::new(self, language, layout).print()

@@ -48,7 +48,7 @@ pub struct Layout {
 
 /// The text of a function body, lines indented by four spaces.
 #[derive(Clone, Debug, Default)]
-pub struct Body {
+pub struct FunctionBody {
     /// Declares the inputs that are read, and passes over the arguments that are not.
     pub inputs: String,
     /// Computes the outputs.

@@ -191,7 +191,7 @@ impl InMomenta {
         let rates = &mut ydot[self.moving()];
         self.transport.eval(t, &self.known, parameters, rates);
         check_finite(rates, &self.transport, (t, &self.known, parameters))
-            .map_err(|fault| self.inner.failure(fault, t, &self.known[..y.len()]))
+            .map_err(|failure| self.inner.failure(failure, t, &self.known[..y.len()]))
     }
 
     /// To where the motion of (x, η) is projected; momenta of a state that is there are left as they are.
@@ -273,7 +273,7 @@ impl InMomenta {
         let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
         slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
         check_finite(&values, &slopes.entries, (t, &self.known, self.inner.parameters()))
-            .map_err(|fault| self.inner.failure(fault, t, &self.known[..dim]))?;
+            .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
         let (by_q, moving) = values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);
         // ∂h/∂q, then ∂h/∂y

@@ -5,7 +5,7 @@ use std::ops::Range;
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::elimination::solver::Solver;
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
 use crate::error::{MechError, shape};
@@ -74,7 +74,11 @@ impl QuasiVelocities {
 
 impl Implicit {
     /// Writes η.
-    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), Fault> {
+    fn solve(
+        &mut self,
+        at @ (t, state, p): (f64, &[f64], &[f64]),
+        eta: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
         let nearby = self.nearby.as_mut().and_then(|nearby| nearby.solve(at).ok());
         let mut guess = nearby.unwrap_or_else(|| self.guess.clone());
         guess.resize(self.size, 0.0);
@@ -97,7 +101,7 @@ impl Linear {
     }
 
     /// w, and M factorised.
-    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, Fault> {
+    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
         self.equations.eval(t, state, p, &mut self.values);
         check_finite(&self.values, &self.equations, at)?;
         let (matrix, right) = self.values.split_at(self.lower.len());
@@ -193,7 +197,7 @@ impl LegendreTransform {
         let mut result = self.checked(state)?;
         let moving = &mut result[self.moving()];
         evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
-            .map_err(|fault| self.error(fault, t, state))?;
+            .map_err(|failure| self.error(failure, t, state))?;
         Ok(result)
     }
 
@@ -213,7 +217,7 @@ impl LegendreTransform {
             }),
             QuasiVelocities::Implicit(implicit) => implicit.solve((t, state, &self.parameters), moving),
         };
-        outcome.map_err(|fault| self.error(fault, t, state))?;
+        outcome.map_err(|failure| self.error(failure, t, state))?;
         Ok(result)
     }
 
@@ -231,9 +235,9 @@ impl LegendreTransform {
     }
 
     /// At the state (x, y).
-    fn error(&self, fault: Fault, t: f64, state: &[f64]) -> MechError {
+    fn error(&self, failure: EvaluationFailure, t: f64, state: &[f64]) -> MechError {
         let [x, eta, y, z] = &self.names;
-        fault.at(eta, t, &[&x[..], y, z].concat(), state)
+        failure.at(eta, t, &[&x[..], y, z].concat(), state)
     }
 }
 
@@ -241,7 +245,7 @@ fn evaluate(
     program: &mut Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
     values: &mut [f64],
-) -> Result<(), Fault> {
+) -> Result<(), EvaluationFailure> {
     program.eval(t, state, parameters, values);
     check_finite(values, program, (t, state, parameters))
 }

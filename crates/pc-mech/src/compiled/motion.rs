@@ -2,17 +2,17 @@
 
 use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, TimeDependence, VectorField};
 
-use crate::compiled::elimination::columns::Layout;
+use crate::compiled::elimination::columns::Storage;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::Surface;
-use crate::compiled::projection::holding::Held;
+use crate::compiled::projection::holding::PrescribedComponents;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::equations::poincare::Equations;
 use crate::error::MechError;
@@ -399,7 +399,7 @@ impl Motion {
     }
 
     /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
-    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), Fault> {
+    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
         }
@@ -422,9 +422,9 @@ impl Motion {
         quasi_velocities: &[usize],
     ) -> Result<(), Failure> {
         let Some(surface) = &mut self.surface else { return Ok(()) };
-        let held = Held { coordinates, quasi_velocities };
+        let held = PrescribedComponents { coordinates, quasi_velocities };
         let projected = surface.project_holding((t, y, &self.parameters), &held);
-        projected.map_err(|fault| self.failure(fault, t, y))
+        projected.map_err(|failure| self.failure(failure, t, y))
     }
 
     /// ẏ with each component of the state, and each number of the equations where these are solved in numbers, times a
@@ -444,7 +444,7 @@ impl Motion {
                 Ok(())
             }
         };
-        outcome.map_err(|fault| MechError::from(self.failure(fault, t, &state)))?;
+        outcome.map_err(|failure| MechError::from(self.failure(failure, t, &state)))?;
         Ok((state, rates))
     }
 
@@ -459,13 +459,13 @@ impl Motion {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         let parameters = &self.parameters;
         let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     #[cold]
-    pub(crate) fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
-        let fatal = matches!(fault, Fault::NotCompiled { .. });
-        let error = fault.at(&self.quasi_velocities, t, &self.names, y);
+    pub(crate) fn failure(&self, failure: EvaluationFailure, t: f64, y: &[f64]) -> Failure {
+        let fatal = matches!(failure, EvaluationFailure::NotCompiled { .. });
+        let error = failure.at(&self.quasi_velocities, t, &self.names, y);
         if fatal { Failure::fatal(error) } else { Failure::recoverable(error) }
     }
 
@@ -474,16 +474,16 @@ impl Motion {
         t: f64,
         y: &[f64],
         entries: &mut [f64],
-        layout: Layout,
+        storage: Storage,
     ) -> Result<(), Failure> {
         self.read_signals(t)?;
         let at = (t, y, &self.parameters[..]);
         let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, layout),
-            Form::Staged(staged) => staged.jacobian(at, entries, layout),
-            Form::InMomenta(motion) => return motion.jacobian(t, y, entries), // full in both layouts
+            Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, storage),
+            Form::Staged(staged) => staged.jacobian(at, entries, storage),
+            Form::InMomenta(motion) => return motion.jacobian(t, y, entries), // full in both storages
         };
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 }
 
@@ -500,7 +500,7 @@ impl VectorField for Motion {
             Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
             Form::InMomenta(motion) => return motion.rhs(t, y, ydot),
         };
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     fn checks_rates(&self) -> bool {
@@ -512,7 +512,7 @@ impl VectorField for Motion {
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-        self.write_jacobian(t, y, jacobian, Layout::Dense)
+        self.write_jacobian(t, y, jacobian, Storage::Dense)
     }
 
     /// Known if the Jacobian was compiled.
@@ -525,7 +525,7 @@ impl VectorField for Motion {
     }
 
     fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        self.write_jacobian(t, y, values, Layout::Sparse)
+        self.write_jacobian(t, y, values, Storage::Sparse)
     }
 
     fn has_jvp(&self) -> bool {
@@ -538,9 +538,9 @@ impl VectorField for Motion {
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
             Form::Staged(staged) => staged.jvp(at, v, product),
-            Form::InMomenta(_) => Err(Fault::NotCompiled { what: "product with its Jacobian" }),
+            Form::InMomenta(_) => Err(EvaluationFailure::NotCompiled { what: "product with its Jacobian" }),
         };
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     fn parameters_len(&self) -> usize {
@@ -559,7 +559,7 @@ impl VectorField for Motion {
             Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
             Form::InMomenta(motion) => return motion.parameter_jacobian(t, y, jacobian),
         };
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     fn parameter_size(&self, j: usize) -> Option<f64> {
@@ -575,7 +575,7 @@ impl VectorField for Motion {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.project(t, y);
         }
-        self.project_in_turn(t, y).map_err(|fault| self.failure(fault, t, y))
+        self.project_in_turn(t, y).map_err(|failure| self.failure(failure, t, y))
     }
 
     fn time_dependence(&self) -> TimeDependence {

@@ -4,7 +4,7 @@ use pc_algebra::{Elimination, Matrix, Neighbourhood, StructureCoefficients, inve
 use pc_expr::Expr;
 
 use crate::compiled::elimination::saddle_point::Saddle;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 use crate::constraints::multipliers::Multipliers;
 use crate::error::{MechError, shape};
 use crate::numeric::least_squares::LeastSquares;
@@ -228,9 +228,9 @@ impl<'g> Multipliers<'g> {
         let (lower, entries) = self.first_order().lower_triangle();
         let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
         let mut saddle = Saddle::of_rank(k, m, m);
-        saddle.eliminate(&lower, &values).map_err(|fault| {
-            let place = match fault {
-                Fault::Constraint { index } => index - k,
+        saddle.eliminate(&lower, &values).map_err(|failure| {
+            let place = match failure {
+                EvaluationFailure::Constraint { index } => index - k,
                 _ => 0,
             };
             let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);

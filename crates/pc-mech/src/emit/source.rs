@@ -1,6 +1,6 @@
 //! What is written, before it is written in a language.
 
-use pc_expr::{Body, Calls, Language};
+use pc_expr::{Calls, FunctionBody, Language};
 
 /// What source to write.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ pub(super) struct Routine {
     pub(super) extent: Extent,
     /// Whether zeros have to be written before the rest.
     pub(super) sparse: bool,
-    pub(super) body: Body,
+    pub(super) body: FunctionBody,
 }
 
 /// All that the files of a language are put together from.

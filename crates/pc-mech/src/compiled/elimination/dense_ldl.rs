@@ -9,7 +9,7 @@ use faer::{Mat, MatMut, Par};
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::pivots;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
 #[derive(Clone, Debug)]
@@ -35,8 +35,8 @@ impl DenseLdl {
     /// Factorises M, of which `values` stand at the places `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] for the first pivot that vanishes.
-    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.take(lower, values);
         for s in 0..self.sizes.len() {
             self.sizes[s] = self.matrix[(s, s)];
@@ -53,7 +53,7 @@ impl DenseLdl {
         lower: &Pattern,
         values: &[f64],
         sizes: impl Iterator<Item = f64>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         self.take(lower, values);
         self.sizes.iter_mut().zip(sizes).for_each(|(place, size)| *place = size);
         self.eliminate()
@@ -66,7 +66,7 @@ impl DenseLdl {
         }
     }
 
-    fn eliminate(&mut self) -> Result<(), Fault> {
+    fn eliminate(&mut self) -> Result<(), EvaluationFailure> {
         let k = self.sizes.len();
         let outcome = cholesky_in_place(
             self.matrix.as_mut(),
@@ -85,7 +85,9 @@ impl DenseLdl {
         pivots::check(&self.pivots[..known], &self.sizes[..known])?;
         match outcome {
             Ok(_) => Ok(()),
-            Err(LdltError::ZeroPivot { index }) => Err(Fault::Pivot { index, pivot: self.pivots[index] }),
+            Err(LdltError::ZeroPivot { index }) => {
+                Err(EvaluationFailure::Pivot { index, pivot: self.pivots[index] })
+            }
         }
     }
 
@@ -102,7 +104,7 @@ impl DenseLdl {
 mod tests {
     use super::*;
 
-    fn factorised(entries: [f64; 6]) -> Result<DenseLdl, Fault> {
+    fn factorised(entries: [f64; 6]) -> Result<DenseLdl, EvaluationFailure> {
         let mut ldl = DenseLdl::new(3);
         ldl.factorise(&Pattern::from_columns(3, [vec![0, 1, 2], vec![1, 2], vec![2]]), &entries).map(|()| ldl)
     }
@@ -123,7 +125,10 @@ mod tests {
         // Beside the mass of the Earth that of a satellite is no rounding.
         assert!(factorised([6e24, 0.0, 0.0, 1e3, 0.0, 1e-3]).is_ok());
         // sin² π beside 1
-        assert!(matches!(factorised([1.0, 0.0, 0.0, 1.5e-32, 0.0, 1.0]), Err(Fault::Pivot { index: 1, .. })));
+        assert!(matches!(
+            factorised([1.0, 0.0, 0.0, 1.5e-32, 0.0, 1.0]),
+            Err(EvaluationFailure::Pivot { index: 1, .. })
+        ));
     }
 
     #[test]
@@ -131,7 +136,9 @@ mod tests {
         for (entries, vanishing) in
             [([1.0, 1.0, 0.0, 1.0, 0.0, 1.0], 1), ([0.0; 6], 0), ([3.0, 1.0, 0.0, 1.0 / 3.0, 0.0, 1.0], 1)]
         {
-            assert!(matches!(factorised(entries), Err(Fault::Pivot { index, .. }) if index == vanishing));
+            assert!(
+                matches!(factorised(entries), Err(EvaluationFailure::Pivot { index, .. }) if index == vanishing)
+            );
         }
     }
 }

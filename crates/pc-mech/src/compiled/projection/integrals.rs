@@ -2,7 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::running_error::Measured;
 use crate::error::MechError;
@@ -99,8 +99,8 @@ impl KeptIntegrals {
     /// Newton's method for I(t, y) = I_0, each step the shortest.
     ///
     /// # Errors
-    /// [`Fault::NotKept`] if the steps do not become shorter, [`Fault::Expr`] for values that are not finite.
-    pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for values that are not finite.
+    pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
             self.values.try_eval((t, y, p))?;
@@ -113,7 +113,7 @@ impl KeptIntegrals {
                 return Ok(());
             }
             if length >= before {
-                return Err(Fault::NotKept);
+                return Err(EvaluationFailure::NotKept);
             }
             y.iter_mut().zip(&change).for_each(|(y, change)| *y -= change);
             if is_short {
@@ -121,12 +121,12 @@ impl KeptIntegrals {
             }
             before = length;
         }
-        Err(Fault::NotKept)
+        Err(EvaluationFailure::NotKept)
     }
 
     /// The shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
     /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
-    fn shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<Vec<f64>, Fault> {
+    fn shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
         let gradients = self.gradients_at(at);
         let mut change = vec![0.0; at.1.len()];
         let mut basis: Vec<Vec<f64>> = Vec::new();
