@@ -2,7 +2,7 @@
 //!
 //! In goes what [`Expr`](expr::Expr)'s operators build; out come nodes that are equal if they are written alike. Read
 //! `number` (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
-//! (the arena and the rules of sums and products) with `calls`, `value`, `signs` and `regularity`: what it knows of calls,
+//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
 //! of values in prime fields, of signs, and of divisors. `graph` owns a `dag`, `expr` is the handle that formulas are
 //! written with; `subgraph` walks the nodes that expressions depend on, `queries` are what is asked of whole expressions,
 //! and `evaluate` computes their values one by one: the reference for all faster ways.
@@ -15,6 +15,7 @@ pub(crate) mod expr;
 pub(crate) mod function;
 pub(crate) mod graph;
 pub(crate) mod node;
+pub(crate) mod normal_form;
 pub(crate) mod number;
 pub(crate) mod queries;
 pub(crate) mod regularity;

@@ -1,9 +1,9 @@
 //! From expressions to a compiled motion.
 //!
 //! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Read that
-//! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the vector
-//! field that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals may be
-//! kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the motion of
+//! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the
+//! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
+//! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the motion of
 //! momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds rounding, and
 //! `failure` says why there are no rates.
 
@@ -20,3 +20,4 @@ pub(crate) mod legendre_transform;
 pub(crate) mod machine_code;
 pub(crate) mod motion;
 pub(crate) mod options;
+pub(crate) mod vector_field;

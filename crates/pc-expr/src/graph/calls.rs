@@ -1,8 +1,9 @@
 //! How calls of functions are normalised: constants folded, signs taken out, powers written as products and roots.
 
-use crate::graph::dag::{Dag, MAX_EXPONENT};
+use crate::graph::dag::Dag;
 use crate::graph::function::{Function, Parity};
 use crate::graph::node::{Atom, Candidate, Node, NodeId};
+use crate::graph::normal_form::MAX_EXPONENT;
 use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
