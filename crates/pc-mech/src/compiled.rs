@@ -3,9 +3,9 @@
 //! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Read that
 //! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the
 //! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
-//! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the motion of
-//! momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds rounding, and
-//! `failure` says why there are no rates.
+//! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the
+//! motion of momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds
+//! rounding, and `failure` says why there are no rates.
 
 pub(crate) mod elimination;
 pub(crate) mod failure;

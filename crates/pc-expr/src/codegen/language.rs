@@ -5,8 +5,8 @@ use crate::codegen::{c, comment, identifier, rust};
 
 impl Language {
     /// Valid and distinct identifiers for `names`, each as close to its name as can be: Greek letters are spelt out,
-    /// a prime becomes `_dot`, and what is a word of the language, an argument of a [`Layout`](crate::Layout) or in `reserved` gets
-    /// a `_` at its end.
+    /// a prime becomes `_dot`, and what is a word of the language, an argument of a [`Layout`](crate::Layout) or in
+    /// `reserved` gets a `_` at its end.
     ///
     /// ```
     /// use pc_expr::Language;

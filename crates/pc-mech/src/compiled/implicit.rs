@@ -94,8 +94,8 @@ impl Newton {
     /// Writes w after y in `known`, and leaves M there factorised in `solver`.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NotSolved`]; [`EvaluationFailure::Expr`] and [`EvaluationFailure::Pivot`] where p cannot be evaluated or M is singular
-    /// at the guess.
+    /// [`EvaluationFailure::NotSolved`]; [`EvaluationFailure::Expr`] and [`EvaluationFailure::Pivot`] where p cannot be
+    /// evaluated or M is singular at the guess.
     pub(crate) fn solve(
         &mut self,
         t: f64,

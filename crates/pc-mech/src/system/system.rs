@@ -186,8 +186,8 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with `put` applied to the expressions that are not its frame's: Lagrangian, forces, integrals, outputs,
-    /// rates of the states, velocities of bodies.
+    /// The same system with `put` applied to the expressions that are not its frame's: Lagrangian, forces, integrals,
+    /// outputs, rates of the states, velocities of bodies.
     #[must_use]
     pub(crate) fn map_expressions(self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> System<'g> {
         let one = |x: Expr<'g>| put(&[x])[0];

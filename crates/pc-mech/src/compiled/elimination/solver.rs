@@ -33,7 +33,8 @@ impl Solver {
     /// finite.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or [`EvaluationFailure::Constraint`].
+    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or
+    /// [`EvaluationFailure::Constraint`].
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         match self {
             Solver::Ldl(ldl) => ldl.factorise(lower, values),

@@ -138,8 +138,8 @@ impl Surface {
     /// Moves `y` to the surface.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere, [`EvaluationFailure::Constraint`] where the surface has an edge,
-    /// [`EvaluationFailure::Departed`] where what followed from the constraints does not.
+    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere, [`EvaluationFailure::Constraint`] where the surface
+    /// has an edge, [`EvaluationFailure::Departed`] where what followed from the constraints does not.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {

@@ -28,8 +28,8 @@ impl Surface {
     ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 of the x_i held,   and   C δη = −g,   δη_s = 0 of the η_s held.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere; [`EvaluationFailure::Constraint`] for a constraint that what is held leaves
-    /// nothing to restrict.
+    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere; [`EvaluationFailure::Constraint`] for a constraint
+    /// that what is held leaves nothing to restrict.
     pub(crate) fn project_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
