@@ -17,7 +17,7 @@ use crate::error::MechError;
 
 impl Multipliers<'_> {
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
-    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`]:
+    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`](crate::System::momentum_symbols):
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
