@@ -1,11 +1,14 @@
 //! Programs as source text: the statements of one straight-line function.
 //!
-//! In goes a [`Program`](crate::Program), out comes text in C or Rust that rounds as the kernels do. Read `codegen` (what
-//! is asked for), `function_body` (from a tape to statements), then the words of the languages, `c`, `rust` and
-//! `identifier`.
+//! In goes a [`Program`](crate::Program), out comes text in C or Rust that rounds as the kernels do. Read `layout` (what
+//! is asked for, and what comes out), the words of the languages (`comment`, `c`, `rust` and `identifier`, which `language`
+//! offers), then `function_body` (from a tape to statements) and `codegen`, which starts it.
 
 pub(crate) mod c;
 pub(crate) mod codegen;
+pub(crate) mod comment;
 pub(crate) mod function_body;
 pub(crate) mod identifier;
+pub(crate) mod language;
+pub(crate) mod layout;
 pub(crate) mod rust;

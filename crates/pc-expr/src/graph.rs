@@ -1,10 +1,11 @@
 //! Expressions as nodes of a graph, interned and normalised as they are built.
 //!
 //! In goes what [`Expr`](expr::Expr)'s operators build; out come nodes that are equal if they are written alike. Read
-//! `number` (exact constants) and `function` (the elementary functions) first, then `dag` (the arena and the rules of
-//! sums and products) with `calls`, `signs` and `divisors`, what it knows of calls, of signs and of divisors. `graph`
-//! owns a `dag`, `expr` is the handle that formulas are written with; `subgraph` walks the nodes that expressions
-//! depend on, and `evaluate` computes their values one by one: the reference for all faster ways.
+//! `number` (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
+//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
+//! of values in prime fields, of signs, and of divisors. `graph` owns a `dag`, `expr` is the handle that formulas are
+//! written with; `subgraph` walks the nodes that expressions depend on, `queries` are what is asked of whole expressions,
+//! and `evaluate` computes their values one by one: the reference for all faster ways.
 
 pub(crate) mod calls;
 pub(crate) mod dag;
@@ -13,6 +14,11 @@ pub(crate) mod evaluate;
 pub(crate) mod expr;
 pub(crate) mod function;
 pub(crate) mod graph;
+pub(crate) mod node;
+pub(crate) mod normal_form;
 pub(crate) mod number;
+pub(crate) mod queries;
+pub(crate) mod regularity;
 pub(crate) mod signs;
 pub(crate) mod subgraph;
+pub(crate) mod value;

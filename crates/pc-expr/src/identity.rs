@@ -1,9 +1,12 @@
 //! What is equal: identities decided by values in prime fields (Schwartz, Zippel).
 //!
 //! In go nodes, out comes whether they are zero, equal, or linearly dependent, right but for a chance below 2⁻¹⁰⁰.
-//! Read `prime_field` (arithmetic in GF(2⁶¹−c)), `roots` (values that contain square roots), `fingerprint` (the value
-//! of a node), then what is asked of several nodes at once: `rank` and `linear_relations`.
+//! Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (in two of them at once), `roots` (values that
+//! contain roots), `circle_point` (sines and cosines); the graph gives each of its nodes such a value. Then what is asked of
+//! several nodes at once: `rank` and, by `echelon`, `linear_relations`.
 
+pub(crate) mod circle_point;
+pub(crate) mod echelon;
 pub(crate) mod fingerprint;
 pub(crate) mod linear_relations;
 pub(crate) mod prime_field;

@@ -1,7 +1,7 @@
 //! What runs a program: an interpreter, and machine code.
 //!
 //! In goes a [`Program`](crate::Program), out come numbers, the same ones from every [`Kernel`](kernel::Kernel). Read
-//! `kernel` (the interface), `tape` and `interpreter` (which works everywhere), `jit` (machine code by Cranelift), then
+//! `kernel` (the interface, and the interpreter, which works everywhere) with `tape`, `jit` (machine code by Cranelift), then
 //! `evaluator`, a program with the kernel that is made when it is first needed.
 
 pub(crate) mod evaluator;

@@ -42,18 +42,20 @@ mod program;
 mod time_profile;
 
 pub use calculus::collect::Polynomial;
-pub use codegen::codegen::{Body, Calls, Language, Layout, Place, Slot};
+pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
-pub use graph::dag::Folding;
 pub use graph::evaluate::Scalar;
 pub use graph::expr::Expr;
 pub use graph::function::Function;
 pub use graph::graph::Graph;
+pub use graph::node::Folding;
 pub use graph::number::Number;
-pub use kernel::evaluator::{Backend, Evaluator};
+pub use identity::echelon::ResidueEchelon;
+pub use identity::prime_field::Residue;
+pub use kernel::evaluator::{Backend, Evaluator, compile};
 #[cfg(feature = "jit")]
 pub use kernel::jit::{Jit, JitError, JitOptions};
-pub use kernel::kernel::{Entry, Interpreter, Kernel, compile};
+pub use kernel::kernel::{Entry, Interpreter, Kernel};
 pub use ode::colouring::Colouring;
 pub use ode::events::{Direction, Event, Events};
 pub use ode::pattern::Pattern;

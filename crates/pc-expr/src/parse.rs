@@ -20,8 +20,10 @@
 
 mod error;
 mod grammar;
+mod syntax_tree;
 mod vocabulary;
 
 pub use error::{ParseError, ParseErrorKind};
-pub use grammar::{Ast, AstKind, Factor, MAX_DEPTH, Sign, Span, parse};
+pub use grammar::parse;
+pub use syntax_tree::{Ast, AstKind, Factor, MAX_DEPTH, Sign, Span};
 pub use vocabulary::{FUNCTIONS, Function, is_name, nearest};

@@ -1,9 +1,10 @@
 //! From expressions to a compiled motion.
 //!
 //! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r. Read that
-//! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the vector
-//! field that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals may be
-//! kept: `projection`. `in_momenta` changes momenta of such states into quasi-velocities and back, `running_error` bounds
+//! first, then `elimination`, how w is found, `implicit` for equations that are not linear in w, and `motion`, the
+//! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
+//! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the
+//! motion of momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds
 //! rounding, and `failure` says why there are no rates.
 
 pub(crate) mod elimination;
@@ -12,8 +13,11 @@ pub(crate) mod projection;
 pub(crate) mod running_error;
 
 pub(crate) mod first_order;
+pub(crate) mod forced_motion;
 pub(crate) mod implicit;
 pub(crate) mod in_momenta;
+pub(crate) mod legendre_transform;
 pub(crate) mod machine_code;
 pub(crate) mod motion;
 pub(crate) mod options;
+pub(crate) mod vector_field;

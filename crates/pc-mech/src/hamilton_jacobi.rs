@@ -5,11 +5,10 @@ mod roots;
 use pc_algebra::{Matrix, Neighbourhood};
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::equations::canonical::Canonical;
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 use crate::numeric::newton;
-use crate::stability::steady::check_length;
 use roots::vanishes;
 
 /// The most steps of Newton's method for one position.
@@ -170,7 +169,7 @@ impl<'g> CompleteIntegral<'g> {
         guess: &[f64],
     ) -> Result<Vec<f64>, MechError> {
         let k = self.coordinates.len();
-        check_length("the list of constants β", beta, k)?;
+        shape("the list of constants β", beta.len(), k)?;
         let end = newton::solve(guess.to_vec(), MOST_STEPS, |x| {
             let values = self.evaluate(t, x, alpha)?;
             let difference = values.iter().zip(beta).map(|(value, beta)| value - beta).collect();
@@ -187,13 +186,13 @@ impl<'g> CompleteIntegral<'g> {
 
     fn evaluate(&mut self, t: f64, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>, MechError> {
         let k = self.coordinates.len();
-        check_length("the list of coordinates", x, k)?;
-        check_length("the list of constants α", alpha, k)?;
+        shape("the list of coordinates", x.len(), k)?;
+        shape("the list of constants α", alpha.len(), k)?;
         let parameters: Vec<f64> = self.parameters.iter().chain(alpha).copied().collect();
         let mut values = vec![0.0; k * (k + 2)];
         self.values.eval(t, x, &parameters, &mut values);
         match check_finite(&values, &self.values, (t, x, &parameters)) {
-            Err(Fault::Expr(error)) => Err(error.into()),
+            Err(EvaluationFailure::Expr(error)) => Err(error.into()),
             _ => Ok(values),
         }
     }

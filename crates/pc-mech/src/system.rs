@@ -2,7 +2,7 @@
 //!
 //! In goes what a book says of a system, out comes a [`System`](system::System). Read `system`, then `builder`, which
 //! takes each part in the form it has; `bodies` are what particles and rigid bodies add, `forces` the forms of Q_s (8),
-//! `external_force` forces computed outside, `signals` inputs that are functions of time.
+//! `external_force` what gives forces computed outside, `signals` inputs that are functions of time.
 
 pub(crate) mod bodies;
 pub(crate) mod builder;

@@ -5,13 +5,10 @@ use pc_expr::{Expr, Number};
 use crate::error::AlgebraError;
 use crate::frame::frame::Frame;
 use crate::frame::structure::StructureCoefficients;
-use crate::identity::sample::{HIDDEN, Neighbourhood};
+use crate::identity::sample::{HIDDEN, Neighbourhood, TRIALS};
 use crate::lie_algebra::lie_algebra::check_jacobi;
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
-
-/// Points at which an identity that the graph cannot decide is tried numerically.
-pub(crate) const TRIALS: usize = 8;
 
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use pc_expr::Expr;
 
-use crate::frame::closure::{TRIALS, pairs};
+use crate::frame::closure::pairs;
 use crate::frame::frame::Frame;
 use crate::identity::running_error::Weighed;
-use crate::identity::sample::Neighbourhood;
+use crate::identity::sample::{Neighbourhood, TRIALS};
 
 /// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,10 @@
 
 use pc_expr::{Expr, Function, Graph, Scalar};
 
-use crate::frame::closure::TRIALS;
 use crate::identity::running_error::Weighed;
+
+/// Points at which an identity that the graph cannot decide is tried numerically.
+pub(crate) const TRIALS: usize = 8;
 
 /// What is left of the terms of a sum that vanishes identically, after some thousand roundings.
 pub(crate) const HIDDEN: f64 = 1e-12;

@@ -1,9 +1,10 @@
 //! Rank and index: what holds for almost all elements of an algebra and of its dual.
 
+use pc_expr::{Residue, ResidueEchelon};
+
 use crate::error::AlgebraError;
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
-use crate::linear_algebra::prime_field::{Residue, point, rank};
 
 /// Random points at which a rank is taken; the largest counts.
 const POINTS: u64 = 2;
@@ -36,7 +37,7 @@ impl LieAlgebra {
                 power = Matrix::from_fn(k, k, |i, j| (0..k).map(|l| power[(i, l)] * power[(l, j)]).sum());
                 exponent *= 2;
             }
-            rank(power)
+            rank(&power)
         });
         Ok(k - largest.max().unwrap_or(0))
     }
@@ -59,7 +60,7 @@ impl LieAlgebra {
         let (k, c) = (self.dim(), self.residues()?);
         let largest = (0..POINTS).map(|index| {
             let xi = point(k, index);
-            rank(contraction(k, &c, |r, s, m| (r, s, xi[m])))
+            rank(&contraction(k, &c, |r, s, m| (r, s, xi[m])))
         });
         Ok(k - largest.max().unwrap_or(0))
     }
@@ -87,4 +88,15 @@ fn contraction(
         matrix[(i, j)] = matrix[(i, j)] + c * y;
     }
     matrix
+}
+
+/// Point number `index` of a fixed pseudo-random sequence.
+fn point(dim: usize, index: u64) -> Vec<Residue> {
+    Residue::sequence(index << 32).take(dim).collect()
+}
+
+fn rank(matrix: &Matrix<Residue>) -> usize {
+    let mut echelon = ResidueEchelon::new(matrix.columns());
+    (0..matrix.rows()).for_each(|i| echelon.insert(matrix.row(i).to_vec()));
+    echelon.rank()
 }

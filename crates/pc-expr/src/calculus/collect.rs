@@ -7,10 +7,11 @@ use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Dag, Folding, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 

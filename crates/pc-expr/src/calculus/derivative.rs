@@ -6,8 +6,11 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
 use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::{Assignment, Cone};
 
@@ -265,57 +268,48 @@ impl Dag {
             }
         }
     }
+}
 
-    /// The constant that a node of a constant stands for.
-    fn constant_of(&self, atom: Atom) -> Atom {
-        match atom {
-            Atom::Node(id) => match self.node(id) {
-                Node::Constant(c) => Atom::Constant(c),
-                _ => atom,
-            },
-            Atom::Constant(_) => atom,
+impl Graph {
+    /// ∂`output`/∂`symbol` for each of `symbols`, by one reverse sweep.
+    ///
+    /// # Panics
+    /// If one of `symbols` is not a symbol.
+    pub fn gradient<'g>(&'g self, output: Expr<'g>, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let nodes: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
+        let output = output.atom_in(self);
+        self.build_all(|dag| dag.gradient(output, &nodes))
+    }
+
+    /// The rates of change of `outputs` when each symbol of `rates` changes at the rate beside it: one forward sweep.
+    ///
+    /// # Panics
+    /// If the first of a pair is not a symbol.
+    pub fn directional<'g>(&'g self, outputs: &[Expr<'g>], rates: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+        let seeds: Vec<(NodeId, Atom)> =
+            rates.iter().map(|(symbol, rate)| (symbol.symbol_in(self), rate.atom_in(self))).collect();
+        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
+        self.build_all(|dag| dag.directional(&outputs, &seeds))
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// ∂self/∂`symbol`.
+    ///
+    /// # Panics
+    /// If `symbol` is not a symbol.
+    #[must_use]
+    pub fn derivative(self, symbol: Expr<'g>) -> Expr<'g> {
+        match self.graph() {
+            Some(graph) if matches!(self.atom(), Atom::Node(_)) => {
+                graph.directional(&[self], &[(symbol, Expr::ONE)])[0]
+            }
+            _ => Expr::ZERO,
         }
     }
 
-    /// `outputs` with symbols (or other nodes) replaced, rebuilt bottom-up.
-    pub(crate) fn substitute(&mut self, outputs: &[Atom], replacements: &[(NodeId, Atom)]) -> Vec<Atom> {
-        let cone = Cone::below(self, outputs.iter().copied());
-        let replaced: Vec<NodeId> = replacements.iter().map(|&(node, _)| node).collect();
-        let active = cone.depending_on(self, &replaced);
-        let mut values = Assignment::from_pairs(replacements);
-        for &node in &cone.order {
-            if !active.contains(&node) || values.contains(node) {
-                continue;
-            }
-            let value = match self.node(node) {
-                Node::Constant(_) | Node::Symbol(_) => Atom::Node(node),
-                Node::Sum { constant, terms } => {
-                    let mut sum: Vec<(Atom, Number)> =
-                        self.terms(terms).iter().map(|&(child, q)| (values.node(child), q)).collect();
-                    sum.push((Atom::Constant(constant), Number::ONE));
-                    self.sum_of(&sum)
-                }
-                Node::Product { factors } => {
-                    let factors = self.factors(factors).to_vec();
-                    let powers: Vec<Atom> = factors
-                        .iter()
-                        .map(|&(child, e)| match values.node(child) {
-                            zero if zero.is_zero() && e < 0 => self.divide(Atom::ONE, zero),
-                            value => self.powi(value, e),
-                        })
-                        .collect();
-                    self.product_of(Number::ONE, &powers)
-                }
-                Node::Call { function, args } => {
-                    let args: Vec<Atom> = Dag::args(function, &args)
-                        .iter()
-                        .map(|&child| self.constant_of(values.node(child)))
-                        .collect();
-                    self.call(function, &args)
-                }
-            };
-            values.set(node, value);
-        }
-        outputs.iter().map(|&output| values.atom(output)).collect()
+    /// Whether the value changes with `symbol`: its derivative is not identically zero.
+    pub fn depends_on(self, symbol: Expr<'g>) -> bool {
+        !self.derivative(symbol).is_zero()
     }
 }

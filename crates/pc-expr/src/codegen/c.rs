@@ -1,7 +1,7 @@
 //! C99 that is also C++11.
 
-use super::identifier::is_hidden;
-use crate::codegen::codegen::Calls;
+use crate::codegen::comment::is_hidden;
+use crate::codegen::layout::Calls;
 use crate::graph::function::Function;
 
 /// Words of C and C++, and macros that `<math.h>`, `<stdio.h>` or the compiler may define.

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use super::{c, rust};
-use crate::codegen::codegen::{Body, Calls, Language, Layout, Place};
+use crate::codegen::layout::{Calls, FunctionBody, Language, Layout, Place};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
@@ -151,7 +151,7 @@ impl<'a> Printer<'a> {
         Printer { program, language, layout, uses, pieces, names, locals: 0, hints, statements, calls }
     }
 
-    pub(crate) fn print(mut self) -> Body {
+    pub(crate) fn print(mut self) -> FunctionBody {
         let first = self.program.first_result();
         let mut done = 0;
         self.write_outputs(&mut done, first);
@@ -164,7 +164,7 @@ impl<'a> Printer<'a> {
             self.write_outputs(&mut done, register + 1);
         }
         let inputs = self.inputs().text(self.language);
-        Body { inputs, statements: self.statements.text(self.language), calls: self.calls }
+        FunctionBody { inputs, statements: self.statements.text(self.language), calls: self.calls }
     }
 
     /// Writes the outputs, in their order, whose registers are before `known`.

@@ -1,7 +1,7 @@
 //! Names as identifiers of C and Rust.
 
-use super::{c, rust};
-use crate::codegen::codegen::Language;
+use crate::codegen::layout::Language;
+use crate::codegen::{c, rust};
 
 /// Lower-case names of α to ω.
 const GREEK: [&str; 25] = [
@@ -92,24 +92,6 @@ fn is_reserved(language: Language, name: &str) -> bool {
         }
 }
 
-pub(crate) fn comment(text: &str) -> String {
-    let visible = |c: char| if c.is_whitespace() || is_hidden(c) { ' ' } else { c };
-    let mut text: String = text.chars().map(visible).collect();
-    // The ends of a comment, and the trigraphs of C.
-    for (sign, apart) in [("*/", "* /"), ("/*", "/ *"), ("??", "? ?")] {
-        while text.contains(sign) {
-            text = text.replace(sign, apart);
-        }
-    }
-    // A backslash at the end of a line joins the next one to it.
-    text.trim().trim_end_matches('\\').trim_end().to_owned()
-}
-
-/// Control characters and those that change the direction of writing.
-pub(crate) fn is_hidden(c: char) -> bool {
-    !matches!(c, '\'' | '"' | '\\') && c.escape_debug().len() > 1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,11 +123,5 @@ mod tests {
         assert_eq!(c, expected);
         assert_eq!(distinct(Language::Rust, &["int", "fn", "__x__y"], &[]), ["int", "fn_", "x_y"]);
         assert_eq!(distinct(Language::C, &["x_", "x", "x"], &[]), ["x", "x_2", "x_3"]);
-    }
-
-    #[test]
-    fn comments_stay_comments() {
-        assert_eq!(comment("a */ b\n/* c \u{202e}\\"), "a * / b / * c");
-        assert_eq!(comment("???"), "? ? ?");
     }
 }

@@ -1,6 +1,6 @@
 //! Rust that needs no `std`.
 
-use crate::codegen::codegen::Calls;
+use crate::codegen::layout::Calls;
 use crate::graph::function::Function;
 
 /// Words of the language, names that cannot be bound, and those that the printed code uses.

@@ -1,7 +1,9 @@
 //! How calls of functions are normalised: constants folded, signs taken out, powers written as products and roots.
 
-use crate::graph::dag::{Atom, Candidate, Dag, MAX_EXPONENT, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::function::{Function, Parity};
+use crate::graph::node::{Atom, Candidate, Node, NodeId};
+use crate::graph::normal_form::MAX_EXPONENT;
 use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
@@ -67,6 +69,17 @@ impl Dag {
             ids.swap(0, 1);
         }
         self.admit(&Candidate::Call(function, ids))
+    }
+
+    /// The constant that a node of a constant stands for.
+    pub(crate) fn constant_of(&self, atom: Atom) -> Atom {
+        match atom {
+            Atom::Node(id) => match self.node(id) {
+                Node::Constant(c) => Atom::Constant(c),
+                _ => atom,
+            },
+            Atom::Constant(_) => atom,
+        }
     }
 
     fn argument(&mut self, atom: Atom) -> NodeId {

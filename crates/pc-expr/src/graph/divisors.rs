@@ -1,11 +1,8 @@
-//! What nodes divide by, as they are written: two forms of one function differ at points where a divisor vanishes.
+//! Sets of divisors.
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Candidate, Dag, Folding, Node, NodeId, hash_of};
-use crate::graph::function::Function;
-use crate::graph::number::Number;
-use crate::identity::fingerprint::Fingerprint;
+use crate::graph::node::NodeId;
 
 /// Sets of more divisors than this are not kept apart.
 const MOST: usize = 64;
@@ -17,7 +14,7 @@ pub(crate) struct Divisors(u32);
 impl Divisors {
     pub(crate) const NONE: Divisors = Divisors(0);
     /// A set too large to be kept, taken to hold every divisor.
-    const ALL: Divisors = Divisors(u32::MAX);
+    pub(super) const ALL: Divisors = Divisors(u32::MAX);
 }
 
 /// The sets that occur, each kept once.
@@ -35,12 +32,12 @@ impl Default for DivisorSets {
 }
 
 impl DivisorSets {
-    fn get(&self, set: Divisors) -> &[NodeId] {
+    pub(super) fn get(&self, set: Divisors) -> &[NodeId] {
         &self.sets[set.0 as usize]
     }
 
     /// The set of these nodes, in ascending order and each once.
-    fn intern(&mut self, nodes: Vec<NodeId>) -> Divisors {
+    pub(super) fn intern(&mut self, nodes: Vec<NodeId>) -> Divisors {
         if nodes.len() > MOST {
             return Divisors::ALL;
         }
@@ -51,7 +48,7 @@ impl DivisorSets {
         })
     }
 
-    fn union(&mut self, a: Divisors, b: Divisors) -> Divisors {
+    pub(super) fn union(&mut self, a: Divisors, b: Divisors) -> Divisors {
         let (a, b) = (a.min(b), a.max(b));
         if a == Divisors::NONE || b == Divisors::ALL || a == b {
             return b;
@@ -65,142 +62,5 @@ impl DivisorSets {
         let union = self.intern(nodes);
         self.unions.insert((a, b), union);
         union
-    }
-}
-
-impl Dag {
-    /// What a candidate divides by, in itself or below. Where nodes are merged by structure alone nobody asks.
-    pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
-        if self.folding == Folding::Structural {
-            return Divisors::NONE;
-        }
-        let mut all = Divisors::NONE;
-        let mut add = |dag: &mut Dag, node: NodeId| {
-            all = dag.divisor_sets.union(all, dag.divisors[node.index()]);
-        };
-        match *candidate {
-            Candidate::Constant(_) | Candidate::Symbol(_) => {}
-            Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(self, node)),
-            Candidate::Call(function, args) => {
-                Dag::args(function, &args).iter().for_each(|&node| add(self, node));
-            }
-            Candidate::Product(factors) => {
-                factors.iter().for_each(|&(node, _)| add(self, node));
-                for &(node, e) in factors {
-                    if e < 0 && self.may_vanish(node) {
-                        let own = self.divisor_sets.intern(vec![node]);
-                        all = self.divisor_sets.union(all, own);
-                    }
-                }
-            }
-        }
-        all
-    }
-
-    /// The arguments that bound where a candidate has a value, in itself or below. Where nodes are merged by structure alone
-    /// nobody asks.
-    pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
-        if self.folding == Folding::Structural {
-            return Divisors::NONE;
-        }
-        let mut all = Divisors::NONE;
-        let mut add = |dag: &mut Dag, node: NodeId| {
-            all = dag.divisor_sets.union(all, dag.limits[node.index()]);
-        };
-        match *candidate {
-            Candidate::Constant(_) | Candidate::Symbol(_) => {}
-            Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(self, node)),
-            Candidate::Product(factors) => factors.iter().for_each(|&(node, _)| add(self, node)),
-            Candidate::Call(function, args) => {
-                Dag::args(function, &args).iter().for_each(|&node| add(self, node));
-                let bounded = match function {
-                    Function::Sqrt => !self.is_nonnegative(args[0]),
-                    Function::Pow | Function::Asin | Function::Acos => true,
-                    Function::Log => self.may_vanish(args[0]),
-                    _ => false,
-                };
-                if bounded {
-                    let own = self.divisor_sets.intern(vec![args[0]]);
-                    all = self.divisor_sets.union(all, own);
-                }
-            }
-        }
-        all
-    }
-
-    /// Whether each limit of the first set is one of the second.
-    pub(crate) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
-        if some == others || some == Divisors::NONE || others == Divisors::ALL {
-            return true;
-        }
-        if some == Divisors::ALL || others == Divisors::NONE {
-            return false;
-        }
-        let others = self.divisor_sets.get(others);
-        self.divisor_sets.get(some).iter().all(|&limit| {
-            others.iter().any(|&other| other == limit || self.fingerprint(other) == self.fingerprint(limit))
-        })
-    }
-
-    /// Whether each divisor of the first expression vanishes only where one of the second does.
-    pub(crate) fn is_as_regular(&self, some: Atom, other: Atom) -> bool {
-        let divisors = |atom| match atom {
-            Atom::Constant(_) => Divisors::NONE,
-            Atom::Node(node) => self.divisors[node.index()],
-        };
-        self.are_within(divisors(some), divisors(other))
-    }
-
-    /// Whether each divisor of the first set vanishes only where one of the second does, as far as is seen from
-    /// their factors.
-    pub(crate) fn are_within(&self, some: Divisors, others: Divisors) -> bool {
-        if some == others || some == Divisors::NONE || others == Divisors::ALL {
-            return true;
-        }
-        if some == Divisors::ALL || others == Divisors::NONE {
-            return false;
-        }
-        let others = self.irreducible(others);
-        let is_within = |&divisor: &Fingerprint| {
-            others.contains(&divisor) || others.iter().any(|&other| self.divides(divisor, other))
-        };
-        self.irreducible(some).iter().all(is_within)
-    }
-
-    /// Whether the first of two values is a factor of the second: whether the quotient is a constant, or known without
-    /// division.
-    fn divides(&self, factor: Fingerprint, product: Fingerprint) -> bool {
-        let quotient = product.times(factor.powi(-1)).up_to_sign();
-        if quotient.small_rational().is_some() {
-            return true;
-        }
-        let known =
-            self.by_value.find(hash_of(&quotient), |&id| self.fingerprint(id).up_to_sign() == quotient);
-        known.is_some_and(|id| self.divisors[id.index()] == Divisors::NONE)
-    }
-
-    /// The values, up to sign, of the factors of some divisors; a root vanishes where its radicand does.
-    fn irreducible(&self, divisors: Divisors) -> Vec<Fingerprint> {
-        let mut open = self.divisor_sets.get(divisors).to_vec();
-        let mut values = Vec::with_capacity(open.len());
-        while let Some(node) = open.pop() {
-            let (node, _) = self.split_coefficient(node, Number::ONE);
-            match self.node(node) {
-                Node::Product { factors } => {
-                    open.extend(
-                        self.factors(factors).iter().filter(|(_, e)| *e > 0).map(|&(factor, _)| factor),
-                    );
-                }
-                Node::Call { function: Function::Sqrt | Function::Abs, args } => open.push(args[0]),
-                _ if self.may_vanish(node) => values.push(self.fingerprint(node).up_to_sign()),
-                _ => {}
-            }
-        }
-        values
-    }
-
-    /// False for what is positive everywhere.
-    fn may_vanish(&self, node: NodeId) -> bool {
-        !matches!(self.node(node), Node::Call { function: Function::Exp | Function::Cosh, .. })
     }
 }

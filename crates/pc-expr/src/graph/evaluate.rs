@@ -5,9 +5,11 @@ use std::ops::{Add, Mul, Neg};
 use rustc_hash::FxHashMap;
 
 use crate::error::ExprError;
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
@@ -53,11 +55,7 @@ impl<'h> Scalar for Expr<'h> {
     }
 }
 
-pub(crate) fn evaluate<S: Scalar>(
-    dag: &Dag,
-    outputs: &[Atom],
-    symbols: &[(NodeId, S)],
-) -> Result<Vec<S>, ExprError> {
+fn evaluate<S: Scalar>(dag: &Dag, outputs: &[Atom], symbols: &[(NodeId, S)]) -> Result<Vec<S>, ExprError> {
     let cone = Cone::below(dag, outputs.iter().copied());
     let mut values: FxHashMap<NodeId, S> = symbols.iter().copied().collect();
     for &id in &cone.order {
@@ -89,4 +87,20 @@ pub(crate) fn evaluate<S: Scalar>(
             Atom::Node(id) => values[id],
         })
         .collect())
+}
+
+impl Graph {
+    /// The values of `outputs`, over any scalar, when the symbols have the values given.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`] for a symbol without a value.
+    pub fn evaluate<'g, S: Scalar>(
+        &'g self,
+        outputs: &[Expr<'g>],
+        values: &[(Expr<'g>, S)],
+    ) -> Result<Vec<S>, ExprError> {
+        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
+        let values: Vec<(NodeId, S)> = values.iter().map(|(s, value)| (s.symbol_in(self), *value)).collect();
+        self.with(|dag| evaluate(dag, &outputs, &values))
+    }
 }

@@ -1,14 +1,13 @@
 //! The handle that formulas are written with.
 
-use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::graph::dag::{Atom, Dag, Folding, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::function::Function;
 use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
-use crate::print::text::Style;
 
 /// A constant, or a node of a [`Graph`]: `Copy`, with the arithmetic operators and elementary functions.
 ///
@@ -65,36 +64,12 @@ impl<'g> Expr<'g> {
         })
     }
 
-    /// ∂self/∂`symbol`.
-    ///
-    /// # Panics
-    /// If `symbol` is not a symbol.
-    #[must_use]
-    pub fn derivative(self, symbol: Expr<'g>) -> Expr<'g> {
-        match self.graph {
-            Some(graph) if matches!(self.atom, Atom::Node(_)) => {
-                graph.directional(&[self], &[(symbol, Expr::ONE)])[0]
-            }
-            _ => Expr::ZERO,
-        }
-    }
-
-    /// Whether the value changes with `symbol`: its derivative is not identically zero.
-    pub fn depends_on(self, symbol: Expr<'g>) -> bool {
-        !self.derivative(symbol).is_zero()
-    }
-
     /// Number of operations when written out as a tree (saturating), functions counting ten.
     pub fn tree_cost(self) -> u32 {
         match (self.graph, self.atom) {
             (Some(graph), Atom::Node(id)) => graph.with(|dag| dag.cost(id)),
             _ => 0,
         }
-    }
-
-    /// The text in another style than [`Display`](fmt::Display)'s.
-    pub fn display(self, style: Style) -> String {
-        crate::print::text::print(self, style)
     }
 
     pub(crate) fn graph(self) -> Option<&'g Graph> {
@@ -206,6 +181,48 @@ impl<'g> Expr<'g> {
     }
 }
 
+impl Graph {
+    /// The symbol of that name; the same name is always the same symbol.
+    pub fn symbol(&self, name: &str) -> Expr<'_> {
+        let node = self.with(|dag| dag.symbol(name));
+        self.expr(Atom::Node(node))
+    }
+
+    /// The symbols of those names.
+    pub fn symbols<const N: usize>(&self, names: [&str; N]) -> [Expr<'_>; N] {
+        names.map(|name| self.symbol(name))
+    }
+
+    /// Σ xᵢ as one n-ary sum.
+    pub fn sum<'g>(&'g self, terms: impl IntoIterator<Item = Expr<'g>>) -> Expr<'g> {
+        let atoms: Vec<(Atom, Number)> = terms.into_iter().map(|x| (x.atom_in(self), Number::ONE)).collect();
+        self.build(|dag| dag.sum_of(&atoms))
+    }
+
+    /// Σ xᵢ yᵢ as one n-ary sum.
+    ///
+    /// The longer of the two sequences is cut to the length of the other.
+    pub fn dot<'g>(
+        &'g self,
+        x: impl IntoIterator<Item = Expr<'g>>,
+        y: impl IntoIterator<Item = Expr<'g>>,
+    ) -> Expr<'g> {
+        self.sum(x.into_iter().zip(y).map(|(x, y)| x * y))
+    }
+
+    pub(crate) fn expr(&self, atom: Atom) -> Expr<'_> {
+        Expr::new(self, atom)
+    }
+
+    pub(crate) fn build(&self, f: impl FnOnce(&mut Dag) -> Atom) -> Expr<'_> {
+        self.expr(self.with(f))
+    }
+
+    pub(crate) fn build_all(&self, f: impl FnOnce(&mut Dag) -> Vec<Atom>) -> Vec<Expr<'_>> {
+        self.with(f).into_iter().map(|atom| self.expr(atom)).collect()
+    }
+}
+
 macro_rules! functions {
     ($($(#[$doc:meta])* $name:ident => $function:ident;)*) => {
         impl<'g> Expr<'g> {
@@ -250,19 +267,6 @@ impl PartialEq for Expr<'_> {
             (Some(graph), _) | (None, Some(graph)) => graph.with(|dag| dag.same(self.atom, other.atom)),
             (None, None) => self.atom == other.atom,
         }
-    }
-}
-
-impl fmt::Debug for Expr<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl fmt::Display for Expr<'_> {
-    /// The text in the expression language.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.display(Style::Text))
     }
 }
 

@@ -1,7 +1,8 @@
 //! What is known not to be negative wherever it has a value, as it is written.
 
-use crate::graph::dag::{Candidate, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::function::Function;
+use crate::graph::node::{Candidate, Node, NodeId};
 use crate::graph::number::Number;
 
 impl Dag {

@@ -2,7 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::graph::dag::{Atom, Dag, NodeId};
+use crate::graph::dag::Dag;
+use crate::graph::node::{Atom, NodeId};
 
 /// The sub-graph below some roots: children before parents.
 pub(crate) struct Cone {

@@ -6,12 +6,14 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Folding, Node, NodeId};
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
-use crate::identity::fingerprint::{Fingerprint, First};
+use crate::identity::echelon::ResidueEchelon;
+use crate::identity::fingerprint::Fingerprint;
+use crate::identity::prime_field::Residue;
 
 /// Points that must say nothing new before no more are tried.
 const IDLE_POINTS: usize = 2;
@@ -46,7 +48,7 @@ impl Graph {
             let coefficients = || a.iter().map(|&a| Expr::from(a));
             (0..components).all(|i| self.dot(coefficients(), columns.iter().map(|f| f[i])).is_zero())
         };
-        let proposal = |vector: Vec<First>| whole(&vector.into_iter().map(fraction).collect::<Vec<_>>());
+        let proposal = |vector: Vec<Residue>| whole(&vector.into_iter().map(fraction).collect::<Vec<_>>());
         self.echelon(columns, &[]).null_space().into_iter().map(proposal).filter(holds).collect()
     }
 
@@ -80,16 +82,16 @@ impl Graph {
         constants: &[Expr<'g>],
     ) -> Vec<(usize, Vec<Number>)> {
         let vectors = self.echelon(columns, constants).null_space().into_iter();
-        let last = |vector: &[First]| vector.iter().rposition(|&x| x != First::ZERO).unwrap_or(0);
+        let last = |vector: &[Residue]| vector.iter().rposition(|&x| x != Residue::ZERO).unwrap_or(0);
         vectors.map(|v| (last(&v), v[..last(&v)].iter().map(|&x| fraction(-x)).collect())).collect()
     }
 
     /// The values of the columns at so many points that more say nothing new.
-    fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> Echelon {
+    fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> ResidueEchelon {
         let components = columns.first().map_or(0, Vec::len);
         assert!(columns.iter().all(|column| column.len() == components), "columns of one length");
         let sampler = Sampler::new(self, &columns.concat(), constants);
-        let mut echelon = Echelon::new(columns.len());
+        let mut echelon = ResidueEchelon::new(columns.len());
         let mut idle = 0;
         for point in 0.. {
             let values = sampler.at(point);
@@ -134,11 +136,12 @@ impl<'g> Sampler<'g> {
     }
 
     /// The values at point number `point`.
-    fn at(&self, point: usize) -> Vec<First> {
+    fn at(&self, point: usize) -> Vec<Residue> {
         let mut values = self.unknowns(point);
         self.graph.with(|dag| {
-            let of =
-                |values: &FxHashMap<NodeId, First>, id: &NodeId| values.get(id).copied().unwrap_or_default();
+            let of = |values: &FxHashMap<NodeId, Residue>, id: &NodeId| {
+                values.get(id).copied().unwrap_or_default()
+            };
             for &id in &self.cone.order {
                 if values.contains_key(&id) {
                     continue;
@@ -153,7 +156,7 @@ impl<'g> Sampler<'g> {
                     Node::Product { factors } => dag
                         .factors(factors)
                         .iter()
-                        .fold(First::ONE, |product, (child, e)| product * of(&values, child).powi(*e)),
+                        .fold(Residue::ONE, |product, (child, e)| product * of(&values, child).powi(*e)),
                 };
                 values.insert(id, value);
             }
@@ -166,7 +169,7 @@ impl<'g> Sampler<'g> {
     }
 
     /// The values of symbols and calls.
-    fn unknowns(&self, point: usize) -> FxHashMap<NodeId, First> {
+    fn unknowns(&self, point: usize) -> FxHashMap<NodeId, Residue> {
         let page = Graph::with_folding(Folding::Structural);
         let renamed = |symbol: &Expr<'g>| match self.constants.contains(symbol) {
             true => page.symbol(&symbol.to_string()),
@@ -188,89 +191,21 @@ impl<'g> Sampler<'g> {
     }
 }
 
-fn constant(c: Number) -> First {
+fn constant(c: Number) -> Residue {
     Fingerprint::constant(c).first()
 }
 
-fn value(graph: &Graph, expression: Expr<'_>) -> First {
+fn value(graph: &Graph, expression: Expr<'_>) -> Residue {
     match expression.atom() {
         Atom::Constant(c) => constant(c),
         Atom::Node(id) => graph.with(|dag| dag.fingerprint(id).first()),
     }
 }
 
-/// Rows with distinct leading columns, 1 in the leading column.
-struct Echelon {
-    columns: usize,
-    /// The row that leads in this column.
-    leading: Vec<Option<Vec<First>>>,
-}
-
-impl Echelon {
-    fn new(columns: usize) -> Echelon {
-        Echelon { columns, leading: vec![None; columns] }
-    }
-
-    fn rank(&self) -> usize {
-        self.leading.iter().flatten().count()
-    }
-
-    /// Adds a row, if it is independent of those that are there.
-    fn insert(&mut self, mut row: Vec<First>) {
-        for column in 0..self.columns {
-            if row[column] == First::ZERO {
-                continue;
-            }
-            let Some(known) = &self.leading[column] else {
-                let scale = row[column].inverse();
-                row.iter_mut().for_each(|x| *x = *x * scale);
-                self.leading[column] = Some(row);
-                return;
-            };
-            subtract(&mut row, known, column);
-        }
-    }
-
-    /// A basis of the vectors that all rows annihilate, one for each column that does not lead: 1 there and
-    /// 0 in the columns after it and in the others that do not lead.
-    fn null_space(mut self) -> Vec<Vec<First>> {
-        for column in (0..self.columns).rev() {
-            let Some(known) = self.leading[column].take() else { continue };
-            for row in self.leading[..column].iter_mut().flatten() {
-                subtract(row, &known, column);
-            }
-            self.leading[column] = Some(known);
-        }
-        let free = (0..self.columns).filter(|&column| self.leading[column].is_none());
-        let vector = |free: usize| {
-            let entry = |column: usize| match &self.leading[column] {
-                Some(row) => -row[free],
-                None if column == free => First::ONE,
-                None => First::ZERO,
-            };
-            (0..self.columns).map(entry).collect()
-        };
-        free.map(vector).collect()
-    }
-}
-
-/// row ← row − row[column]·known, where known leads in the column.
-fn subtract(row: &mut [First], known: &[First], column: usize) {
-    let factor = row[column];
-    if factor == First::ZERO {
-        return;
-    }
-    for (x, &y) in row[column..].iter_mut().zip(&known[column..]) {
-        if y != First::ZERO {
-            *x = *x - factor * y;
-        }
-    }
-}
-
 /// The fraction p/q = x with the smallest p·q, by maximal quotient rational reconstruction (M. Monagan,
 /// ISSAC 2004): in Euclid's algorithm for 2⁶¹ − 1 and x, p and q stand before the largest quotient.
-fn fraction(x: First) -> Number {
-    let (mut r0, mut r1) = ((-First::ONE).to_bits() + 1, x.to_bits());
+fn fraction(x: Residue) -> Number {
+    let (mut r0, mut r1) = ((-Residue::<1>::ONE).to_bits() + 1, x.to_bits());
     let (mut s0, mut s1) = (0i64, 1i64);
     let (mut largest, mut found) = (0, Number::ZERO);
     while r1 != 0 {
@@ -301,7 +236,7 @@ mod tests {
     #[test]
     fn fractions_are_read_back() {
         for (p, q) in [(1, 3), (-7, 12), (0, 1), (-1, 1), (866_124_913, 1_000_000), (-1, 1_073_741_789)] {
-            let x = First::integer(p) * First::integer(q).inverse();
+            let x = Residue::integer(p) * Residue::integer(q).inverse();
             assert_eq!(fraction(x), Number::ratio(p, q));
         }
     }

@@ -1,9 +1,10 @@
 //! Linear algebra over fingerprints: what holds for almost all values of the symbols.
 
-use crate::graph::dag::Atom;
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
-use crate::identity::fingerprint::{Fingerprint, Value};
+use crate::graph::node::Atom;
+use crate::identity::fingerprint::Fingerprint;
+use crate::identity::roots::Value;
 
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.

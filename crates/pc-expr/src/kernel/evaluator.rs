@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::ExprError;
-use crate::kernel::kernel::{Entry, Interpreter, Kernel, compile};
+use crate::kernel::kernel::{Entry, Interpreter, Kernel};
 use crate::program::program::Program;
 
 /// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
@@ -15,6 +15,15 @@ pub enum Backend {
     Fastest,
     /// The interpreter, which needs no compiling.
     Interpreter,
+}
+
+/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.
+pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
+    #[cfg(feature = "jit")]
+    if let Ok(jit) = crate::kernel::jit::Jit::new(&program) {
+        return Box::new(jit);
+    }
+    Box::new(Interpreter::new(program))
 }
 
 /// A program and its kernel, made when it is first needed.

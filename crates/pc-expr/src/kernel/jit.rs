@@ -2,189 +2,25 @@
 //!
 //! A program becomes machine code in three steps, one file each: `plan` decides what is computed when and what waits
 //! in memory, `emit` writes that down as Cranelift's intermediate code with `sincos` writing sines and cosines in
-//! line, and `host` knows the processor and owns the code that results.
+//! line, and `assembly` owns the code that results. `host` knows the processor; `jit` is the kernel.
 
 #![expect(
     unsafe_code,
     reason = "compiled code is entered through a function pointer, and its memory is freed by hand"
 )]
 
+mod assembly;
 mod emit;
+mod error;
 mod host;
+mod jit;
 mod memory;
+mod options;
 mod plan;
+mod prologue;
 mod shim;
 mod sincos;
 
-use std::borrow::Cow;
-use std::error::Error;
-use std::fmt;
-use std::sync::Arc;
-
-use crate::kernel::kernel::{Entry, Kernel};
-use crate::program::program::Program;
-use host::{Code, Host};
-use plan::Plan;
-
-/// More registers than this are not compiled: offsets in memory are 32-bit.
-const MOST_REGISTERS: usize = i32::MAX as usize / 16;
-
-/// Choices in compiling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct JitOptions {
-    /// Fuse products into sums where the processor has fused multiply-add.
-    ///
-    /// Without it, and without `inline_trig`, results are those of the [`Interpreter`](crate::Interpreter) bit for bit.
-    pub fma: bool,
-    /// Compute sines and cosines in line, to 2 units in the last place, where the processor has fused multiply-add.
-    pub inline_trig: bool,
-    /// How many values are held in machine registers; the others wait in memory.
-    pub registers: u32,
-    /// Instructions in a function, for programs of more than 50 000 instructions.
-    pub chunk: usize,
-}
-
-impl Default for JitOptions {
-    fn default() -> JitOptions {
-        // Of 16 or 32 registers, some hold what an instruction or the generator is about.
-        let registers = if cfg!(target_arch = "x86_64") { 14 } else { 28 };
-        JitOptions { fma: true, inline_trig: true, registers, chunk: 1000 }
-    }
-}
-
-/// Why a program was not compiled.
-#[derive(Debug, thiserror::Error)]
-pub enum JitError {
-    /// No code can be made for this processor or operating system.
-    #[error("no machine code for this host: {reason}")]
-    Host {
-        /// What is missing.
-        reason: String,
-    },
-    /// The program is too long for 32-bit offsets.
-    #[error("a program of {instructions} instructions is too long to compile")]
-    TooLong {
-        /// Its length.
-        instructions: usize,
-    },
-    /// The code generator failed, or memory for the code was not to be had.
-    #[error("the program could not be compiled")]
-    Generator(#[source] Box<dyn Error + Send + Sync>),
-}
-
-/// A kernel that runs a program as machine code.
-///
-/// Clones and forks share the code, which is freed with the last of them.
-///
-/// ```
-/// use pc_expr::{Graph, Inputs, Jit, Kernel, Program};
-///
-/// let graph = Graph::new();
-/// let [x, v] = graph.symbols(["x", "v"]);
-/// let inputs = Inputs { time: None, state: vec![x, v], parameters: vec![] };
-/// let program = Program::new(&graph, &inputs, &[v, -x.sin()])?;
-/// let mut kernel = Jit::new(&program)?;
-/// let mut out = [0.0; 2];
-/// kernel.eval(0.0, &[0.0, 3.0], &[], &mut out);
-/// assert_eq!(out, [3.0, 0.0]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone)]
-pub struct Jit {
-    code: Arc<Code>,
-    lengths: [usize; 3],
-    scratch: Vec<f64>,
-}
-
-impl Jit {
-    /// Compiles a program with the usual [options](JitOptions).
-    ///
-    /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
-    pub fn new(program: &Program) -> Result<Jit, JitError> {
-        Jit::with_options(program, &JitOptions::default())
-    }
-
-    /// Compiles a program.
-    ///
-    /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
-    pub fn with_options(program: &Program, options: &JitOptions) -> Result<Jit, JitError> {
-        let host = Host::get()?;
-        if program.registers_len().max(program.outputs_len()) > MOST_REGISTERS {
-            return Err(JitError::TooLong { instructions: program.code().len() });
-        }
-        let fused = host.has_fma() && options.fma;
-        let program = if fused { Cow::Owned(program.fused()) } else { Cow::Borrowed(program) };
-        let options = JitOptions { inline_trig: options.inline_trig && host.has_fma(), ..*options };
-        let plan = Plan::new(&program, &options);
-        let (code, scratch) = emit::compile(host, &program, &plan)?;
-        Ok(Jit {
-            code: Arc::new(code),
-            lengths: [program.state_len(), program.parameters_len(), program.outputs_len()],
-            scratch: vec![0.0; scratch],
-        })
-    }
-
-    /// The address of the code, for callers that manage memory themselves; valid as long as this kernel or a clone of it.
-    pub fn entry(&self) -> Entry {
-        self.code.entry()
-    }
-
-    /// How many numbers the scratch memory of [`entry`](Jit::entry) holds; their values do not matter.
-    pub fn scratch_len(&self) -> usize {
-        self.scratch.len()
-    }
-
-    /// Length of the state.
-    pub fn state_len(&self) -> usize {
-        self.lengths[0]
-    }
-
-    /// Number of parameters.
-    pub fn parameters_len(&self) -> usize {
-        self.lengths[1]
-    }
-
-    /// Number of outputs.
-    pub fn outputs_len(&self) -> usize {
-        self.lengths[2]
-    }
-}
-
-impl fmt::Debug for Jit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [state, parameters, outputs] = self.lengths;
-        f.debug_struct("Jit")
-            .field("state", &state)
-            .field("parameters", &parameters)
-            .field("outputs", &outputs)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Kernel for Jit {
-    /// # Panics
-    /// If a slice has not the length that the program says: the code would read or write beyond it.
-    fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
-        // One by one, in registers: this is entered for every evaluation.
-        let [of_state, of_parameters, of_outputs] = self.lengths;
-        assert_eq!(state.len(), of_state, "length of the state");
-        assert_eq!(parameters.len(), of_parameters, "number of parameters");
-        assert_eq!(outputs.len(), of_outputs, "number of outputs");
-        let entry = self.code.entry();
-        // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked and within
-        // `scratch_len` numbers of scratch, and exclusive borrows keep outputs and scratch apart from the rest.
-        unsafe {
-            entry(t, state.as_ptr(), parameters.as_ptr(), outputs.as_mut_ptr(), self.scratch.as_mut_ptr());
-        }
-    }
-
-    fn fork(&self) -> Box<dyn Kernel> {
-        Box::new(self.clone())
-    }
-
-    fn machine_code(&self) -> Option<(Entry, usize)> {
-        Some((self.entry(), self.scratch_len()))
-    }
-}
+pub use error::JitError;
+pub use jit::Jit;
+pub use options::JitOptions;

@@ -38,15 +38,6 @@ pub trait Kernel: Send {
     }
 }
 
-/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.
-pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
-    #[cfg(feature = "jit")]
-    if let Ok(jit) = crate::kernel::jit::Jit::new(&program) {
-        return Box::new(jit);
-    }
-    Box::new(Interpreter::new(program))
-}
-
 /// The reference kernel: takes one operation after the other.
 #[derive(Clone, Debug)]
 pub struct Interpreter {

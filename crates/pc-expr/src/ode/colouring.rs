@@ -55,6 +55,13 @@ impl Colouring {
     }
 }
 
+impl Pattern {
+    /// Colours of the columns such that columns of one colour share no row.
+    pub fn colouring(&self) -> Colouring {
+        Colouring::of(self)
+    }
+}
+
 /// For each column the others that share a row with it.
 fn rivals(pattern: &Pattern) -> Vec<Vec<usize>> {
     let mut columns_of_row: Vec<Vec<usize>> = vec![Vec::new(); pattern.rows()];

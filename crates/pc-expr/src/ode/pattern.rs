@@ -1,7 +1,5 @@
 //! Where a matrix may be other than zero.
 
-use crate::ode::colouring::Colouring;
-
 /// The zero pattern of a matrix in compressed columns: the rows of the entries that may be other than zero,
 /// column after column, ascending in each.
 ///
@@ -111,10 +109,5 @@ impl Pattern {
         for ((i, j), value) in self.entries().zip(values) {
             *value = dense[i + j * self.rows];
         }
-    }
-
-    /// Colours of the columns such that columns of one colour share no row.
-    pub fn colouring(&self) -> Colouring {
-        Colouring::of(self)
     }
 }

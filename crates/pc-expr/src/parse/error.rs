@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::parse::grammar::{MAX_DEPTH, Span};
+use crate::parse::syntax_tree::{MAX_DEPTH, Span};
 use crate::parse::vocabulary::{FUNCTIONS, Function};
 
 /// What is wrong with the text of an expression, and where.

@@ -1,7 +1,7 @@
 //! Plain characters set as in a book: vulgar fractions and raised exponents.
 
 use crate::graph::number::Number;
-use crate::print::text::{Binding, Piece, number as plain};
+use crate::print::piece::{Binding, Piece, number as plain};
 
 const FRACTIONS: &[(&str, char)] = &[
     ("1/2", '½'),

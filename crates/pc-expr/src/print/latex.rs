@@ -2,7 +2,7 @@
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
-use crate::print::text::{Binding, Piece};
+use crate::print::piece::{Binding, Piece};
 
 /// Greek letters by the names that LaTeX has for them.
 const GREEK: &[(char, &str)] = &[

@@ -1,9 +1,14 @@
 //! Expressions as text.
 
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use std::fmt;
+
+use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
+use crate::print::piece::{Binding, Piece, number};
+use crate::print::{book, latex};
 
 /// How an expression is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,31 +25,7 @@ pub enum Style {
 const DEEP: usize = 60;
 const LONG: u32 = 20_000;
 
-/// How tightly a piece of text binds.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Binding {
-    Sum,
-    Product,
-    Power,
-    Atom,
-}
-
-pub(crate) struct Piece {
-    pub(crate) text: String,
-    pub(crate) binding: Binding,
-}
-
-impl Piece {
-    pub(crate) fn atom(text: impl Into<String>) -> Piece {
-        Piece { text: text.into(), binding: Binding::Atom }
-    }
-
-    pub(crate) fn at_least(self, binding: Binding) -> String {
-        if self.binding >= binding { self.text } else { format!("({})", self.text) }
-    }
-}
-
-pub(crate) fn print(expr: Expr<'_>, style: Style) -> String {
+fn print(expr: Expr<'_>, style: Style) -> String {
     match (expr.graph(), expr.atom()) {
         (_, Atom::Constant(c)) => style.number(c).text,
         (None, Atom::Node(_)) => "?".to_owned(),
@@ -52,19 +33,39 @@ pub(crate) fn print(expr: Expr<'_>, style: Style) -> String {
     }
 }
 
+impl Expr<'_> {
+    /// The text in another style than [`Display`](fmt::Display)'s.
+    pub fn display(self, style: Style) -> String {
+        print(self, style)
+    }
+}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl fmt::Display for Expr<'_> {
+    /// The text in the expression language.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.display(Style::Text))
+    }
+}
+
 impl Style {
     fn number(self, c: Number) -> Piece {
         match self {
             Style::Text => number(c),
-            Style::Book => crate::print::book::number(c),
-            Style::Latex => crate::print::latex::number(c),
+            Style::Book => book::number(c),
+            Style::Latex => latex::number(c),
         }
     }
 
     fn symbol(self, name: &str) -> Piece {
         Piece::atom(match self {
             Style::Text | Style::Book => name.to_owned(),
-            Style::Latex => crate::print::latex::symbol(name),
+            Style::Latex => latex::symbol(name),
         })
     }
 
@@ -74,15 +75,15 @@ impl Style {
                 let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
                 Piece::atom(format!("{}({})", function.name(), args.join(", ")))
             }
-            Style::Latex => crate::print::latex::call(function, args),
+            Style::Latex => latex::call(function, args),
         }
     }
 
     fn power(self, base: Piece, exponent: Piece) -> Piece {
         let text = match self {
             Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
-            Style::Book => crate::print::book::power(base, exponent),
-            Style::Latex => crate::print::latex::power(&base, &exponent.text),
+            Style::Book => book::power(base, exponent),
+            Style::Latex => latex::power(&base, &exponent.text),
         };
         Piece { text, binding: Binding::Power }
     }
@@ -92,17 +93,13 @@ impl Style {
         match self {
             Style::Text => factors.join("*"),
             Style::Book => factors.join(" "),
-            Style::Latex => crate::print::latex::juxtaposed(&factors),
+            Style::Latex => latex::juxtaposed(&factors),
         }
     }
 
     fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
         match self {
-            Style::Latex => format!(
-                "\\frac{{{}}}{{{}}}",
-                crate::print::latex::alone(above),
-                crate::print::latex::alone(below)
-            ),
+            Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
             _ if below.len() == 1 => {
                 format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
             }
@@ -114,18 +111,6 @@ impl Style {
 struct Printer<'d> {
     dag: &'d Dag,
     style: Style,
-}
-
-pub(crate) fn number(c: Number) -> Piece {
-    let text = if c == Number::UNDEFINED { "undefined".to_owned() } else { c.to_string() };
-    let binding = if text.starts_with('-') {
-        Binding::Sum
-    } else if text.contains('/') {
-        Binding::Product
-    } else {
-        Binding::Atom
-    };
-    Piece { text, binding }
 }
 
 impl Printer<'_> {

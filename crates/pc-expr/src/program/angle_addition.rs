@@ -8,8 +8,9 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::graph::dag::{Dag, Node, NodeId};
+use crate::graph::dag::Dag;
 use crate::graph::function::Function;
+use crate::graph::node::{Node, NodeId};
 use crate::graph::subgraph::Cone;
 
 /// An angle with a sign.

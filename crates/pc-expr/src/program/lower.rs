@@ -3,16 +3,58 @@
 use rustc_hash::FxHashMap;
 
 use crate::error::ExprError;
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
 use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 use crate::program::angle_addition::{Compositions, SignedAngle, compositions};
-use crate::program::program::{Instruction, Program, Register};
+use crate::program::program::{Inputs, Instruction, Program, Register};
 use crate::program::sharing::{Factor, FactorId, SharedProduct, SharedProducts};
 
+impl Program {
+    /// The program of `outputs`.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`] if an output contains a symbol that is not among the inputs,
+    /// [`ExprError::DivisionByZero`] if the graph met a division by an expression that is identically zero.
+    pub fn new<'g>(
+        graph: &'g Graph,
+        inputs: &Inputs<'g>,
+        outputs: &[Expr<'g>],
+    ) -> Result<Program, ExprError> {
+        graph.check(outputs)?;
+        let symbols: Vec<Option<NodeId>> = std::iter::once(inputs.time.map(|t| t.symbol_in(graph)))
+            .chain(inputs.state.iter().chain(&inputs.parameters).map(|s| Some(s.symbol_in(graph))))
+            .collect();
+        let names = inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters);
+        let names = names.map(|s| s.symbol_name().unwrap_or_default());
+        let names: Vec<String> = if inputs.time.is_some() {
+            names.collect()
+        } else {
+            std::iter::once("t".to_owned()).chain(names).collect()
+        };
+        let known: Vec<Expr<'g>> =
+            inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
+        let outputs = graph.written_in(outputs, &known);
+        let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
+        let mut program = Program {
+            constants: Vec::new(),
+            names,
+            state: inputs.state.len(),
+            parameters: inputs.parameters.len(),
+            code: Vec::new(),
+            outputs: Vec::new(),
+        };
+        graph.with(|dag| Lowering::new(dag, &symbols, &mut program).run(&atoms))?;
+        Ok(program)
+    }
+}
+
 /// Turns n-ary nodes into binary operations, each computed once.
-pub(crate) struct Lowering<'a> {
+struct Lowering<'a> {
     dag: &'a Dag,
     program: &'a mut Program,
     constants: FxHashMap<u64, Register>,
@@ -30,7 +72,7 @@ const INPUT: u32 = 1 << 29;
 const RESULT: u32 = 1 << 30;
 
 impl<'a> Lowering<'a> {
-    pub(crate) fn new(dag: &'a Dag, symbols: &[Option<NodeId>], program: &'a mut Program) -> Lowering<'a> {
+    fn new(dag: &'a Dag, symbols: &[Option<NodeId>], program: &'a mut Program) -> Lowering<'a> {
         let mut registers = FxHashMap::default();
         for (i, symbol) in symbols.iter().enumerate() {
             if let Some(node) = symbol {
@@ -50,7 +92,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    pub(crate) fn run(mut self, outputs: &[Atom]) -> Result<(), ExprError> {
+    fn run(mut self, outputs: &[Atom]) -> Result<(), ExprError> {
         let cone = Cone::below(self.dag, outputs.iter().copied());
         for &id in &cone.order {
             if let Node::Symbol(index) = self.dag.node(id)

@@ -1,12 +1,8 @@
 //! Straight-line programs: chosen outputs of a graph as a tape that needs the graph no more.
 
-use crate::error::ExprError;
-use crate::graph::dag::{Atom, NodeId};
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
-use crate::graph::graph::Graph;
-use crate::print::text::{Binding, Piece, number};
-use crate::program::lower::Lowering;
+use crate::print::piece::{Binding, Piece, number};
 
 /// A register of the tape: constants first, then inputs, then one for each instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -97,50 +93,13 @@ pub struct Inputs<'g> {
 pub struct Program {
     pub(crate) constants: Vec<f64>,
     pub(crate) names: Vec<String>,
-    state: usize,
-    parameters: usize,
+    pub(super) state: usize,
+    pub(super) parameters: usize,
     pub(crate) code: Vec<Instruction>,
     pub(crate) outputs: Vec<Register>,
 }
 
 impl Program {
-    /// The program of `outputs`.
-    ///
-    /// # Errors
-    /// [`ExprError::UnboundSymbol`] if an output contains a symbol that is not among the inputs,
-    /// [`ExprError::DivisionByZero`] if the graph met a division by an expression that is identically zero.
-    pub fn new<'g>(
-        graph: &'g Graph,
-        inputs: &Inputs<'g>,
-        outputs: &[Expr<'g>],
-    ) -> Result<Program, ExprError> {
-        graph.check(outputs)?;
-        let symbols: Vec<Option<NodeId>> = std::iter::once(inputs.time.map(|t| t.symbol_in(graph)))
-            .chain(inputs.state.iter().chain(&inputs.parameters).map(|s| Some(s.symbol_in(graph))))
-            .collect();
-        let names = inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters);
-        let names = names.map(|s| s.symbol_name().unwrap_or_default());
-        let names: Vec<String> = if inputs.time.is_some() {
-            names.collect()
-        } else {
-            std::iter::once("t".to_owned()).chain(names).collect()
-        };
-        let known: Vec<Expr<'g>> =
-            inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
-        let outputs = graph.written_in(outputs, &known);
-        let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
-        let mut program = Program {
-            constants: Vec::new(),
-            names,
-            state: inputs.state.len(),
-            parameters: inputs.parameters.len(),
-            code: Vec::new(),
-            outputs: Vec::new(),
-        };
-        graph.with(|dag| Lowering::new(dag, &symbols, &mut program).run(&atoms))?;
-        Ok(program)
-    }
-
     /// Length of the state.
     pub fn state_len(&self) -> usize {
         self.state

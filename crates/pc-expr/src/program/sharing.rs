@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::graph::dag::{Atom, Dag, Node, NodeId};
+use crate::graph::dag::Dag;
+use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::subgraph::Cone;
 
 /// Products of more factors than this are not searched for pairs.

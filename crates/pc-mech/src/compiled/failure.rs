@@ -6,7 +6,7 @@ use crate::error::MechError;
 
 /// What is wrong, before it is known where.
 #[derive(Debug)]
-pub(crate) enum Fault {
+pub(crate) enum EvaluationFailure {
     /// The pivot of the unknown of that index vanished.
     Pivot { index: usize, pivot: f64 },
     /// The constraint of that index among unknowns and constraints is none at this state.
@@ -25,11 +25,13 @@ pub(crate) enum Fault {
     Expr(ExprError),
 }
 
-impl Fault {
+impl EvaluationFailure {
     /// The same of a pivot whose unknown has another index.
-    pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> Fault {
+    pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> EvaluationFailure {
         match self {
-            Fault::Pivot { index, pivot } => Fault::Pivot { index: place(index), pivot },
+            EvaluationFailure::Pivot { index, pivot } => {
+                EvaluationFailure::Pivot { index: place(index), pivot }
+            }
             other => other,
         }
     }
@@ -38,23 +40,25 @@ impl Fault {
     pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
         let state = || names.iter().cloned().zip(state.iter().copied()).collect();
         match self {
-            Fault::Pivot { index, pivot } => {
+            EvaluationFailure::Pivot { index, pivot } => {
                 let quasi_velocity = unknowns[index].clone();
                 MechError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }
             }
-            Fault::Constraint { index } => {
+            EvaluationFailure::Constraint { index } => {
                 MechError::SingularConstraint { constraint: unknowns[index].clone(), t, state: state() }
             }
-            Fault::NoProjection { unknowns: k } => {
+            EvaluationFailure::NoProjection { unknowns: k } => {
                 MechError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
             }
-            Fault::Departed { constraint } => MechError::Departed { constraint, t, state: state() },
-            Fault::NotSolved { residual, iterations } => {
+            EvaluationFailure::Departed { constraint } => {
+                MechError::Departed { constraint, t, state: state() }
+            }
+            EvaluationFailure::NotSolved { residual, iterations } => {
                 MechError::LegendreNotSolved { residual, iterations, t, state: state() }
             }
-            Fault::NotKept => MechError::NotKept { t, state: state() },
-            Fault::NotCompiled { what } => MechError::NotCompiled { what },
-            Fault::Expr(error) => error.into(),
+            EvaluationFailure::NotKept => MechError::NotKept { t, state: state() },
+            EvaluationFailure::NotCompiled { what } => MechError::NotCompiled { what },
+            EvaluationFailure::Expr(error) => error.into(),
         }
     }
 }
@@ -62,12 +66,12 @@ impl Fault {
 /// That all values are finite.
 ///
 /// # Errors
-/// [`Fault::Expr`] for the first that is not on the way to them.
+/// [`EvaluationFailure::Expr`] for the first that is not on the way to them.
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
-) -> Result<(), Fault> {
+) -> Result<(), EvaluationFailure> {
     // Number by number, with an early end: to look at several at a time would wait for those just written.
     if values.iter().all(|value| value.is_finite()) {
         Ok(())
@@ -78,7 +82,10 @@ pub(crate) fn check_finite(
 
 /// What is to blame for values that are not finite.
 #[cold]
-pub(crate) fn blame(evaluator: &Evaluator, (t, state, parameters): (f64, &[f64], &[f64])) -> Fault {
+pub(crate) fn blame(
+    evaluator: &Evaluator,
+    (t, state, parameters): (f64, &[f64], &[f64]),
+) -> EvaluationFailure {
     // The operations of the interpreter, which are not fused, may all end where those of machine code do not.
     let fused = || ExprError::NotFinite {
         expression: "a result of fused operations".to_owned(),
@@ -86,5 +93,5 @@ pub(crate) fn blame(evaluator: &Evaluator, (t, state, parameters): (f64, &[f64],
         t,
         state: Vec::new(),
     };
-    Fault::Expr(evaluator.diagnose(t, state, parameters).unwrap_or_else(fused))
+    EvaluationFailure::Expr(evaluator.diagnose(t, state, parameters).unwrap_or_else(fused))
 }

@@ -5,6 +5,7 @@ use pc_expr::{Expr, Graph, Inputs, Pattern};
 
 use crate::compiled::elimination::columns::nonzeros;
 use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::equations::poincare::Equations;
 
 /// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
 ///
@@ -123,6 +124,41 @@ impl<'g> FirstOrder<'g> {
             longer.map(|name| self.graph.symbol(&name)).find(|name| !taken.contains(name)).unwrap_or(*symbol)
         };
         symbols.iter().map(free).collect()
+    }
+}
+
+impl<'g> Equations<'g> {
+    /// The case w = η̇, g = (b η + b_0, w).
+    pub(crate) fn first_order(&self) -> FirstOrder<'g> {
+        let system = &self.system;
+        let x = system.frame.coordinates();
+        let unknowns = system.accelerations();
+        let energy = ("energy".to_owned(), self.energy);
+        FirstOrder {
+            graph: system.graph(),
+            time: system.frame.time(),
+            state: system.state(),
+            coordinates: x.len(),
+            states: system.states.len(),
+            parameters: system.run_time_inputs(),
+            names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
+            multipliers: 0,
+            rank: 0,
+            mass: self.mass.clone(),
+            implicit: None,
+            right: self.right.clone(),
+            rates: self
+                .velocities
+                .iter()
+                .chain(&unknowns)
+                .chain(system.states.iter().map(|(_, rate)| rate))
+                .copied()
+                .collect(),
+            unknowns,
+            collected_by: system.collecting_order(),
+            observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
+            conserved: system.integrals.len() + 1,
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 
 use crate::compiled::elimination::solver::Solver;
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::{FirstOrder, Implicit};
 
 /// The most steps.
@@ -94,21 +94,21 @@ impl Newton {
     /// Writes w after y in `known`, and leaves M there factorised in `solver`.
     ///
     /// # Errors
-    /// [`Fault::NotSolved`]; [`Fault::Expr`] and [`Fault::Pivot`] where p cannot be evaluated or M is singular
-    /// at the guess.
+    /// [`EvaluationFailure::NotSolved`]; [`EvaluationFailure::Expr`] and [`EvaluationFailure::Pivot`] where p cannot be
+    /// evaluated or M is singular at the guess.
     pub(crate) fn solve(
         &mut self,
         t: f64,
         known: &mut [f64],
         p: &[f64],
         solver: &mut Solver,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         let dim = known.len() - self.guess.len();
         known[dim..].copy_from_slice(&self.guess);
-        let outcome = self.solve_from((t, p), known, solver).or_else(|fault| {
-            let Some(last) = &self.last else { return Err(fault) };
+        let outcome = self.solve_from((t, p), known, solver).or_else(|failure| {
+            let Some(last) = &self.last else { return Err(failure) };
             known[dim..].copy_from_slice(last);
-            self.solve_from((t, p), known, solver).map_err(|_| fault)
+            self.solve_from((t, p), known, solver).map_err(|_| failure)
         });
         if outcome.is_ok() {
             self.last.get_or_insert_with(|| vec![0.0; self.guess.len()]).copy_from_slice(&known[dim..]);
@@ -117,7 +117,12 @@ impl Newton {
     }
 
     /// The same from the w in `known`.
-    fn solve_from(&mut self, (t, p): At<'_>, known: &mut [f64], solver: &mut Solver) -> Result<(), Fault> {
+    fn solve_from(
+        &mut self,
+        (t, p): At<'_>,
+        known: &mut [f64],
+        solver: &mut Solver,
+    ) -> Result<(), EvaluationFailure> {
         let dim = known.len() - self.guess.len();
         self.equations.eval(t, known, p, &mut self.values);
         check_finite(&self.values, &self.equations, (t, known, p))?;
@@ -173,7 +178,7 @@ impl Newton {
         })
     }
 
-    fn factorise(&self, solver: &mut Solver) -> Result<(), Fault> {
+    fn factorise(&self, solver: &mut Solver) -> Result<(), EvaluationFailure> {
         solver.factorise(&self.lower, &self.values[..self.lower.len()])
     }
 
@@ -218,9 +223,9 @@ impl Newton {
         solver.solve(step);
     }
 
-    fn failure(&self, iterations: usize) -> Fault {
+    fn failure(&self, iterations: usize) -> EvaluationFailure {
         let residual = self.here.residual.iter().copied().fold(0.0, f64::hypot);
-        Fault::NotSolved { residual, iterations }
+        EvaluationFailure::NotSolved { residual, iterations }
     }
 }
 

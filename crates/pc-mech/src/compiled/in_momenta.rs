@@ -9,43 +9,52 @@ use pc_expr::{
 
 use crate::compiled::elimination::columns::derivative;
 use crate::compiled::failure::check_finite;
-use crate::compiled::motion::Motion;
+use crate::compiled::legendre_transform::LegendreTransform;
+use crate::compiled::motion::{InMomenta, Motion, Slopes};
 use crate::compiled::options::CompileOptions;
 use crate::constraints::multipliers::Multipliers;
-use crate::equations::legendre::LegendreTransform;
 use crate::error::MechError;
 
-/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
-///
-///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
-///
-/// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
-///
-///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
-///
-/// First-order states z follow in both.
-#[derive(Clone, Debug)]
-pub(crate) struct InMomenta {
-    transform: LegendreTransform,
-    inner: Box<Motion>,
-    quasi_velocities: usize,
-    /// ẏ of (t, (x, η, z, η̇)).
-    transport: Evaluator,
-    /// By x and z and, where these are asked for, by the parameters.
-    jacobian: Option<Slopes>,
-    parameter_jacobian: Option<Slopes>,
-    /// x, η, z, then η̇.
-    known: Vec<f64>,
-    full: Pattern,
-}
-
-/// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
-/// ∂ẏ/∂η and of M.
-#[derive(Clone, Debug)]
-struct Slopes {
-    symbols: usize,
-    multipliers: usize,
-    entries: Evaluator,
+impl Multipliers<'_> {
+    /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
+    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`](crate::System::momentum_symbols):
+    ///
+    ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
+    ///
+    /// No velocities are chosen for independent ones, so that no position is singular but those of the constraints
+    /// themselves. States are projected as those of [`compile_for`](Multipliers::compile_for) are, and what is observed or
+    /// [kept](Motion::keep) is the same; to keep integrals, those of these multipliers are to be given. There is no product with
+    /// the Jacobian.
+    ///
+    /// `guess` are η from which solutions of y = ∂L/∂η are looked for where L is not quadratic in η, or a constraint is not
+    /// affine.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System, VectorField};
+    ///
+    /// // A pendulum of mass 2 in Cartesian coordinates, where it is level.
+    /// let graph = Graph::new();
+    /// let pendulum = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| v[0].square() + v[1].square() - 20.0 * x[1])
+    ///     .build()?;
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// let circle = Constraint::new("length", x.square() + y.square() - 1.0);
+    /// let held = pendulum.with_multipliers(&[circle])?;
+    /// let mut motion = held.compile_in_momenta(Default::default(), &[0.0, 0.0])?;
+    /// let mut rates = [0.0; 4];
+    /// motion.rhs(0.0, &[1.0, 0.0, 0.0, 4.0], &mut rates)?; // ẏ = 2: ẍ = −|ṙ|²
+    /// assert_eq!(rates, [0.0, 2.0, -8.0, -20.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`compile_for`](Multipliers::compile_for); [`MechError::Shape`] for a guess of another length.
+    pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
+        let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
+        let momenta = self.equations.system.momentum_symbols();
+        Ok(Motion::of_momenta(motion, momenta.iter().map(Expr::to_string)))
+    }
 }
 
 impl InMomenta {
@@ -182,7 +191,7 @@ impl InMomenta {
         let rates = &mut ydot[self.moving()];
         self.transport.eval(t, &self.known, parameters, rates);
         check_finite(rates, &self.transport, (t, &self.known, parameters))
-            .map_err(|fault| self.inner.failure(fault, t, &self.known[..y.len()]))
+            .map_err(|failure| self.inner.failure(failure, t, &self.known[..y.len()]))
     }
 
     /// To where the motion of (x, η) is projected; momenta of a state that is there are left as they are.
@@ -264,7 +273,7 @@ impl InMomenta {
         let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
         slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
         check_finite(&values, &slopes.entries, (t, &self.known, self.inner.parameters()))
-            .map_err(|fault| self.inner.failure(fault, t, &self.known[..dim]))?;
+            .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
         let (by_q, moving) = values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);
         // ∂h/∂q, then ∂h/∂y

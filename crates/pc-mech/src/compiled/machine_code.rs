@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pc_expr::Entry;
 
-use crate::compiled::elimination::pivots::Layout;
+use crate::compiled::elimination::pivots::PivotPartition;
 
 /// The machine code of f, for callers that manage memory themselves, and what its outputs are.
 ///
@@ -17,11 +17,15 @@ pub struct MachineCode {
     scratch: usize,
     rates: usize,
     outputs: usize,
-    pivots: Arc<Layout>,
+    pivots: Arc<PivotPartition>,
 }
 
 impl MachineCode {
-    pub(crate) fn new((entry, scratch): (Entry, usize), rates: usize, pivots: Arc<Layout>) -> MachineCode {
+    pub(crate) fn new(
+        (entry, scratch): (Entry, usize),
+        rates: usize,
+        pivots: Arc<PivotPartition>,
+    ) -> MachineCode {
         MachineCode { entry, scratch, rates, outputs: rates + pivots.moving_len(), pivots }
     }
 

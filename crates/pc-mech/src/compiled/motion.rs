@@ -1,18 +1,17 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Expr, Failure, Pattern, TimeDependence, VectorField};
+use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, VectorField};
 
-use crate::compiled::elimination::columns::Layout;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
-use crate::compiled::in_momenta::InMomenta;
+use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::Surface;
-use crate::compiled::projection::holding::Held;
+use crate::compiled::projection::holding::PrescribedComponents;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::equations::poincare::Equations;
 use crate::error::MechError;
@@ -26,29 +25,62 @@ pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// n coordinates, then k quasi-velocities or momenta, then first-order states.
-    names: Vec<String>,
-    coordinates: usize,
-    states: usize,
+    pub(super) names: Vec<String>,
+    pub(super) coordinates: usize,
+    pub(super) states: usize,
     /// What the pivots of M belong to: quasi-velocities, then constraints.
-    quasi_velocities: Vec<String>,
-    parameters: Vec<f64>,
-    form: Form,
-    options: CompileOptions,
-    observable_names: Vec<String>,
-    conserved: usize,
+    pub(super) quasi_velocities: Vec<String>,
+    pub(super) parameters: Vec<f64>,
+    pub(super) form: Form,
+    pub(super) options: CompileOptions,
+    pub(super) observable_names: Vec<String>,
+    pub(super) conserved: usize,
     /// The constraints by their names, and where they are satisfied.
-    constraints: Vec<String>,
-    surface: Option<Box<Surface>>,
-    kept: Option<Box<KeptIntegrals>>,
-    signals: Signals,
+    pub(super) constraints: Vec<String>,
+    pub(super) surface: Option<Box<Surface>>,
+    pub(super) kept: Option<Box<KeptIntegrals>>,
+    pub(super) signals: Signals,
 }
 
 /// How f is computed.
 #[derive(Clone, Debug)]
-enum Form {
+pub(super) enum Form {
     Unrolled(Box<Unrolled>),
     Staged(Box<Staged>),
     InMomenta(Box<InMomenta>),
+}
+
+/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
+///
+///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
+///
+/// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
+///
+///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
+///
+/// First-order states z follow in both.
+#[derive(Clone, Debug)]
+pub(crate) struct InMomenta {
+    pub(super) transform: LegendreTransform,
+    pub(super) inner: Box<Motion>,
+    pub(super) quasi_velocities: usize,
+    /// ẏ of (t, (x, η, z, η̇)).
+    pub(super) transport: Evaluator,
+    /// By x and z and, where these are asked for, by the parameters.
+    pub(super) jacobian: Option<Slopes>,
+    pub(super) parameter_jacobian: Option<Slopes>,
+    /// x, η, z, then η̇.
+    pub(super) known: Vec<f64>,
+    pub(super) full: Pattern,
+}
+
+/// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
+/// ∂ẏ/∂η and of M.
+#[derive(Clone, Debug)]
+pub(super) struct Slopes {
+    pub(super) symbols: usize,
+    pub(super) multipliers: usize,
+    pub(super) entries: Evaluator,
 }
 
 impl<'g> Equations<'g> {
@@ -71,39 +103,6 @@ impl<'g> Equations<'g> {
     /// As [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         self.first_order().compile(&options.into(), LONGEST_ELIMINATION)
-    }
-
-    /// The case w = η̇, g = (b η + b_0, w).
-    pub(crate) fn first_order(&self) -> FirstOrder<'g> {
-        let system = &self.system;
-        let x = system.frame.coordinates();
-        let unknowns = system.accelerations();
-        let energy = ("energy".to_owned(), self.energy);
-        FirstOrder {
-            graph: system.graph(),
-            time: system.frame.time(),
-            state: system.state(),
-            coordinates: x.len(),
-            states: system.states.len(),
-            parameters: system.run_time_inputs(),
-            names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
-            multipliers: 0,
-            rank: 0,
-            mass: self.mass.clone(),
-            implicit: None,
-            right: self.right.clone(),
-            rates: self
-                .velocities
-                .iter()
-                .chain(&unknowns)
-                .chain(system.states.iter().map(|(_, rate)| rate))
-                .copied()
-                .collect(),
-            unknowns,
-            collected_by: system.collecting_order(),
-            observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
-            conserved: system.integrals.len() + 1,
-        }
     }
 }
 
@@ -221,20 +220,6 @@ impl Motion {
     /// The tables that it is driven by.
     pub fn signals(&self) -> &Signals {
         &self.in_quasi_velocities().signals
-    }
-
-    /// Reads the tables, if there are any.
-    #[inline]
-    fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
-        if self.signals.is_empty() {
-            return Ok(());
-        }
-        if self.signals.read(t, &mut self.parameters).map_err(Failure::fatal)?
-            && let Form::Unrolled(unrolled) = &mut self.form
-        {
-            unrolled.forget();
-        }
-        Ok(())
     }
 
     /// Names of the observables: the integrals, `energy`, the outputs.
@@ -365,17 +350,6 @@ impl Motion {
         matches!(self.form, Form::Staged(_))
     }
 
-    /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
-    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), Fault> {
-        if let Some(surface) = &mut self.surface {
-            surface.project(t, y, &self.parameters)?;
-        }
-        if let Some(kept) = &mut self.kept {
-            kept.project(t, y, &self.parameters)?;
-        }
-        Ok(())
-    }
-
     /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices left as they
     /// are: the others follow by the shortest way in the kinetic metric.
     ///
@@ -389,9 +363,9 @@ impl Motion {
         quasi_velocities: &[usize],
     ) -> Result<(), Failure> {
         let Some(surface) = &mut self.surface else { return Ok(()) };
-        let held = Held { coordinates, quasi_velocities };
+        let held = PrescribedComponents { coordinates, quasi_velocities };
         let projected = surface.project_holding((t, y, &self.parameters), &held);
-        projected.map_err(|fault| self.failure(fault, t, y))
+        projected.map_err(|failure| self.failure(failure, t, y))
     }
 
     /// ẏ with each component of the state, and each number of the equations where these are solved in numbers, times a
@@ -416,7 +390,7 @@ impl Motion {
                 Ok(())
             }
         };
-        outcome.map_err(|fault| MechError::from(self.failure(fault, t, &state)))?;
+        outcome.map_err(|failure| MechError::from(self.failure(failure, t, &state)))?;
         Ok((state, rates))
     }
 
@@ -431,159 +405,13 @@ impl Motion {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         let parameters = &self.parameters;
         let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
-        outcome.map_err(|fault| self.failure(fault, t, y))
+        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     #[cold]
-    pub(crate) fn failure(&self, fault: Fault, t: f64, y: &[f64]) -> Failure {
-        let fatal = matches!(fault, Fault::NotCompiled { .. });
-        let error = fault.at(&self.quasi_velocities, t, &self.names, y);
+    pub(crate) fn failure(&self, failure: EvaluationFailure, t: f64, y: &[f64]) -> Failure {
+        let fatal = matches!(failure, EvaluationFailure::NotCompiled { .. });
+        let error = failure.at(&self.quasi_velocities, t, &self.names, y);
         if fatal { Failure::fatal(error) } else { Failure::recoverable(error) }
-    }
-
-    fn write_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        entries: &mut [f64],
-        layout: Layout,
-    ) -> Result<(), Failure> {
-        self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
-        let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, layout),
-            Form::Staged(staged) => staged.jacobian(at, entries, layout),
-            Form::InMomenta(motion) => return motion.jacobian(t, y, entries), // full in both layouts
-        };
-        outcome.map_err(|fault| self.failure(fault, t, y))
-    }
-}
-
-impl VectorField for Motion {
-    fn dim(&self) -> usize {
-        self.names.len()
-    }
-
-    #[inline]
-    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.read_signals(t)?;
-        let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
-            Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
-            Form::InMomenta(motion) => return motion.rhs(t, y, ydot),
-        };
-        outcome.map_err(|fault| self.failure(fault, t, y))
-    }
-
-    fn checks_rates(&self) -> bool {
-        true
-    }
-
-    fn has_jacobian(&self) -> bool {
-        self.options.jacobian
-    }
-
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-        self.write_jacobian(t, y, jacobian, Layout::Dense)
-    }
-
-    /// Known if the Jacobian was compiled.
-    fn sparsity(&self) -> Option<&Pattern> {
-        match &self.form {
-            Form::Unrolled(unrolled) => unrolled.pattern(),
-            Form::Staged(staged) => staged.pattern(),
-            Form::InMomenta(motion) => motion.pattern(),
-        }
-    }
-
-    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        self.write_jacobian(t, y, values, Layout::Sparse)
-    }
-
-    fn has_jvp(&self) -> bool {
-        self.options.jvp
-    }
-
-    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
-        self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
-        let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
-            Form::Staged(staged) => staged.jvp(at, v, product),
-            Form::InMomenta(_) => Err(Fault::NotCompiled { what: "product with its Jacobian" }),
-        };
-        outcome.map_err(|fault| self.failure(fault, t, y))
-    }
-
-    fn parameters_len(&self) -> usize {
-        self.parameters().len()
-    }
-
-    fn has_parameter_jacobian(&self) -> bool {
-        self.options.parameter_jacobian
-    }
-
-    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-        self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
-        let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
-            Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
-            Form::InMomenta(motion) => return motion.parameter_jacobian(t, y, jacobian),
-        };
-        outcome.map_err(|fault| self.failure(fault, t, y))
-    }
-
-    fn parameter_size(&self, j: usize) -> Option<f64> {
-        self.parameters.get(j).map(|value| value.abs())
-    }
-
-    fn has_projection(&self) -> bool {
-        let inner = self.in_quasi_velocities();
-        inner.surface.is_some() || inner.kept.is_some()
-    }
-
-    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        if let Form::InMomenta(motion) = &mut self.form {
-            return motion.project(t, y);
-        }
-        self.project_in_turn(t, y).map_err(|fault| self.failure(fault, t, y))
-    }
-
-    fn time_dependence(&self) -> TimeDependence {
-        match &self.form {
-            Form::Unrolled(unrolled) => unrolled.time_dependence(self.names.len(), &self.parameters),
-            Form::Staged(staged) => staged.time_dependence(&self.parameters),
-            Form::InMomenta(motion) => motion.time_dependence(),
-        }
-    }
-
-    fn restart(&mut self, t: f64, y: &[f64]) {
-        if let Form::InMomenta(motion) = &mut self.form {
-            return motion.restart(t, y);
-        }
-        let Some(kept) = &mut self.kept else { return };
-        let mut state = y.to_vec();
-        if let Some(surface) = &mut self.surface
-            && surface.project(t, &mut state, &self.parameters).is_err()
-        {
-            state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
-        }
-        kept.set_levels((t, &state, &self.parameters));
-    }
-
-    fn breaks(&self) -> &[f64] {
-        self.signals().breaks()
-    }
-
-    fn enter(&mut self, t: f64, end: f64) -> bool {
-        match &mut self.form {
-            Form::InMomenta(motion) => motion.inner_mut().enter(t, end),
-            Form::Unrolled(_) | Form::Staged(_) => self.signals.enter(t, end),
-        }
-    }
-
-    fn component_name(&self, i: usize) -> String {
-        self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
     }
 }

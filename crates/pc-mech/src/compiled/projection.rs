@@ -1,9 +1,11 @@
 //! States brought back to where the motion stays.
 //!
 //! `constraint_manifold` is the surface on which constraints hold, with conditions that follow (`followers`) and states
-//! some components of which are prescribed (`holding`); `integrals` are first integrals that are kept.
+//! some components of which are prescribed (`holding`); `integrals` are first integrals that are kept, `keeping` gives
+//! them to a motion.
 
 pub(crate) mod constraint_manifold;
 pub(crate) mod followers;
 pub(crate) mod holding;
 pub(crate) mod integrals;
+pub(crate) mod keeping;

@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg};
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Function, Graph, Inputs, Number, Program, Scalar};
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 
 /// What the errors are counted in. An operation errs by a quarter of it; a long sum, of whose roundings only those of the
 /// terms are counted, by more.
@@ -63,8 +63,8 @@ impl Measured {
     /// The values at (t, y).
     ///
     /// # Errors
-    /// [`Fault::Expr`] if one is not finite.
-    pub(crate) fn try_eval(&mut self, at: (f64, &[f64], &[f64])) -> Result<&[f64], Fault> {
+    /// [`EvaluationFailure::Expr`] if one is not finite.
+    pub(crate) fn try_eval(&mut self, at: (f64, &[f64], &[f64])) -> Result<&[f64], EvaluationFailure> {
         self.eval(at);
         check_finite(self.values(), &self.functions, at)?;
         Ok(self.values())

@@ -4,7 +4,8 @@ use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
-use crate::constraints::multipliers::{Constraint, Multipliers};
+use crate::constraints::constraint::Constraint;
+use crate::constraints::multipliers::Multipliers;
 use crate::error::MechError;
 use crate::system::system::System;
 

@@ -4,7 +4,7 @@ use pc_algebra::{Elimination, Matrix, Neighbourhood, StructureCoefficients, inve
 use pc_expr::Expr;
 
 use crate::compiled::elimination::saddle_point::Saddle;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 use crate::constraints::multipliers::Multipliers;
 use crate::error::{MechError, shape};
 use crate::numeric::least_squares::LeastSquares;
@@ -122,9 +122,6 @@ impl<'g> Multipliers<'g> {
         let primed = solved.iter().map(|(eta, _)| graph.symbol(&format!("{eta}'")));
         let known: Vec<_> = solved.iter().copied().chain(primed.zip(accelerations)).collect();
         let put = |list: &[Expr<'g>]| graph.substitute(list, &known);
-        let named = |list: &[(String, Expr<'g>)]| {
-            list.iter().map(|(name, value)| (name.clone(), put(&[*value])[0])).collect()
-        };
 
         // Q'_s = Q_s + Q_D ∂η_D/∂η_s
         let forces = put(system.forces());
@@ -135,19 +132,13 @@ impl<'g> Multipliers<'g> {
         let carried: Vec<Vec<Expr<'g>>> = values.iter().map(|&value| graph.gradient(value, &free)).collect();
         let pushed = solved.iter().map(|(eta, _)| force(eta));
         let push = |s: usize| graph.dot(pushed.clone(), carried.iter().map(|row| row[s]));
+        let others = System { forces: Vec::new(), ..system.clone() };
         Ok(System {
             forces: free.iter().enumerate().map(|(s, eta)| force(eta) + push(s)).collect(),
-            parameters: system.parameters().to_vec(),
-            signals: system.signals().to_vec(),
-            external: system.external_forces().to_vec(),
-            lagrangian: put(&[system.lagrangian()])[0],
-            integrals: named(system.integrals()),
-            outputs: named(system.outputs()),
-            states: system.states_in(put),
-            bodies: system.bodies.map(put),
             quasi_velocities: free,
             structure,
             frame,
+            ..others.map_expressions(put)
         })
     }
 
@@ -237,9 +228,9 @@ impl<'g> Multipliers<'g> {
         let (lower, entries) = self.first_order().lower_triangle();
         let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
         let mut saddle = Saddle::of_rank(k, m, m);
-        saddle.eliminate(&lower, &values).map_err(|fault| {
-            let place = match fault {
-                Fault::Constraint { index } => index - k,
+        saddle.eliminate(&lower, &values).map_err(|failure| {
+            let place = match failure {
+                EvaluationFailure::Constraint { index } => index - k,
                 _ => 0,
             };
             let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);

@@ -1,102 +1,17 @@
 //! Constraints held by multipliers, in whatever coordinates.
 
-use pc_algebra::{Matrix, Quadratic, affine, quadratic};
+use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::Expr;
 
 use crate::compiled::first_order::{FirstOrder, Implicit};
-use crate::compiled::in_momenta::InMomenta;
+use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::{Conditions, Surface};
-use crate::equations::legendre::LegendreTransform;
+use crate::constraints::constraint::Constraint;
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
-use crate::stability::steady::check_length;
+use crate::error::{MechError, shape};
 use crate::system::system::System;
-
-/// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities.
-#[derive(Clone, Debug)]
-pub struct Constraint<'g> {
-    name: String,
-    expression: Expr<'g>,
-    /// Whether g need not be affine in η.
-    nonlinear: bool,
-}
-
-impl<'g> Constraint<'g> {
-    /// The condition that `expression` vanishes: on velocities, affine in η, if a quasi-velocity stands in it, on
-    /// positions otherwise. The name is for messages and reactions.
-    pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
-        Constraint { name: name.into(), expression, nonlinear: false }
-    }
-
-    /// The condition g(t, x, η) = 0 that need not be affine in η. Virtual displacements are those of Chetaev's condition,
-    /// (∂g/∂η_s) δπ_s = 0, so that the reactions are λ ∂g/∂η_s [N. G. Chetaev, Izv. Kazan fiz.-mat. obshch. 6 (1932)].
-    ///
-    /// ```
-    /// use pc_mech::{Constraint, Graph, System, VectorField};
-    ///
-    /// // A particle that keeps its speed under gravity: only its direction turns, v θ̇ = −g cos θ.
-    /// let graph = Graph::new();
-    /// let particle = System::builder(&graph)
-    ///     .coordinates(["x", "y"])
-    ///     .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
-    ///     .build()?;
-    /// let [vx, vy] = graph.symbols(["x'", "y'"]);
-    /// let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 25.0);
-    /// let mut motion = particle.with_multipliers(&[speed])?.compile()?;
-    /// let mut rates = [0.0; 4];
-    /// motion.rhs(0.0, &[0.0, 0.0, 3.0, 4.0], &mut rates)?; // cos θ = 3/5, θ̇ = −6/5
-    /// assert!((rates[2] - 4.8).abs() < 1e-14 && (rates[3] + 3.6).abs() < 1e-14);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn nonlinear(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
-        Constraint { name: name.into(), expression, nonlinear: true }
-    }
-
-    /// Whether it was said to be [nonlinear](Constraint::nonlinear).
-    pub fn is_nonlinear(&self) -> bool {
-        self.nonlinear
-    }
-
-    /// Its name.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// What vanishes.
-    pub fn expression(&self) -> Expr<'g> {
-        self.expression
-    }
-
-    /// Whether it is a condition on the positions of the system.
-    pub fn is_holonomic(&self, system: &System<'g>) -> bool {
-        !system.quasi_velocities.iter().any(|&eta| self.expression.depends_on(eta))
-    }
-
-    /// What vanishes of the velocities of the system: its expression if it is one on velocities, X_0 f + η_s X_s f
-    /// otherwise.
-    pub fn velocity(&self, system: &System<'g>) -> Expr<'g> {
-        if !self.is_holonomic(system) {
-            return self.expression;
-        }
-        let (graph, frame) = (system.graph(), &system.frame);
-        let rates = frame.coordinates().iter().copied().zip(frame.velocities(&system.quasi_velocities));
-        let along: Vec<_> = rates.chain([(frame.time(), Expr::ONE)]).collect();
-        graph.directional(&[self.expression], &along)[0]
-    }
-
-    /// C_s, length k, and c_0 of what [vanishes of the velocities](Constraint::velocity), C_s η_s + c_0.
-    ///
-    /// # Errors
-    /// [`MechError::ConstraintNotAffine`]
-    pub fn coefficients(&self, system: &System<'g>) -> Result<(Vec<Expr<'g>>, Expr<'g>), MechError> {
-        let (graph, eta) = (system.graph(), &system.quasi_velocities);
-        let affine = |value: Expr<'g>| affine(graph, value, eta);
-        let whole = affine(self.expression).and_then(|_| affine(self.velocity(system)));
-        whole.ok_or_else(|| MechError::ConstraintNotAffine { constraint: self.name.clone() })
-    }
-}
 
 /// Poincaré's equations with multipliers (Lagrange's equations of the first kind, in quasi-velocities),
 ///
@@ -335,46 +250,6 @@ impl<'g> Multipliers<'g> {
         whole
     }
 
-    /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
-    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`]:
-    ///
-    ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
-    ///
-    /// No velocities are chosen for independent ones, so that no position is singular but those of the constraints
-    /// themselves. States are projected as those of [`compile_for`](Multipliers::compile_for) are, and what is observed or
-    /// [kept](Motion::keep) is the same; to keep integrals, those of these multipliers are to be given. There is no product with
-    /// the Jacobian.
-    ///
-    /// `guess` are η from which solutions of y = ∂L/∂η are looked for where L is not quadratic in η, or a constraint is not
-    /// affine.
-    ///
-    /// ```
-    /// use pc_mech::{Constraint, Graph, System, VectorField};
-    ///
-    /// // A pendulum of mass 2 in Cartesian coordinates, where it is level.
-    /// let graph = Graph::new();
-    /// let pendulum = System::builder(&graph)
-    ///     .coordinates(["x", "y"])
-    ///     .lagrangian(|_, x, v| v[0].square() + v[1].square() - 20.0 * x[1])
-    ///     .build()?;
-    /// let [x, y] = graph.symbols(["x", "y"]);
-    /// let circle = Constraint::new("length", x.square() + y.square() - 1.0);
-    /// let held = pendulum.with_multipliers(&[circle])?;
-    /// let mut motion = held.compile_in_momenta(Default::default(), &[0.0, 0.0])?;
-    /// let mut rates = [0.0; 4];
-    /// motion.rhs(0.0, &[1.0, 0.0, 0.0, 4.0], &mut rates)?; // ẏ = 2: ẍ = −|ṙ|²
-    /// assert_eq!(rates, [0.0, 2.0, -8.0, -20.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`MechError::Shape`] for a guess of another length.
-    pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
-        let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
-        let momenta = self.equations.system.momentum_symbols();
-        Ok(Motion::of_momenta(motion, momenta.iter().map(Expr::to_string)))
-    }
-
     /// The change between (x, η) and (x, y) with the momenta of all quasi-velocities, where the constraints hold:
     ///
     ///   ∂L/∂η − Cᵀ μ = y,   C η + c_0 = 0
@@ -386,7 +261,7 @@ impl<'g> Multipliers<'g> {
     /// As there.
     pub fn legendre_transform(&self, guess: &[f64]) -> Result<LegendreTransform, MechError> {
         let system = &self.equations.system;
-        check_length("the guess of the quasi-velocities", guess, system.quasi_velocities.len())?;
+        shape("the guess of the quasi-velocities", guess.len(), system.quasi_velocities.len())?;
         let momenta = system.momentum_symbols();
         let nearby = self.free_legendre_equations(&momenta, guess);
         let equations = self.legendre_equations(&momenta, guess)?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::emit::emit::{EmittedFile, Extent, Routine, Source};
+use crate::emit::source::{EmittedFile, Extent, Routine, Source};
 
 pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     let file = |suffix: &str, text: String| EmittedFile { name: format!("{}.{suffix}", source.name), text };

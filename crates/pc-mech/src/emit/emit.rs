@@ -1,124 +1,16 @@
 //! Equations of motion as C or Rust source that depends on nothing of this library.
 
-use pc_expr::{Body, Calls, Expr, Language, Layout, Place, Program, Slot};
+use pc_expr::{Expr, Language, Layout, Place, Program, Slot};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Linearised};
+use crate::emit::source::{EmitOptions, EmittedFile, Extent, Routine, Source};
+use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::MechError;
 
 /// Equations longer than this are not shown in the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
-
-/// What source to write.
-#[derive(Clone, Debug)]
-pub struct EmitOptions {
-    pub(super) language: Language,
-    name: String,
-    pub(super) title: String,
-    remark: String,
-    pub(super) start: Option<Start>,
-    pub(super) fused: bool,
-}
-
-/// A motion to be tried.
-#[derive(Clone, Debug)]
-pub(super) struct Start {
-    pub(super) t: f64,
-    pub(super) state: Vec<f64>,
-    pub(super) t_end: f64,
-}
-
-impl EmitOptions {
-    /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
-    pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
-        let name = name.into();
-        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false }
-    }
-
-    /// The title of the system, for the first line; without it the name.
-    #[must_use]
-    pub fn title(mut self, title: impl Into<String>) -> EmitOptions {
-        self.title = title.into();
-        self
-    }
-
-    /// What a reader has to know of the equations, lines for the comment at the head.
-    #[must_use]
-    pub fn remark(mut self, remark: impl Into<String>) -> EmitOptions {
-        self.remark = remark.into();
-        self
-    }
-
-    /// A start state (coordinates, quasi-velocities, then first-order states) and the times of a motion. With these the source has a
-    /// `main` that integrates it.
-    #[must_use]
-    pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
-        self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
-        self
-    }
-
-    /// Writes a·b + c as one operation that rounds once. This is fast only where the processor has it and the
-    /// compiler is told so, and the results differ by rounding from those of the library.
-    #[must_use]
-    pub fn fused(mut self, fused: bool) -> EmitOptions {
-        self.fused = fused;
-        self
-    }
-}
-
-/// A source file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EmittedFile {
-    /// Its name, without directory.
-    pub name: String,
-    /// Its text.
-    pub text: String,
-}
-
-/// How many numbers a routine writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extent {
-    /// One, which is returned.
-    One,
-    /// One for each component of the state.
-    State,
-    /// A square matrix of these.
-    StateSquared,
-    /// A square matrix of the quasi-velocities.
-    QuasiVelocitiesSquared,
-    Integrals,
-    Outputs,
-}
-
-/// A function of the source.
-pub(super) struct Routine {
-    pub(super) name: &'static str,
-    pub(super) purpose: String,
-    /// The array that it writes.
-    pub(super) array: &'static str,
-    pub(super) extent: Extent,
-    /// Whether zeros have to be written before the rest.
-    pub(super) sparse: bool,
-    pub(super) body: Body,
-}
-
-/// All that the files of a language are put together from.
-pub(super) struct Source<'a> {
-    pub(super) options: &'a EmitOptions,
-    /// The name as an identifier.
-    pub(super) name: String,
-    pub(super) state: Vec<String>,
-    pub(super) coordinates: usize,
-    /// Number of first-order states.
-    pub(super) states: usize,
-    pub(super) parameters: Vec<(String, f64)>,
-    pub(super) integrals: Vec<String>,
-    pub(super) outputs: Vec<String>,
-    /// The equations as text, unless they are long.
-    equations: Vec<String>,
-    pub(super) routines: Vec<Routine>,
-}
 
 impl<'g> Equations<'g> {
     /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
@@ -153,8 +45,8 @@ impl<'g> Equations<'g> {
     pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
         let source = self.source(options)?;
         Ok(match options.language {
-            Language::C => crate::emit::c::files(&source),
-            Language::Rust => crate::emit::rust::files(&source),
+            Language::C => c::files(&source),
+            Language::Rust => rust::files(&source),
         })
     }
 
@@ -291,8 +183,8 @@ impl<'a, 'g> Writer<'a, 'g> {
         let language = options.language;
         let name = language.identifiers(&[&options.name], &[]).remove(0);
         let mut reserved = match language {
-            Language::C => crate::emit::c::macros(&name),
-            Language::Rust => crate::emit::rust::CONSTANTS.iter().map(|&name| name.to_owned()).collect(),
+            Language::C => c::macros(&name),
+            Language::Rust => rust::CONSTANTS.iter().map(|&name| name.to_owned()).collect(),
         };
         reserved.extend(["ydot", "jac", "mass", "values"].map(str::to_owned));
         let inputs = language.identifiers(&names, &reserved.iter().map(String::as_str).collect::<Vec<_>>());
@@ -337,68 +229,5 @@ impl<'a, 'g> Writer<'a, 'g> {
         };
         let sparse = is_matrix && values.iter().any(|value| value.is_zero());
         Ok(Routine { name, purpose, array, extent, sparse, body: program.emit(language, &layout) })
-    }
-}
-
-impl Source<'_> {
-    /// What all routines call.
-    pub(super) fn calls(&self) -> Calls {
-        self.routines.iter().fold(Calls::default(), |calls, routine| calls.and(&routine.body.calls))
-    }
-
-    /// The comment at the head: title, equations, state and parameters, line by line.
-    pub(super) fn head(&self) -> Vec<String> {
-        let comment = |text: &str| self.options.language.comment(text);
-        let mut lines = vec![
-            comment(&self.options.title),
-            String::new(),
-            format!(
-                "Generated by pc {} from the Lagrangian: better derived again than edited.",
-                env!("CARGO_PKG_VERSION")
-            ),
-        ];
-        if !self.options.remark.is_empty() {
-            lines.push(String::new());
-            lines.extend(self.options.remark.lines().map(comment));
-        }
-        if !self.equations.is_empty() {
-            lines.extend([
-                String::new(),
-                "Equations of motion, with ' for the derivative by time:".to_owned(),
-            ]);
-            lines.extend(self.equations.iter().map(|line| format!("    {}", comment(line))));
-        }
-        let count = |number: usize, one: &str, many: &str| match number {
-            1 => format!("one {one}"),
-            _ => format!("{number} {many}"),
-        };
-        let quasi_velocities = count(self.quasi_velocities(), "quasi-velocity", "quasi-velocities");
-        lines.push(String::new());
-        let coordinates =
-            (self.coordinates > 0).then(|| count(self.coordinates, "coordinate", "coordinates"));
-        let states = (self.states > 0).then(|| count(self.states, "first-order state", "first-order states"));
-        let parts: Vec<String> = coordinates.into_iter().chain([quasi_velocities]).chain(states).collect();
-        lines.push(format!("State: {}.", parts.join(", then ")));
-        lines.extend(self.state.iter().enumerate().map(|(i, name)| format!("    y[{i}]  {}", comment(name))));
-        if !self.parameters.is_empty() {
-            lines.extend([String::new(), "Parameters, with their default values:".to_owned()]);
-            let parameters = self.parameters.iter().enumerate();
-            lines.extend(
-                parameters.map(|(i, (name, value))| format!("    p[{i}]  {} = {value}", comment(name))),
-            );
-        }
-        lines
-    }
-
-    pub(super) fn quasi_velocities(&self) -> usize {
-        self.state.len() - self.coordinates - self.states
-    }
-
-    pub(super) fn constants(&self, values: impl Iterator<Item = f64>) -> String {
-        values.map(|value| self.options.language.constant(value)).collect::<Vec<_>>().join(", ")
-    }
-
-    pub(super) fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
-        texts.map(|text| self.options.language.string(text)).collect::<Vec<_>>().join(", ")
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::emit::emit::{EmittedFile, Extent, Routine, Source};
+use crate::emit::source::{EmittedFile, Extent, Routine, Source};
 
 /// Constants of the file: a local must not have the name of a constant.
 pub(super) const CONSTANTS: &[&str] = &[

@@ -5,12 +5,12 @@ use pc_expr::{Expr, Graph, Style};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Implicit};
+use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
 use crate::equations::book::{expanded, sum_of_products};
 use crate::equations::legendre::{Inverse, Legendre};
-use crate::error::MechError;
-use crate::stability::steady::check_length;
+use crate::error::{MechError, shape};
 use crate::system::system::System;
 
 /// The rows up to which a block of the mass matrix is inverted by cofactors.
@@ -213,7 +213,7 @@ impl<'g> Canonical<'g> {
     /// # Errors
     /// [`MechError::Shape`]
     pub fn with_guess(mut self, eta: &[f64]) -> Result<Canonical<'g>, MechError> {
-        check_length("the guess of the quasi-velocities", eta, self.momenta.len())?;
+        shape("the guess of the quasi-velocities", eta.len(), self.momenta.len())?;
         if let Inverse::Implicit { guess, .. } = &mut self.legendre.inverse {
             guess.copy_from_slice(eta);
         }
@@ -297,6 +297,24 @@ impl<'g> Canonical<'g> {
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         self.observed_first_order()?.compile(&options.into(), LONGEST_ELIMINATION)
+    }
+
+    /// Compiles the change between quasi-velocities and momenta.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`](pc_expr::ExprError::UnboundSymbol) for a symbol that is neither state nor
+    /// declared parameter.
+    pub fn legendre_transform(&self) -> Result<LegendreTransform, MechError> {
+        // External forces are in none of what is solved here.
+        let equations = FirstOrder { parameters: self.system.parameters().to_vec(), ..self.first_order() };
+        let of_velocities = self.momenta_of_velocities();
+        LegendreTransform::unconstrained(
+            &self.system,
+            &self.momenta,
+            of_velocities,
+            &equations,
+            &self.quasi_velocities,
+        )
     }
 
     /// The [first-order](Canonical::first_order) system with what is observed along it.

@@ -5,11 +5,10 @@ use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 use crate::numeric::dense::{SingularValues, norm, product, symmetric_eigenvalues};
 use crate::stability::definite::{combination, definite_combination};
 use crate::stability::spectrum::Verdict;
-use crate::stability::steady::check_length;
 
 /// The second variation of F = H + λ_j I_j at a steady motion where dF = 0, on the deviations with dI_j = 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +72,7 @@ impl<'g> Equations<'g> {
     ) -> Result<SecondVariation, MechError> {
         let system = self.system();
         let symbols = system.state();
-        check_length("the state", state, symbols.len())?;
+        shape("the state", state.len(), symbols.len())?;
         self.check_conserved(integrals, &symbols)?;
 
         let functions: Vec<Expr<'g>> =

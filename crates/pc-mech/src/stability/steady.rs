@@ -4,7 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::{Pattern, VectorField};
 
 use crate::compiled::motion::Motion;
-use crate::error::MechError;
+use crate::error::{MechError, shape};
 use crate::numeric::newton;
 use crate::stability::spectrum::{Spectrum, Verdict};
 
@@ -106,7 +106,7 @@ impl Motion {
     /// [`rhs`](VectorField::rhs).
     pub fn linearised(&mut self, t: f64, y: &[f64]) -> Result<Matrix<f64>, MechError> {
         let n = self.dim();
-        check_length("the state", y, n)?;
+        shape("the state", y.len(), n)?;
         let mut entries = vec![0.0; n * n];
         self.jacobian(t, y, &mut entries)?;
         Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
@@ -146,7 +146,7 @@ impl Motion {
         options: &SteadyOptions,
         mut surface: impl FnMut(&[f64]) -> Result<(Vec<f64>, Matrix<f64>), MechError>,
     ) -> Result<SteadyMotion, MechError> {
-        check_length("the guess", guess, self.dim())?;
+        shape("the guess", guess.len(), self.dim())?;
         let cyclic = self.cyclic(options.cyclic.as_deref())?;
         let fixed = self.components(&options.fixed)?;
         let kept: Vec<usize> = (0..self.dim()).filter(|i| !cyclic.contains(i)).collect();
@@ -237,9 +237,4 @@ fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
 
 fn part(matrix: &Matrix<f64>, rows: &[usize], columns: &[usize]) -> Matrix<f64> {
     Matrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])])
-}
-
-pub(crate) fn check_length(what: &'static str, values: &[f64], expected: usize) -> Result<(), MechError> {
-    let found = values.len();
-    if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }) }
 }

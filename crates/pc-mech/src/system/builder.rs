@@ -4,10 +4,11 @@ use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, Structu
 use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, shape};
+use crate::system::bodies::body::Body;
+use crate::system::bodies::moving::Moving;
 use crate::system::bodies::particle::Particle;
 use crate::system::bodies::rigid_body::RigidBody;
 use crate::system::bodies::velocity::{Bodies, BodyVelocity};
-use crate::system::bodies::{Body, Moving};
 use crate::system::external_force;
 use crate::system::forces::Force;
 use crate::system::system::{System, check_no_state};
@@ -55,8 +56,15 @@ enum Kinematics<'g> {
     Frame(Frame<'g>),
 }
 
+impl<'g> System<'g> {
+    /// Starts the description of a system whose expressions live in `graph`.
+    pub fn builder(graph: &'g Graph) -> SystemBuilder<'g> {
+        SystemBuilder::new(graph)
+    }
+}
+
 impl<'g> SystemBuilder<'g> {
-    pub(crate) fn new(graph: &'g Graph) -> SystemBuilder<'g> {
+    fn new(graph: &'g Graph) -> SystemBuilder<'g> {
         SystemBuilder {
             graph,
             time: graph.symbol("t"),

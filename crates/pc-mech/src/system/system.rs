@@ -5,7 +5,6 @@ use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, shape};
 use crate::system::bodies::velocity::Bodies;
-use crate::system::builder::SystemBuilder;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///
@@ -29,11 +28,6 @@ pub struct System<'g> {
 }
 
 impl<'g> System<'g> {
-    /// Starts the description of a system whose expressions live in `graph`.
-    pub fn builder(graph: &'g Graph) -> SystemBuilder<'g> {
-        SystemBuilder::new(graph)
-    }
-
     /// The graph of all its expressions.
     pub fn graph(&self) -> &'g Graph {
         self.frame.graph()
@@ -83,7 +77,7 @@ impl<'g> System<'g> {
         &self.parameters
     }
 
-    /// The parameters that are [functions of time](SystemBuilder::signal).
+    /// The parameters that are [functions of time](crate::SystemBuilder::signal).
     pub fn signals(&self) -> &[Expr<'g>] {
         &self.signals
     }
@@ -109,7 +103,7 @@ impl<'g> System<'g> {
         &self.forces
     }
 
-    /// The symbols in Q that stand for [external forces](SystemBuilder::external_force), each with the name of the
+    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the name of the
     /// quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
@@ -192,27 +186,37 @@ impl<'g> System<'g> {
         }
     }
 
+    /// The same system with `put` applied to the expressions that are not its frame's: Lagrangian, forces, integrals,
+    /// outputs, rates of the states, velocities of bodies.
+    #[must_use]
+    pub(crate) fn map_expressions(self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> System<'g> {
+        let one = |x: Expr<'g>| put(&[x])[0];
+        let named =
+            |list: Vec<(String, Expr<'g>)>| list.into_iter().map(|(name, x)| (name, one(x))).collect();
+        System {
+            lagrangian: one(self.lagrangian),
+            forces: self.forces.into_iter().map(one).collect(),
+            integrals: named(self.integrals),
+            outputs: named(self.outputs),
+            states: self.states.into_iter().map(|(z, rate)| (z, one(rate))).collect(),
+            bodies: self.bodies.map(&put),
+            ..self
+        }
+    }
+
     /// The same system with the parameters replaced by their numbers: none is left to be changed at run time but signals.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();
         let numbers = self.numbers();
         let bind = |x: Expr<'g>| graph.substitute(&[x], &numbers)[0];
-        let named =
-            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), bind(*x))).collect();
         System {
             frame: self.frame.map(bind),
             structure: self.structure.map(bind),
-            quasi_velocities: self.quasi_velocities.clone(),
+            // Before L: what is made first is summed first.
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
-            signals: self.signals.clone(),
-            lagrangian: bind(self.lagrangian),
-            forces: self.forces.iter().map(|&x| bind(x)).collect(),
-            external: self.external.clone(),
-            integrals: named(&self.integrals),
-            outputs: named(&self.outputs),
-            bodies: self.bodies.map(|list| graph.substitute(list, &numbers)),
+            ..self.clone().map_expressions(|list| graph.substitute(list, &numbers))
         }
     }
 

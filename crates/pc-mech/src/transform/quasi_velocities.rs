@@ -82,27 +82,19 @@ impl<'g> System<'g> {
         let before = self.quasi_velocities.iter().copied().chain(self.accelerations());
         let values: Vec<_> = before.zip(old.iter().copied().chain(old_rates)).collect();
         let put = |list: &[Expr<'g>]| graph.substitute(list, &values);
-        let named = |list: &[(String, Expr<'g>)]| {
-            list.iter().map(|(name, value)| (name.clone(), put(&[*value])[0])).collect()
-        };
         let forces = put(&self.forces);
         let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
         let order: Vec<Expr<'g>> = symbols.iter().copied().chain(parameters).collect();
+        let others = System { lagrangian: Expr::ZERO, forces: Vec::new(), ..self.clone() };
         Ok(System {
             forces: (0..symbols.len())
                 .map(|u| graph.dot(change.back().column(u), forces.iter().copied()))
                 .collect(),
             lagrangian: graph.shorten(&put(&[self.lagrangian]), &order)[0],
-            integrals: named(&self.integrals),
-            outputs: named(&self.outputs),
-            states: self.states_in(put),
-            bodies: self.bodies.map(put),
-            parameters: self.parameters.clone(),
-            signals: self.signals.clone(),
-            external: self.external.clone(),
             quasi_velocities: symbols,
             structure,
             frame,
+            ..others.map_expressions(put)
         })
     }
 }

@@ -70,16 +70,13 @@ impl<'g> System<'g> {
         Ok(System {
             frame,
             structure,
-            quasi_velocities: self.quasi_velocities.clone(),
             states,
-            parameters: self.parameters.clone(),
-            signals: self.signals.clone(),
-            external: self.external.clone(),
             lagrangian,
             forces,
             integrals: known(&self.integrals),
             outputs: known(&self.outputs),
             bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their places are gone
+            ..self.clone()
         })
     }
 

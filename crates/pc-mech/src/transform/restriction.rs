@@ -53,22 +53,12 @@ impl<'g> System<'g> {
         let rates = self.accelerations();
         let zeros: Vec<_> =
             dropped.iter().chain(&rates[free..]).map(|&symbol| (symbol, Expr::ZERO)).collect();
-        let put = |x: Expr<'g>| graph.substitute(&[x], &zeros)[0];
-        let named =
-            |list: &[(String, Expr<'g>)]| list.iter().map(|(name, x)| (name.clone(), put(*x))).collect();
-        System {
+        let free_ones = System {
             frame: self.frame.restricted(free),
-            structure: self.structure.clone(),
             quasi_velocities: self.quasi_velocities[..free].to_vec(),
-            parameters: self.parameters.clone(),
-            signals: self.signals.clone(),
-            external: self.external.clone(),
-            lagrangian: put(self.lagrangian),
-            forces: self.forces[..free].iter().map(|&q| put(q)).collect(),
-            integrals: named(&self.integrals),
-            outputs: named(&self.outputs),
-            states: self.states_in(|list| graph.substitute(list, &zeros)),
-            bodies: self.bodies.map(|list| graph.substitute(list, &zeros)),
-        }
+            forces: self.forces[..free].to_vec(),
+            ..self.clone()
+        };
+        free_ones.map_expressions(|list| graph.substitute(list, &zeros))
     }
 }

@@ -1,24 +1,25 @@
 //! A plan as Cranelift's intermediate code.
 
-use crate::kernel::jit::sincos;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::FuncId;
 
-use super::JitError;
-use super::host::{Assembly, Code, Host};
+use super::assembly::{Assembly, Code};
+use super::error::JitError;
+use super::host::Host;
 use super::memory::{Area, Memory};
 use super::plan::{Plan, Stay, Step};
-use super::shim;
+use super::prologue::{close, open};
+use super::{shim, sincos};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
 /// Compiles a program; answers how many numbers of scratch memory it needs, too.
 pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Code, usize), JitError> {
     let constants: Box<[f64]> = program.constants().into();
-    let mut assembly = Assembly::new(host);
+    let mut assembly = Assembly::new(host.isa());
     let mut values = Values::new(program, plan);
     let mut context = Context::new();
     let mut frontend = FunctionBuilderContext::new();
@@ -72,21 +73,6 @@ fn call_all(
     }
     close(b, host);
     assembly.define(context)
-}
-
-/// Opens the first block of a function; answers the function's parameters.
-pub(super) fn open(b: &mut FunctionBuilder<'_>) -> Vec<Value> {
-    let block = b.create_block();
-    b.append_block_params_for_function_params(block);
-    b.switch_to_block(block);
-    b.block_params(block).to_vec()
-}
-
-/// Returns from a function and ends it.
-pub(super) fn close(mut b: FunctionBuilder<'_>, host: &Host) {
-    b.ins().return_(&[]);
-    b.seal_all_blocks();
-    b.finalize(host.frontend_config());
 }
 
 /// Where a value waits.

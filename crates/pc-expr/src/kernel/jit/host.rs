@@ -1,18 +1,12 @@
-//! The processor that code is made for, and the memory that code lives in.
+//! The processor that code is made for.
 
-use crate::kernel::jit::sincos;
 use std::error::Error;
-use std::mem::ManuallyDrop;
-use std::sync::{Mutex, OnceLock};
 
-use cranelift_codegen::Context;
-use cranelift_codegen::ir::{AbiParam, FuncRef, Function, Signature, types};
+use cranelift_codegen::ir::{AbiParam, Signature, types};
 use cranelift_codegen::isa::{CallConv, OwnedTargetIsa, TargetFrontendConfig};
 use cranelift_codegen::settings::{self, Configurable};
-use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{FuncId, Module, ModuleError};
 
-use super::{Entry, JitError};
+use super::assembly::Code;
 
 /// The processor of this machine.
 pub(super) struct Host {
@@ -23,15 +17,8 @@ pub(super) struct Host {
 }
 
 impl Host {
-    /// The host, looked at once.
-    pub(super) fn get() -> Result<&'static Host, JitError> {
-        static HOST: OnceLock<Result<Host, String>> = OnceLock::new();
-        HOST.get_or_init(|| Host::new().map_err(|error| error.to_string()))
-            .as_ref()
-            .map_err(|reason| JitError::Host { reason: reason.clone() })
-    }
-
-    fn new() -> Result<Host, Box<dyn Error + Send + Sync>> {
+    /// The processor alone, without the routine that is compiled for it.
+    pub(super) fn new() -> Result<Host, Box<dyn Error + Send + Sync>> {
         if !cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) {
             return Err(format!("the architecture {} is not supported", std::env::consts::ARCH).into());
         }
@@ -46,18 +33,22 @@ impl Host {
         let flags = isa.isa_flags();
         let fma = cfg!(target_arch = "aarch64") // always there
             || flags.iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
-        let mut host = Host { isa, fma, far_circle: None };
-        if fma {
-            host.far_circle = Some(sincos::compile_far(&host)?);
-        }
-        Ok(host)
+        Ok(Host { isa, fma, far_circle: None })
+    }
+
+    pub(super) fn with_far_circle(self, code: Code) -> Host {
+        Host { far_circle: Some(code), ..self }
+    }
+
+    pub(super) fn isa(&self) -> &OwnedTargetIsa {
+        &self.isa
     }
 
     pub(super) fn has_fma(&self) -> bool {
         self.fma
     }
 
-    /// The address of what [`sincos::compile_far`] made, where there is fused multiply-add.
+    /// The address of what [`compile_far`](super::sincos::compile_far) made, where there is fused multiply-add.
     pub(super) fn far_circle(&self) -> usize {
         self.far_circle.as_ref().map_or(0, Code::address)
     }
@@ -71,79 +62,11 @@ impl Host {
         self.isa.frontend_config()
     }
 
-    /// The signature of [`Entry`].
+    /// The signature of [`Entry`](crate::Entry).
     pub(super) fn entry_signature(&self) -> Signature {
         let mut signature = Signature::new(self.convention());
         signature.params.push(AbiParam::new(types::F64));
         signature.params.extend([AbiParam::new(types::I64); 4]);
         signature
-    }
-}
-
-impl From<ModuleError> for JitError {
-    fn from(error: ModuleError) -> JitError {
-        JitError::Generator(Box::new(error))
-    }
-}
-
-/// Compiled functions and the memory they lie in, which is freed with them.
-pub(super) struct Assembly(ManuallyDrop<JITModule>);
-
-impl Assembly {
-    pub(super) fn new(host: &Host) -> Assembly {
-        // No code refers to anything by name: addresses are written into it.
-        let builder = JITBuilder::with_isa(host.isa.clone(), cranelift_module::default_libcall_names());
-        Assembly(ManuallyDrop::new(JITModule::new(builder)))
-    }
-
-    /// Compiles a function.
-    pub(super) fn define(&mut self, context: &mut Context) -> Result<FuncId, JitError> {
-        let id = self.0.declare_anonymous_function(&context.func.signature)?;
-        self.0.define_function(id, context)?;
-        Ok(id)
-    }
-
-    /// A name by which a function may call another one.
-    pub(super) fn name_in(&mut self, id: FuncId, function: &mut Function) -> FuncRef {
-        let name = self.0.declare_func_in_func(id, function);
-        // The two may lie further apart than a relative call reaches.
-        function.dfg.ext_funcs[name].colocated = false;
-        name
-    }
-
-    /// Makes the code executable, to be entered at a function; `constants` are what it reads by address.
-    pub(super) fn finish(mut self, entry: FuncId, constants: Box<[f64]>) -> Result<Code, JitError> {
-        self.0.finalize_definitions()?;
-        let address = self.0.get_finalized_function(entry) as usize;
-        Ok(Code { address, _assembly: Mutex::new(self), _constants: constants })
-    }
-}
-
-impl Drop for Assembly {
-    fn drop(&mut self) {
-        // SAFETY: the module is not used after it is taken here. Addresses of its code are in the `Code` that owns this
-        // assembly, and whoever copies them from there answers for not using them after it.
-        unsafe { ManuallyDrop::take(&mut self.0).free_memory() };
-    }
-}
-
-/// Executable code.
-pub(super) struct Code {
-    address: usize,
-    /// Owned, never looked at; the mutex makes it `Sync`.
-    _assembly: Mutex<Assembly>,
-    /// Read by the code.
-    _constants: Box<[f64]>,
-}
-
-impl Code {
-    pub(super) fn address(&self) -> usize {
-        self.address
-    }
-
-    /// The code as a function, for code of [`Host::entry_signature`].
-    pub(super) fn entry(&self) -> Entry {
-        // SAFETY: the address is that of a finished function; making a pointer of it does not call it.
-        unsafe { std::mem::transmute::<*const u8, Entry>(self.address as *const u8) }
     }
 }

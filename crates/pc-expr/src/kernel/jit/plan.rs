@@ -8,7 +8,7 @@
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-use super::JitOptions;
+use super::options::JitOptions;
 
 /// Programs of more instructions than this are cut into several functions.
 const WHOLE: usize = 50_000;
@@ -104,13 +104,13 @@ impl Plan {
         };
         plan.hold(
             &uses,
-            Held::new(options.registers as usize, program.registers_len()),
+            MachineRegisters::new(options.registers as usize, program.registers_len()),
             program.first_input(),
         );
         plan
     }
 
-    fn hold(&mut self, uses: &NextUses, mut held: Held, time: usize) {
+    fn hold(&mut self, uses: &NextUses, mut held: MachineRegisters, time: usize) {
         held.keep(time, uses.at_start[time]);
         let mut results = uses.after_result.iter();
         for (now, step) in self.steps.iter().enumerate() {
@@ -174,7 +174,7 @@ impl NextUses {
 }
 
 /// The values in machine registers.
-struct Held {
+struct MachineRegisters {
     room: usize,
     values: Vec<usize>,
     /// By register of the program: its next use, if it is held.
@@ -184,9 +184,9 @@ struct Held {
     read_last: Vec<usize>,
 }
 
-impl Held {
-    fn new(room: usize, registers: usize) -> Held {
-        Held {
+impl MachineRegisters {
+    fn new(room: usize, registers: usize) -> MachineRegisters {
+        MachineRegisters {
             room: room.max(1),
             values: Vec::new(),
             next: vec![NEVER; registers],

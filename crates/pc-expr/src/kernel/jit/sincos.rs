@@ -17,9 +17,11 @@ use cranelift_codegen::ir::{
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
-use super::emit::{close, open};
-use super::host::{Assembly, Code, Host};
-use super::{JitError, shim};
+use super::assembly::{Assembly, Code};
+use super::error::JitError;
+use super::host::Host;
+use super::prologue::{close, open};
+use super::shim;
 
 /// Arguments beyond this, and those that are not numbers, go to the library.
 const RANGE: f64 = 1e5;
@@ -115,7 +117,7 @@ pub(super) fn compile_far(host: &Host) -> Result<Code, JitError> {
     let address = b.ins().iconst(types::I64, shim::circle_address() as i64);
     b.ins().call_indirect(signature, address, &arguments);
     close(b, host);
-    let mut assembly = Assembly::new(host);
+    let mut assembly = Assembly::new(host.isa());
     let id = assembly.define(&mut context)?;
     assembly.finish(id, Box::default())
 }

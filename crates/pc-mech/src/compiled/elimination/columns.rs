@@ -2,7 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 
 /// A derivative of more operations is interpreted: integrators ask for it once in dozens of steps, and
 /// machine code for it would take longer to make than a run.
@@ -10,7 +10,7 @@ const LONG_DERIVATIVE: usize = 5000;
 
 /// How the entries of a matrix are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Layout {
+pub(crate) enum Storage {
     /// All, column after column.
     Dense,
     /// Those of its pattern, in order.
@@ -75,9 +75,9 @@ impl Columns {
         &mut self,
         (t, y, p): (f64, &[f64], &[f64]),
         entries: &mut [f64],
-        layout: Layout,
-    ) -> Result<(), Fault> {
-        if layout == Layout::Sparse || self.pattern.is_full() {
+        storage: Storage,
+    ) -> Result<(), EvaluationFailure> {
+        if storage == Storage::Sparse || self.pattern.is_full() {
             self.entries.eval(t, y, p, entries);
             return check_finite(entries, &self.entries, (t, y, p));
         }

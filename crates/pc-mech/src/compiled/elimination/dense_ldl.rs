@@ -11,7 +11,7 @@ use faer::{Mat, MatMut, Par};
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::pivots;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 
 /// Pivots of complete pivoting this small against the largest are rounding.
 const DEPENDENT: f64 = 1e-13;
@@ -43,13 +43,13 @@ impl DenseLdl {
     /// Factorises M, of which `values` stand at the places `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] for the first pivot that vanishes.
-    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.take(lower, values);
         for s in 0..self.sizes.len() {
             self.sizes[s] = self.matrix[(s, s)];
         }
-        self.eliminate().or_else(|fault| self.eliminate_pivoted(lower, values, fault))
+        self.eliminate().or_else(|failure| self.eliminate_pivoted(lower, values, failure))
     }
 
     /// The same of a matrix whose diagonal is the sum of terms of these sizes.
@@ -61,10 +61,10 @@ impl DenseLdl {
         lower: &Pattern,
         values: &[f64],
         sizes: impl Iterator<Item = f64>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         self.take(lower, values);
         self.sizes.iter_mut().zip(sizes).for_each(|(place, size)| *place = size);
-        self.eliminate().or_else(|fault| self.eliminate_pivoted(lower, values, fault))
+        self.eliminate().or_else(|failure| self.eliminate_pivoted(lower, values, failure))
     }
 
     fn take(&mut self, lower: &Pattern, values: &[f64]) {
@@ -77,9 +77,14 @@ impl DenseLdl {
     /// A matrix of both signs may be regular though one of its leading minors vanishes, as ((0, 1), (1, 0)) is.
     ///
     /// # Errors
-    /// The `fault` that elimination without pivoting met, if M is singular.
+    /// The `failure` that elimination without pivoting met, if M is singular.
     #[cold]
-    fn eliminate_pivoted(&mut self, lower: &Pattern, values: &[f64], fault: Fault) -> Result<(), Fault> {
+    fn eliminate_pivoted(
+        &mut self,
+        lower: &Pattern,
+        values: &[f64],
+        failure: EvaluationFailure,
+    ) -> Result<(), EvaluationFailure> {
         self.take(lower, values);
         let (k, m) = (self.sizes.len(), &self.matrix);
         let factors = FullPivLu::new(Mat::from_fn(k, k, |i, j| m[(i.max(j), i.min(j))]).as_ref());
@@ -87,13 +92,13 @@ impl DenseLdl {
         // What the entries are sums of may be larger than they are.
         let largest = pivots().chain(self.sizes.iter().map(|size| size.abs())).fold(0.0, f64::max);
         if !pivots().all(|pivot| pivot > DEPENDENT * largest) {
-            return Err(fault);
+            return Err(failure);
         }
         self.pivoted = Some(factors);
         Ok(())
     }
 
-    fn eliminate(&mut self) -> Result<(), Fault> {
+    fn eliminate(&mut self) -> Result<(), EvaluationFailure> {
         self.pivoted = None;
         let k = self.sizes.len();
         let outcome = cholesky_in_place(
@@ -113,7 +118,9 @@ impl DenseLdl {
         pivots::check(&self.pivots[..known], &self.sizes[..known])?;
         match outcome {
             Ok(_) => Ok(()),
-            Err(LdltError::ZeroPivot { index }) => Err(Fault::Pivot { index, pivot: self.pivots[index] }),
+            Err(LdltError::ZeroPivot { index }) => {
+                Err(EvaluationFailure::Pivot { index, pivot: self.pivots[index] })
+            }
         }
     }
 
@@ -135,7 +142,7 @@ impl DenseLdl {
 mod tests {
     use super::*;
 
-    fn factorised(entries: [f64; 6]) -> Result<DenseLdl, Fault> {
+    fn factorised(entries: [f64; 6]) -> Result<DenseLdl, EvaluationFailure> {
         let mut ldl = DenseLdl::new(3);
         ldl.factorise(&Pattern::from_columns(3, [vec![0, 1, 2], vec![1, 2], vec![2]]), &entries).map(|()| ldl)
     }
@@ -178,7 +185,10 @@ mod tests {
         // Beside the mass of the Earth that of a satellite is no rounding.
         assert!(factorised([6e24, 0.0, 0.0, 1e3, 0.0, 1e-3]).is_ok());
         // sin² π beside 1
-        assert!(matches!(factorised([1.0, 0.0, 0.0, 1.5e-32, 0.0, 1.0]), Err(Fault::Pivot { index: 1, .. })));
+        assert!(matches!(
+            factorised([1.0, 0.0, 0.0, 1.5e-32, 0.0, 1.0]),
+            Err(EvaluationFailure::Pivot { index: 1, .. })
+        ));
     }
 
     #[test]
@@ -186,7 +196,9 @@ mod tests {
         for (entries, vanishing) in
             [([1.0, 1.0, 0.0, 1.0, 0.0, 1.0], 1), ([0.0; 6], 0), ([3.0, 1.0, 0.0, 1.0 / 3.0, 0.0, 1.0], 1)]
         {
-            assert!(matches!(factorised(entries), Err(Fault::Pivot { index, .. }) if index == vanishing));
+            assert!(
+                matches!(factorised(entries), Err(EvaluationFailure::Pivot { index, .. }) if index == vanishing)
+            );
         }
     }
 }

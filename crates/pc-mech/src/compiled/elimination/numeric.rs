@@ -3,9 +3,9 @@
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
-use crate::compiled::elimination::columns::{Layout, derivative, nonzeros};
+use crate::compiled::elimination::columns::{Storage, derivative, nonzeros};
 use crate::compiled::elimination::solver::Solver;
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
@@ -97,7 +97,7 @@ impl Staged {
     }
 
     /// Solves for w and factorises M.
-    fn solve(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
+    fn solve(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.known[..self.dim].copy_from_slice(y);
         match &mut self.unknowns {
             Unknowns::Linear { equations, lower, values } => {
@@ -114,7 +114,13 @@ impl Staged {
         }
     }
 
-    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]) -> Result<(), Fault> {
+    pub(crate) fn rhs(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+        ydot: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
         self.rates.eval(t, &self.known, p, ydot);
         check_finite(ydot, &self.rates, (t, &self.known, p))
@@ -126,7 +132,7 @@ impl Staged {
         (t, y, p): (f64, &[f64], &[f64]),
         ydot: &mut [f64],
         mut factor: impl FnMut() -> f64,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
         if let Unknowns::Linear { lower, values, .. } = &mut self.unknowns {
             values.iter_mut().for_each(|value| *value *= factor());
@@ -157,22 +163,22 @@ impl Staged {
         &mut self,
         (t, y, p): (f64, &[f64], &[f64]),
         entries: &mut [f64],
-        layout: Layout,
-    ) -> Result<(), Fault> {
+        storage: Storage,
+    ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
-        let stage = self.jacobian.as_mut().ok_or(Fault::NotCompiled { what: "Jacobian" })?;
-        stage.eval(t, &self.known, p, &mut self.solver, entries, layout)
+        let stage = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
+        stage.eval(t, &self.known, p, &mut self.solver, entries, storage)
     }
 
     pub(crate) fn parameter_jacobian(
         &mut self,
         (t, y, p): (f64, &[f64], &[f64]),
         entries: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
         let what = "derivative by parameters";
-        let stage = self.parameter_jacobian.as_mut().ok_or(Fault::NotCompiled { what })?;
-        stage.eval(t, &self.known, p, &mut self.solver, entries, Layout::Dense)
+        let stage = self.parameter_jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
+        stage.eval(t, &self.known, p, &mut self.solver, entries, Storage::Dense)
     }
 
     pub(crate) fn jvp(
@@ -180,9 +186,10 @@ impl Staged {
         (t, y, p): (f64, &[f64], &[f64]),
         v: &[f64],
         product: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
-        let jvp = self.jvp.as_mut().ok_or(Fault::NotCompiled { what: "product with its Jacobian" })?;
+        let jvp =
+            self.jvp.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "product with its Jacobian" })?;
         jvp.eval(t, &self.known, p, v, &mut self.solver, product)
     }
 }
@@ -237,8 +244,8 @@ impl Stage {
         p: &[f64],
         solver: &mut Solver,
         entries: &mut [f64],
-        layout: Layout,
-    ) -> Result<(), Fault> {
+        storage: Storage,
+    ) -> Result<(), EvaluationFailure> {
         self.parts.eval(t, known, p, &mut self.values);
         check_finite(&self.values, &self.parts, (t, known, p))?;
         let (balance, rest) = self.values.split_at(self.balance.len());
@@ -255,9 +262,9 @@ impl Stage {
             for ((i, s), coupling) in self.coupling.entries().zip(coupling) {
                 self.column[i] += coupling * self.unknowns[s + j * k];
             }
-            match layout {
-                Layout::Dense => entries[j * dim..(j + 1) * dim].copy_from_slice(&self.column),
-                Layout::Sparse => {
+            match storage {
+                Storage::Dense => entries[j * dim..(j + 1) * dim].copy_from_slice(&self.column),
+                Storage::Sparse => {
                     let start = self.pattern.column_starts()[j];
                     for (&i, entry) in self.pattern.column(j).iter().zip(&mut entries[start..]) {
                         *entry = self.column[i];
@@ -330,7 +337,7 @@ impl Product {
         v: &[f64],
         solver: &mut Solver,
         product: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         let given = known.len() + v.len();
         self.known[..known.len()].copy_from_slice(known);
         self.known[known.len()..given].copy_from_slice(v);

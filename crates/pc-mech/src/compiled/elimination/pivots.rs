@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Program};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
 /// A pivot this small against what it is left of is rounding.
@@ -22,9 +22,9 @@ const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 /// them.
 ///
 /// # Errors
-/// [`Fault::Pivot`] with the place of the first.
+/// [`EvaluationFailure::Pivot`] with the place of the first.
 #[inline]
-pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), Fault> {
+pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), EvaluationFailure> {
     let largest = sizes.iter().fold(0.0f64, |largest, size| largest.max(size.abs()));
     if pivots.iter().all(|d| d.abs() > VANISHING_PIVOT * largest) {
         return Ok(());
@@ -33,7 +33,7 @@ pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), Fault> {
 }
 
 #[cold]
-fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Fault> {
+fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), EvaluationFailure> {
     let definite = pivots.iter().all(|&d| d > 0.0) || pivots.iter().all(|&d| d < 0.0);
     let vanishes = |(d, size): (&f64, &f64)| {
         let (d, size) = (d.abs(), size.abs());
@@ -44,7 +44,7 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Fault> {
         }
     };
     match pivots.iter().zip(sizes).position(vanishes) {
-        Some(index) => Err(Fault::Pivot { index, pivot: pivots[index] }),
+        Some(index) => Err(EvaluationFailure::Pivot { index, pivot: pivots[index] }),
         None => Ok(()),
     }
 }
@@ -52,7 +52,7 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Fault> {
 /// Which pivots there are, and which of them and of the sizes change with the state. Both are counted as one list, of
 /// the pivots and then as many sizes.
 #[derive(Debug)]
-pub(crate) struct Layout {
+pub(crate) struct PivotPartition {
     /// The quasi-velocity of each pivot.
     places: Vec<usize>,
     /// What changes with the state, and how many pivots are among that.
@@ -67,7 +67,7 @@ const SMALLEST: usize = 0;
 const LARGEST: usize = 1;
 const ALL: usize = 2;
 
-impl Layout {
+impl PivotPartition {
     /// How many numbers say what is fixed.
     pub(crate) fn fixed_len(&self) -> usize {
         ALL + self.fixed.len()
@@ -81,9 +81,13 @@ impl Layout {
     /// Whether no pivot vanishes, by the numbers of what is fixed and the values of what changes.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] for the first that does.
+    /// [`EvaluationFailure::Pivot`] for the first that does.
     #[inline]
-    pub(crate) fn check(&self, fixed: impl Fn(usize) -> f64, moving: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn check(
+        &self,
+        fixed: impl Fn(usize) -> f64,
+        moving: &[f64],
+    ) -> Result<(), EvaluationFailure> {
         let (pivots, sizes) = moving.split_at(self.moving_pivots);
         let largest = sizes.iter().fold(fixed(LARGEST), |largest, size| largest.max(size.abs()));
         let least = VANISHING_PIVOT * largest;
@@ -94,7 +98,7 @@ impl Layout {
     }
 
     #[cold]
-    fn check_each(&self, fixed: impl Fn(usize) -> f64, moving: &[f64]) -> Result<(), Fault> {
+    fn check_each(&self, fixed: impl Fn(usize) -> f64, moving: &[f64]) -> Result<(), EvaluationFailure> {
         let mut values = vec![0.0; 2 * self.places.len()];
         for (k, &i) in self.fixed.iter().enumerate() {
             values[i] = fixed(ALL + k);
@@ -103,7 +107,7 @@ impl Layout {
             values[i] = value;
         }
         let (pivots, sizes) = values.split_at(self.places.len());
-        check(pivots, sizes).map_err(|fault| fault.at_place(|index| self.places[index]))
+        check(pivots, sizes).map_err(|failure| failure.at_place(|index| self.places[index]))
     }
 }
 
@@ -111,7 +115,7 @@ impl Layout {
 /// values.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
-    layout: Arc<Layout>,
+    partition: Arc<PivotPartition>,
     of_parameters: Evaluator,
     /// What says what is fixed, for the parameters as they are; empty if that is not known.
     fixed: Vec<f64>,
@@ -135,19 +139,19 @@ impl Pivots {
         let pick = |indices: &[usize]| indices.iter().map(|&i| all[i]).collect::<Vec<_>>();
         let program = Program::new(system.graph, &system.inputs(&[]), &pick(&fixed))?;
         let values = pick(&moving);
-        let layout = Layout {
+        let partition = PivotPartition {
             places: watched.iter().map(|watched| watched.place).collect(),
             moving_pivots: moving.partition_point(|&i| i < watched.len()),
             moving,
             fixed,
         };
         let of_parameters = Evaluator::new(program, Backend::Interpreter);
-        Ok((Pivots { layout: Arc::new(layout), of_parameters, fixed: Vec::new() }, values))
+        Ok((Pivots { partition: Arc::new(partition), of_parameters, fixed: Vec::new() }, values))
     }
 
     /// Which there are.
-    pub(crate) fn layout(&self) -> &Arc<Layout> {
-        &self.layout
+    pub(crate) fn partition(&self) -> &Arc<PivotPartition> {
+        &self.partition
     }
 
     /// Says that the parameters may have changed.
@@ -158,13 +162,18 @@ impl Pivots {
     /// Whether no pivot vanishes; `moving` are the values of those that change.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] for the first that does.
+    /// [`EvaluationFailure::Pivot`] for the first that does.
     #[inline]
-    pub(crate) fn check(&mut self, state: &[f64], parameters: &[f64], moving: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn check(
+        &mut self,
+        state: &[f64],
+        parameters: &[f64],
+        moving: &[f64],
+    ) -> Result<(), EvaluationFailure> {
         if self.fixed.is_empty() {
             self.fix(state, parameters);
         }
-        self.layout.check(|k| self.fixed[k], moving)
+        self.partition.check(|k| self.fixed[k], moving)
     }
 
     /// What says what is fixed.
@@ -177,13 +186,13 @@ impl Pivots {
 
     #[cold]
     fn fix(&mut self, state: &[f64], parameters: &[f64]) {
-        let layout = &self.layout;
-        let mut fixed = vec![0.0; layout.fixed_len()];
+        let partition = &self.partition;
+        let mut fixed = vec![0.0; partition.fixed_len()];
         self.of_parameters.eval(0.0, state, parameters, &mut fixed[ALL..]);
-        let (pivots, sizes) = fixed[ALL..].split_at(layout.places.len() - layout.moving_pivots);
-        (fixed[SMALLEST], fixed[LARGEST]) = if layout.moving.is_empty() {
+        let (pivots, sizes) = fixed[ALL..].split_at(partition.places.len() - partition.moving_pivots);
+        (fixed[SMALLEST], fixed[LARGEST]) = if partition.moving.is_empty() {
             // Nothing is left to be compared with them, so that they are looked at closely now and not again.
-            let regular = layout.check_each(|k| fixed[k], &[]).is_ok();
+            let regular = partition.check_each(|k| fixed[k], &[]).is_ok();
             (if regular { f64::INFINITY } else { 0.0 }, 0.0)
         } else {
             (

@@ -3,7 +3,7 @@
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 
 /// A pivot of the constraints this small against their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;
@@ -71,22 +71,22 @@ impl Saddle {
     /// finite.
     ///
     /// # Errors
-    /// [`Fault::Constraint`] with k and the index of the constraint that the others leave nothing to restrict;
-    /// [`Fault::Pivot`] with the index of the unknown whose pivot vanishes.
-    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing to restrict;
+    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.eliminate(lower, values)?;
         self.express_dependent();
         let reduced = self.reduced_mass();
         let sizes: Vec<f64> = (0..self.k - self.rank).map(|i| self.size_of_reduced(i)).collect();
         let outcome = self.reduced.factorise_sum(&self.full, &reduced, sizes.into_iter());
-        outcome.map_err(|fault| fault.at_place(|index| self.columns[self.rank + index]))
+        outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
     /// As [`factorise`](Saddle::factorise), but only so far that the dependent unknowns are known.
     ///
     /// # Errors
     /// As there.
-    pub(crate) fn eliminate(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn eliminate(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         let k = self.k;
         self.mass.fill(0.0);
         self.constraints.fill(0.0);
@@ -114,7 +114,7 @@ impl Saddle {
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
     /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter; an
     /// unknown without mass counts as the lightest of the others.
-    fn pivot(&mut self) -> Result<(), Fault> {
+    fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
         let masses = || (0..k).map(|s| self.mass[s * k + s]);
         let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
@@ -140,7 +140,7 @@ impl Saddle {
                 if this > best.2 { (row, column, this) } else { best }
             });
             if largest <= VANISHING_PIVOT {
-                return Err(Fault::Constraint { index: k + self.rows[step] });
+                return Err(EvaluationFailure::Constraint { index: k + self.rows[step] });
             }
             self.rows.swap(step, row);
             self.columns.swap(step, column);
@@ -349,8 +349,8 @@ mod tests {
             vec![1e6, 2e6, 0.0, 0.0],
         ];
         let (pattern, values) = lower(&whole);
-        let fault = Saddle::new(2, 2).factorise(&pattern, &values).unwrap_err();
-        assert!(matches!(fault, Fault::Constraint { index: 2 | 3 }), "{fault:?}");
+        let failure = Saddle::new(2, 2).factorise(&pattern, &values).unwrap_err();
+        assert!(matches!(failure, EvaluationFailure::Constraint { index: 2 | 3 }), "{failure:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use pc_expr::Pattern;
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::elimination::saddle_point::Saddle;
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 
 /// A symmetric matrix to be factorised and solved with.
 #[derive(Clone, Debug)]
@@ -33,8 +33,9 @@ impl Solver {
     /// finite.
     ///
     /// # Errors
-    /// [`Fault::Pivot`] with the index of the unknown whose pivot vanishes, or [`Fault::Constraint`].
-    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or
+    /// [`EvaluationFailure::Constraint`].
+    pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         match self {
             Solver::Ldl(ldl) => ldl.factorise(lower, values),
             Solver::Saddle(saddle) => saddle.factorise(lower, values),

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
-use crate::compiled::elimination::columns::{Columns, Layout, derivative};
+use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
 use crate::compiled::elimination::symbolic_ldl::Factors;
-use crate::compiled::failure::{Fault, blame, check_finite};
+use crate::compiled::failure::{EvaluationFailure, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
@@ -80,7 +80,13 @@ impl Unrolled {
         self.observables.eval(t, y, p, values);
     }
 
-    pub(crate) fn rhs(&mut self, t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]) -> Result<(), Fault> {
+    pub(crate) fn rhs(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+        ydot: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
         if self.outputs.len() == ydot.len() {
             self.rates.eval(t, y, p, ydot);
             self.pivots.check(y, p, &[])?;
@@ -101,7 +107,7 @@ impl Unrolled {
     }
 
     pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {
-        Some(MachineCode::new(self.rates.machine_code()?, dim, Arc::clone(self.pivots.layout())))
+        Some(MachineCode::new(self.rates.machine_code()?, dim, Arc::clone(self.pivots.partition())))
     }
 
     pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {
@@ -112,20 +118,20 @@ impl Unrolled {
         &mut self,
         (t, y, p): (f64, &[f64], &[f64]),
         entries: &mut [f64],
-        layout: Layout,
-    ) -> Result<(), Fault> {
-        let jacobian = self.jacobian.as_mut().ok_or(Fault::NotCompiled { what: "Jacobian" })?;
-        jacobian.eval((t, y, p), entries, layout)
+        storage: Storage,
+    ) -> Result<(), EvaluationFailure> {
+        let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
+        jacobian.eval((t, y, p), entries, storage)
     }
 
     pub(crate) fn parameter_jacobian(
         &mut self,
         (t, y, p): (f64, &[f64], &[f64]),
         entries: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationFailure> {
         let what = "derivative by parameters";
-        let jacobian = self.parameter_jacobian.as_mut().ok_or(Fault::NotCompiled { what })?;
-        jacobian.eval((t, y, p), entries, Layout::Dense)
+        let jacobian = self.parameter_jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
+        jacobian.eval((t, y, p), entries, Storage::Dense)
     }
 
     pub(crate) fn jvp(
@@ -133,8 +139,9 @@ impl Unrolled {
         (t, y, p): (f64, &[f64], &[f64]),
         v: &[f64],
         product: &mut [f64],
-    ) -> Result<(), Fault> {
-        let jvp = self.jvp.as_mut().ok_or(Fault::NotCompiled { what: "product with its Jacobian" })?;
+    ) -> Result<(), EvaluationFailure> {
+        let jvp =
+            self.jvp.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "product with its Jacobian" })?;
         let (state, direction) = self.known.split_at_mut(y.len());
         state.copy_from_slice(y);
         direction.copy_from_slice(v);

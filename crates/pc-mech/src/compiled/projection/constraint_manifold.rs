@@ -3,7 +3,7 @@
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::elimination::solver::Solver;
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
@@ -138,9 +138,9 @@ impl Surface {
     /// Moves `y` to the surface.
     ///
     /// # Errors
-    /// [`Fault::NoProjection`] if the way leads nowhere, [`Fault::Constraint`] where the surface has an edge,
-    /// [`Fault::Departed`] where what followed from the constraints does not.
-    pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere, [`EvaluationFailure::Constraint`] where the surface
+    /// has an edge, [`EvaluationFailure::Departed`] where what followed from the constraints does not.
+    pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
             self.project_part(Part::Position, t, y, p)?;
@@ -153,12 +153,17 @@ impl Surface {
     ///
     /// # Errors
     /// As [`project`](Surface::project).
-    pub(crate) fn project_velocities(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn project_velocities(
+        &mut self,
+        t: f64,
+        y: &mut [f64],
+        p: &[f64],
+    ) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         self.project_part(Part::Velocity, t, y, p)
     }
 
-    fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
+    fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, (t, y, p))?;
         let masses =
@@ -176,7 +181,13 @@ impl Surface {
     /// Lengths of steps are those of δπ, with the diagonal of M for a metric, and so know no units of f. A state is on the
     /// surface where f is no larger than the bound of its rounding errors, where a step changes no digit, and where a step is
     /// no longer than such errors would call for: then one whole step more is all that can help.
-    fn project_part(&mut self, part: Part, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), Fault> {
+    fn project_part(
+        &mut self,
+        part: Part,
+        t: f64,
+        y: &mut [f64],
+        p: &[f64],
+    ) -> Result<(), EvaluationFailure> {
         let n = self.coordinates;
         let range = if part == Part::Position { 0..n } else { n..n + self.k };
         self.measured(part).try_eval((t, y, p))?;
@@ -216,11 +227,11 @@ impl Surface {
             if !converges && self.damped(length, |surface, fraction| Some(go(surface, fraction)?.0)).is_none()
             {
                 y[range].copy_from_slice(&start);
-                return Err(Fault::NoProjection { unknowns: self.k });
+                return Err(EvaluationFailure::NoProjection { unknowns: self.k });
             }
             self.factorise(t, y, p)?;
         }
-        Err(Fault::NoProjection { unknowns: self.k })
+        Err(EvaluationFailure::NoProjection { unknowns: self.k })
     }
 
     /// Halves a step until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,

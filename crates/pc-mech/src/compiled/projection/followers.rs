@@ -2,7 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
-use crate::compiled::failure::Fault;
+use crate::compiled::failure::EvaluationFailure;
 
 /// What a condition that follows from others may be off, in displacements of a component of the state, absolute or relative
 /// whichever is larger: what is held is so to rounding, and this is a hundred times what a start may be off.
@@ -43,8 +43,8 @@ impl Followers {
     /// That all vanish at a state.
     ///
     /// # Errors
-    /// [`Fault::Departed`] for the first that does not.
-    pub(crate) fn check(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), Fault> {
+    /// [`EvaluationFailure::Departed`] for the first that does not.
+    pub(crate) fn check(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         if self.names.is_empty() {
             return Ok(());
         }
@@ -54,7 +54,7 @@ impl Followers {
             let reach = reach.fold(0.0, f64::max);
             let is_kept = values[0].abs() <= OFF * if reach > 0.0 { reach } else { 1.0 };
             if !is_kept {
-                return Err(Fault::Departed { constraint: name.clone() });
+                return Err(EvaluationFailure::Departed { constraint: name.clone() });
             }
         }
         Ok(())

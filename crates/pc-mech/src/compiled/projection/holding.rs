@@ -2,7 +2,7 @@
 
 use pc_algebra::Matrix;
 
-use crate::compiled::failure::{Fault, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface};
 use crate::numeric::least_squares::LeastSquares;
 
@@ -17,7 +17,7 @@ const SHORT: f64 = 1e-13;
 
 /// The components of a state (x, η) that are not to be moved, by their indices among the x and among the η.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Held<'a> {
+pub(crate) struct PrescribedComponents<'a> {
     pub(crate) coordinates: &'a [usize],
     pub(crate) quasi_velocities: &'a [usize],
 }
@@ -28,13 +28,13 @@ impl Surface {
     ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 of the x_i held,   and   C δη = −g,   δη_s = 0 of the η_s held.
     ///
     /// # Errors
-    /// [`Fault::NoProjection`] if the way leads nowhere; [`Fault::Constraint`] for a constraint that what is held leaves
-    /// nothing to restrict.
+    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere; [`EvaluationFailure::Constraint`] for a constraint
+    /// that what is held leaves nothing to restrict.
     pub(crate) fn project_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
-        held: &Held<'_>,
-    ) -> Result<(), Fault> {
+        held: &PrescribedComponents<'_>,
+    ) -> Result<(), EvaluationFailure> {
         if !self.places.is_empty() {
             self.project_part_holding(Part::Position, (t, y, p), held)?;
         }
@@ -45,8 +45,8 @@ impl Surface {
         &mut self,
         part: Part,
         (t, y, p): (f64, &mut [f64], &[f64]),
-        held: &Held<'_>,
-    ) -> Result<(), Fault> {
+        held: &PrescribedComponents<'_>,
+    ) -> Result<(), EvaluationFailure> {
         let n = self.coordinates;
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
         for _ in 0..MOST_STEPS {
@@ -77,7 +77,7 @@ impl Surface {
                 return Ok(());
             }
         }
-        Err(Fault::NoProjection { unknowns: self.k })
+        Err(EvaluationFailure::NoProjection { unknowns: self.k })
     }
 
     /// The rows b_i of some coordinates.
@@ -105,7 +105,7 @@ impl Surface {
     ///   M δ + Aᵀ μ = 0,   A δ = α,
     ///
     /// measured in units in which the diagonal of M, and the rows of A, have length one.
-    fn shortest(&self, part: Part, fixed: Vec<Vec<f64>>) -> Result<Vec<f64>, Fault> {
+    fn shortest(&self, part: Part, fixed: Vec<Vec<f64>>) -> Result<Vec<f64>, EvaluationFailure> {
         let k = self.k;
         let mut mass = vec![vec![0.0; k]; k];
         let mut c = vec![vec![0.0; k]; self.velocities.values().len()];
@@ -135,8 +135,8 @@ impl Surface {
             rows.push(row.iter().map(|entry| entry / size).collect::<Vec<_>>());
             right.push(value / size);
         }
-        let failed = |_| Fault::NoProjection { unknowns: k };
-        let rank = |count: usize| -> Result<usize, Fault> {
+        let failed = |_| EvaluationFailure::NoProjection { unknowns: k };
+        let rank = |count: usize| -> Result<usize, EvaluationFailure> {
             let first = Matrix::from_fn(count, k, |a, s| rows[a][s]);
             Ok(LeastSquares::of(&first).map_err(failed)?.rank(DEPENDENT))
         };
@@ -148,7 +148,7 @@ impl Surface {
             for (place, &index) in indices.iter().enumerate() {
                 let now = rank(held + place + 1)?;
                 if now == before {
-                    return Err(Fault::Constraint { index: k + index });
+                    return Err(EvaluationFailure::Constraint { index: k + index });
                 }
                 before = now;
             }

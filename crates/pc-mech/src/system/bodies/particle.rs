@@ -3,7 +3,7 @@
 use pc_expr::Expr;
 
 use crate::error::{MechError, shape};
-use crate::system::bodies::{Moving, Share};
+use crate::system::bodies::moving::{Moving, Share};
 
 /// A mass point m at the place r(t, x), given by its one, two or three Cartesian components in an inertial frame.
 ///

@@ -4,8 +4,8 @@ use pc_algebra::{Matrix, Neighbourhood, affine, determinant};
 use pc_expr::Expr;
 
 use crate::error::{MechError, shape};
+use crate::system::bodies::moving::{Moving, Share};
 use crate::system::bodies::particle::Particle;
-use crate::system::bodies::{Moving, Share};
 
 /// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
 ///

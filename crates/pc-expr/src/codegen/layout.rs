@@ -1,0 +1,83 @@
+//! What is asked for, and what comes out: the language, where inputs and outputs stand in a function, its text.
+
+use crate::graph::function::Function;
+
+/// A language that programs are printed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Language {
+    /// C99 that is also C++.
+    C,
+    /// Rust of the 2021 edition or later.
+    Rust,
+}
+
+/// Where a printed function puts one output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// It is assigned to this, for instance `ydot[0]`.
+    Entry(String),
+    /// It is what the function returns; there is no other output then.
+    Returned,
+}
+
+/// One output of a printed function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Slot {
+    /// Where it goes.
+    pub place: Place,
+    /// What it is, as a comment after the statement; may be empty.
+    pub comment: String,
+    /// A name for its value where that is needed again, an identifier of the language; may be empty.
+    pub local: String,
+}
+
+/// How a program is put into a function of the arguments `t`, `y` (the state) and `p` (the parameters).
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Identifiers of the state and the parameters, from [`Language::identifiers`].
+    pub inputs: Vec<String>,
+    /// One slot for each output.
+    pub slots: Vec<Slot>,
+    /// Leaves out the outputs that are zero at all states: whoever writes the function clears the array first.
+    pub skip_zeros: bool,
+    /// Begins the names of the [helper functions](Language::helpers), which C puts into one space with all others.
+    pub prefix: String,
+    /// Identifiers that no local may have, such as the name of the array of the outputs.
+    pub reserved: Vec<String>,
+}
+
+/// The text of a function body, lines indented by four spaces.
+#[derive(Clone, Debug, Default)]
+pub struct FunctionBody {
+    /// Declares the inputs that are read, and passes over the arguments that are not.
+    pub inputs: String,
+    /// Computes the outputs.
+    pub statements: String,
+    /// What it calls.
+    pub calls: Calls,
+}
+
+/// The functions that printed code calls.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Calls {
+    /// The elementary functions, in the order of [`Function::ALL`].
+    pub(super) functions: Vec<Function>,
+    /// Whether a fused multiply-add is called.
+    pub(super) multiply_add: bool,
+}
+
+impl Calls {
+    /// These and those.
+    #[must_use]
+    pub fn and(mut self, other: &Calls) -> Calls {
+        other.functions.iter().for_each(|&function| self.add(function));
+        self.multiply_add |= other.multiply_add;
+        self
+    }
+
+    pub(super) fn add(&mut self, function: Function) {
+        if let Err(place) = self.functions.binary_search_by_key(&(function as u8), |&known| known as u8) {
+            self.functions.insert(place, function);
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What is asked of whole expressions.
+
+use rustc_hash::FxHashSet;
+
+use crate::error::ExprError;
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+
+impl Graph {
+    /// Whether all expressions are defined.
+    ///
+    /// # Errors
+    /// If not, [`ExprError::DivisionByZero`] with the dividend of the first division by an expression that is
+    /// identically zero, or [`ExprError::Undefined`] if there was none.
+    pub fn check<'g>(&'g self, expressions: &[Expr<'g>]) -> Result<(), ExprError> {
+        if !expressions.iter().any(|x| x.is_undefined()) {
+            return Ok(());
+        }
+        match self.with(|dag| dag.zero_divisions().first().copied()) {
+            None => Err(ExprError::Undefined),
+            Some(atom) => Err(ExprError::DivisionByZero { dividend: self.expr(atom).to_string() }),
+        }
+    }
+
+    /// The names of the symbols that `outputs` contain, in order of their making.
+    pub fn symbols_of<'g>(&'g self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
+        let nodes: Vec<NodeId> = self.with(|dag| {
+            let cone = Cone::below(dag, atoms);
+            cone.order.into_iter().filter(|&node| matches!(dag.node(node), Node::Symbol(_))).collect()
+        });
+        nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
+    }
+
+    /// Whether a function of which `which` holds is applied to something that is written with one of the `symbols`.
+    ///
+    /// ```
+    /// # use pc_expr::{Function, Graph};
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.applies(x + y.abs(), &[y], |f| !f.is_smooth()));
+    /// assert!(!graph.applies(x + y.abs(), &[x], |f| !f.is_smooth()));
+    /// ```
+    pub fn applies<'g>(
+        &'g self,
+        value: Expr<'g>,
+        symbols: &[Expr<'g>],
+        which: impl Fn(Function) -> bool,
+    ) -> bool {
+        self.finds(
+            value,
+            symbols,
+            |dag, _, node| matches!(dag.node(node), Node::Call { function, .. } if which(function)),
+        )
+    }
+
+    /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and no function is
+    /// applied but sine, cosine and the exponential, circular and hyperbolic.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.is_decidable(&[x.sin() / y + 0.1]));
+    /// assert!(!graph.is_decidable(&[x, y.sqrt()]) && !graph.is_decidable(&[2f64.sqrt() * x]));
+    /// ```
+    pub fn is_decidable<'g>(&'g self, values: &[Expr<'g>]) -> bool {
+        let rounded = |c: Number| matches!(c, Number::Real(_));
+        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        if roots.iter().any(|root| matches!(root, Atom::Constant(c) if rounded(*c))) {
+            return false;
+        }
+        self.with(|dag| {
+            let cone = Cone::below(dag, roots);
+            cone.order.iter().all(|&node| match dag.node(node) {
+                Node::Constant(c) => !rounded(c),
+                Node::Symbol(_) | Node::Product { .. } => true,
+                Node::Sum { constant, terms } => {
+                    !rounded(constant) && dag.terms(terms).iter().all(|&(_, q)| !rounded(q))
+                }
+                Node::Call { function, .. } => matches!(
+                    function,
+                    Function::Sin
+                        | Function::Cos
+                        | Function::Exp
+                        | Function::Sinh
+                        | Function::Cosh
+                        | Function::Tanh
+                ),
+            })
+        })
+    }
+
+    /// Whether something that is written with one of the `symbols` stands in a divisor.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.divides_by(x / (y + 1.0), &[y]));
+    /// assert!(!graph.divides_by(x / (y + 1.0), &[x]));
+    /// ```
+    pub fn divides_by<'g>(&'g self, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
+        self.finds(value, symbols, |dag, moving, node| {
+            let Node::Product { factors } = dag.node(node) else { return false };
+            dag.factors(factors).iter().any(|(child, exponent)| *exponent < 0 && moving.contains(child))
+        })
+    }
+
+    /// Whether a node of the value that depends on one of the symbols is one; it is told all those.
+    fn finds<'g>(
+        &'g self,
+        value: Expr<'g>,
+        symbols: &[Expr<'g>],
+        is_one: impl Fn(&Dag, &FxHashSet<NodeId>, NodeId) -> bool,
+    ) -> bool {
+        let root = value.atom_in(self);
+        let symbols: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
+        self.with(|dag| {
+            let cone = Cone::below(dag, [root]);
+            let moving = cone.depending_on(dag, &symbols);
+            cone.order.iter().any(|&node| moving.contains(&node) && is_one(dag, &moving, node))
+        })
+    }
+}

@@ -1,0 +1,21 @@
+//! How every function begins and ends.
+
+use cranelift_codegen::ir::{InstBuilder, Value};
+use cranelift_frontend::FunctionBuilder;
+
+use super::host::Host;
+
+/// Opens the first block of a function; answers the function's parameters.
+pub(super) fn open(b: &mut FunctionBuilder<'_>) -> Vec<Value> {
+    let block = b.create_block();
+    b.append_block_params_for_function_params(block);
+    b.switch_to_block(block);
+    b.block_params(block).to_vec()
+}
+
+/// Returns from a function and ends it.
+pub(super) fn close(mut b: FunctionBuilder<'_>, host: &Host) {
+    b.ins().return_(&[]);
+    b.seal_all_blocks();
+    b.finalize(host.frontend_config());
+}

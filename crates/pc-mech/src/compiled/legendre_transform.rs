@@ -1,0 +1,265 @@
+//! From quasi-velocities to momenta and back, in numbers: y = ∂L/∂η.
+
+use std::ops::Range;
+
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
+
+use crate::compiled::elimination::solver::Solver;
+use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::implicit::Newton;
+use crate::error::{MechError, shape};
+use crate::system::system::System;
+
+/// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.
+#[derive(Clone, Debug)]
+pub struct LegendreTransform {
+    /// Names of x, η, y, z.
+    names: [Vec<String>; 4],
+    parameters: Vec<f64>,
+    momenta: Evaluator,
+    quasi_velocities: QuasiVelocities,
+}
+
+/// η of (x, y)
+#[derive(Clone, Debug)]
+enum QuasiVelocities {
+    Closed(Evaluator),
+    Linear(Box<Linear>),
+    Implicit(Box<Implicit>),
+}
+
+/// p(w) = r with w = (η, μ), by Newton's method.
+#[derive(Clone, Debug)]
+struct Implicit {
+    newton: Newton,
+    solver: Solver,
+    /// Number of unknowns.
+    size: usize,
+    /// Equations of η alone, whose solution is where the method begins.
+    nearby: Option<Box<QuasiVelocities>>,
+    /// Where it begins if these have none.
+    guess: Vec<f64>,
+}
+
+/// M w = r with w = (η, μ), in numbers.
+#[derive(Clone, Debug)]
+struct Linear {
+    /// Of (t, (x, y)): what is not zero of the lower triangle of M, then r.
+    equations: Evaluator,
+    lower: Pattern,
+    values: Vec<f64>,
+    solver: Solver,
+}
+
+impl QuasiVelocities {
+    /// η, the first unknowns of these equations, in numbers; where they are not linear, from the solution of those `nearby`,
+    /// which have one where several velocities satisfy the constraints, as ±v satisfy v² = 1.
+    fn solved(
+        equations: &FirstOrder<'_>,
+        nearby: Option<&FirstOrder<'_>>,
+    ) -> Result<QuasiVelocities, ExprError> {
+        let Some(implicit) = &equations.implicit else {
+            return Ok(QuasiVelocities::Linear(Box::new(Linear::new(equations)?)));
+        };
+        let size = equations.unknowns.len();
+        Ok(QuasiVelocities::Implicit(Box::new(Implicit {
+            newton: Newton::new(equations, implicit, Backend::Interpreter)?,
+            solver: Solver::new(size, equations.multipliers),
+            size,
+            nearby: nearby.map(|nearby| QuasiVelocities::solved(nearby, None).map(Box::new)).transpose()?,
+            guess: implicit.guess.clone(),
+        })))
+    }
+
+    /// Writes η.
+    fn solve(&mut self, at: (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), EvaluationFailure> {
+        match self {
+            QuasiVelocities::Closed(program) => evaluate(program, at, eta),
+            QuasiVelocities::Linear(linear) => {
+                let solution = linear.solve(at)?;
+                eta.copy_from_slice(&solution[..eta.len()]);
+                Ok(())
+            }
+            QuasiVelocities::Implicit(implicit) => implicit.solve(at, eta),
+        }
+    }
+}
+
+impl Implicit {
+    /// Writes η.
+    fn solve(
+        &mut self,
+        at @ (t, state, p): (f64, &[f64], &[f64]),
+        eta: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
+        let mut guess = self.guess.clone();
+        if let Some(nearby) = &mut self.nearby {
+            let found = nearby.solve(at, eta);
+            if found.is_ok() {
+                guess[..eta.len()].copy_from_slice(eta);
+                guess[eta.len()..].fill(0.0);
+            }
+        }
+        guess.resize(self.size, 0.0);
+        self.newton.begin_at(&guess);
+        let mut known = [state, &vec![0.0; self.size]].concat();
+        let outcome = self.newton.solve(t, &mut known, p, &mut self.solver);
+        eta.copy_from_slice(&known[state.len()..state.len() + eta.len()]);
+        outcome
+    }
+}
+
+impl Linear {
+    fn new(equations: &FirstOrder<'_>) -> Result<Linear, ExprError> {
+        let (lower, mut entries) = equations.lower_triangle();
+        entries.extend(&equations.right);
+        let program = Program::new(equations.graph, &equations.inputs(&[]), &entries)?;
+        let solver = Solver::new(equations.unknowns.len(), equations.multipliers);
+        let (equations, values) = (Evaluator::new(program, Backend::Interpreter), vec![0.0; entries.len()]);
+        Ok(Linear { equations, lower, values, solver })
+    }
+
+    /// w, and M factorised.
+    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
+        self.equations.eval(t, state, p, &mut self.values);
+        check_finite(&self.values, &self.equations, at)?;
+        let (matrix, right) = self.values.split_at(self.lower.len());
+        self.solver.factorise(&self.lower, matrix)?;
+        let mut solution = right.to_vec();
+        self.solver.solve(&mut solution);
+        Ok(solution)
+    }
+}
+
+impl LegendreTransform {
+    /// The change of the states of `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η are the unknowns of `equations`,
+    /// and the expressions `closed` where these are linear.
+    ///
+    /// # Errors
+    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    pub(crate) fn unconstrained<'g>(
+        system: &System<'g>,
+        momenta: &[Expr<'g>],
+        of_velocities: &[Expr<'g>],
+        equations: &FirstOrder<'g>,
+        closed: &[Expr<'g>],
+    ) -> Result<LegendreTransform, MechError> {
+        let quasi_velocities = match &equations.implicit {
+            None => {
+                let program = Program::new(equations.graph, &equations.inputs(&[]), closed)?;
+                QuasiVelocities::Closed(Evaluator::new(program, Backend::Interpreter))
+            }
+            Some(_) => QuasiVelocities::solved(equations, None)?,
+        };
+        LegendreTransform::new(system, momenta, of_velocities, quasi_velocities)
+    }
+
+    /// The change of the states of `system`, whose momenta are called `momenta`; η are the first unknowns of `equations`,
+    /// which are in (t, x, y), and where these are not linear the solution next to that of linear ones `nearby`.
+    ///
+    /// # Errors
+    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    pub(crate) fn solving<'g>(
+        system: &System<'g>,
+        momenta: &[Expr<'g>],
+        equations: &FirstOrder<'g>,
+        nearby: Option<&FirstOrder<'g>>,
+    ) -> Result<LegendreTransform, MechError> {
+        let solved = QuasiVelocities::solved(equations, nearby)?;
+        LegendreTransform::new(system, momenta, &system.momenta(), solved)
+    }
+
+    fn new<'g>(
+        system: &System<'g>,
+        symbols: &[Expr<'g>],
+        momenta: &[Expr<'g>],
+        quasi_velocities: QuasiVelocities,
+    ) -> Result<LegendreTransform, MechError> {
+        let (x, eta) = (system.frame().coordinates(), system.quasi_velocities());
+        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
+        let inputs = Inputs {
+            time: Some(system.frame().time()),
+            state: system.state(),
+            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+        };
+        let momenta = Program::new(system.graph(), &inputs, momenta)?;
+        Ok(LegendreTransform {
+            names: [x, eta, symbols, &states].map(|symbols| symbols.iter().map(Expr::to_string).collect()),
+            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            momenta: Evaluator::new(momenta, Backend::Interpreter),
+            quasi_velocities,
+        })
+    }
+
+    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M = ∂²L/∂η∂η, bordered by
+    /// the constraints if there are any, of the state that was changed into quasi-velocities last. Not of closed expressions,
+    /// which have none.
+    pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
+        match &mut self.quasi_velocities {
+            QuasiVelocities::Closed(_) => columns.fill(f64::NAN),
+            QuasiVelocities::Linear(linear) => linear.solver.solve(columns),
+            QuasiVelocities::Implicit(implicit) => implicit.solver.solve(columns),
+        }
+    }
+
+    /// The values of the parameters, to be changed.
+    pub fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.parameters
+    }
+
+    /// (x, y) of the state (x, η), length n + k both; first-order states follow and stay.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
+    /// ∂L/∂η.
+    pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        let mut result = self.checked(state)?;
+        let moving = &mut result[self.moving()];
+        evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
+            .map_err(|failure| self.error(failure, t, state))?;
+        Ok(result)
+    }
+
+    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not quadratic, Newton's method finds it from
+    /// the [guess](crate::Canonical::with_guess).
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]; [`MechError::LegendreNotSolved`], [`MechError::SingularMassMatrix`] or
+    /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
+    pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        let mut result = self.checked(state)?;
+        let moving = &mut result[self.moving()];
+        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
+        outcome.map_err(|failure| self.error(failure, t, state))?;
+        Ok(result)
+    }
+
+    /// The state, if it has the right length.
+    fn checked(&self, state: &[f64]) -> Result<Vec<f64>, MechError> {
+        let length = self.names[0].len() + self.names[1].len() + self.names[3].len();
+        shape("the state", state.len(), length)?;
+        Ok(state.to_vec())
+    }
+
+    /// The places of η, or y, in a state.
+    fn moving(&self) -> Range<usize> {
+        let n = self.names[0].len();
+        n..n + self.names[1].len()
+    }
+
+    /// At the state (x, y).
+    fn error(&self, failure: EvaluationFailure, t: f64, state: &[f64]) -> MechError {
+        let [x, eta, y, z] = &self.names;
+        failure.at(eta, t, &[&x[..], y, z].concat(), state)
+    }
+}
+
+fn evaluate(
+    program: &mut Evaluator,
+    (t, state, parameters): (f64, &[f64], &[f64]),
+    values: &mut [f64],
+) -> Result<(), EvaluationFailure> {
+    program.eval(t, state, parameters, values);
+    check_finite(values, program, (t, state, parameters))
+}

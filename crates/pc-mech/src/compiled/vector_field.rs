@@ -1,0 +1,180 @@
+//! A compiled motion as a vector field.
+
+use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
+
+use crate::compiled::elimination::columns::Storage;
+use crate::compiled::failure::EvaluationFailure;
+use crate::compiled::motion::{Form, Motion};
+
+impl Motion {
+    /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
+    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
+        if let Some(surface) = &mut self.surface {
+            surface.project(t, y, &self.parameters)?;
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.project(t, y, &self.parameters)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the tables, if there are any.
+    #[inline]
+    fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
+        if self.signals.is_empty() {
+            return Ok(());
+        }
+        if self.signals.read(t, &mut self.parameters).map_err(Failure::fatal)?
+            && let Form::Unrolled(unrolled) = &mut self.form
+        {
+            unrolled.forget();
+        }
+        Ok(())
+    }
+
+    fn write_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+        storage: Storage,
+    ) -> Result<(), Failure> {
+        self.read_signals(t)?;
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, storage),
+            Form::Staged(staged) => staged.jacobian(at, entries, storage),
+            Form::InMomenta(motion) => return motion.jacobian(t, y, entries), // full in both storages
+        };
+        outcome.map_err(|failure| self.failure(failure, t, y))
+    }
+}
+
+impl VectorField for Motion {
+    fn dim(&self) -> usize {
+        self.names.len()
+    }
+
+    #[inline]
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
+            Form::Staged(staged) => staged.rhs(t, y, &self.parameters, ydot),
+            Form::InMomenta(motion) => return motion.rhs(t, y, ydot),
+        };
+        outcome.map_err(|failure| self.failure(failure, t, y))
+    }
+
+    fn checks_rates(&self) -> bool {
+        true
+    }
+
+    fn has_jacobian(&self) -> bool {
+        self.options.jacobian
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.write_jacobian(t, y, jacobian, Storage::Dense)
+    }
+
+    /// Known if the Jacobian was compiled.
+    fn sparsity(&self) -> Option<&Pattern> {
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.pattern(),
+            Form::Staged(staged) => staged.pattern(),
+            Form::InMomenta(motion) => motion.pattern(),
+        }
+    }
+
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.write_jacobian(t, y, values, Storage::Sparse)
+    }
+
+    fn has_jvp(&self) -> bool {
+        self.options.jvp
+    }
+
+    fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
+            Form::Staged(staged) => staged.jvp(at, v, product),
+            Form::InMomenta(_) => Err(EvaluationFailure::NotCompiled { what: "product with its Jacobian" }),
+        };
+        outcome.map_err(|failure| self.failure(failure, t, y))
+    }
+
+    fn parameters_len(&self) -> usize {
+        self.parameters().len()
+    }
+
+    fn has_parameter_jacobian(&self) -> bool {
+        self.options.parameter_jacobian
+    }
+
+    fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
+        let at = (t, y, &self.parameters[..]);
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
+            Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
+            Form::InMomenta(motion) => return motion.parameter_jacobian(t, y, jacobian),
+        };
+        outcome.map_err(|failure| self.failure(failure, t, y))
+    }
+
+    fn parameter_size(&self, j: usize) -> Option<f64> {
+        self.parameters.get(j).map(|value| value.abs())
+    }
+
+    fn has_projection(&self) -> bool {
+        let inner = self.in_quasi_velocities();
+        inner.surface.is_some() || inner.kept.is_some()
+    }
+
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.project(t, y);
+        }
+        self.project_in_turn(t, y).map_err(|failure| self.failure(failure, t, y))
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.time_dependence(self.names.len(), &self.parameters),
+            Form::Staged(staged) => staged.time_dependence(&self.parameters),
+            Form::InMomenta(motion) => motion.time_dependence(),
+        }
+    }
+
+    fn restart(&mut self, t: f64, y: &[f64]) {
+        if let Form::InMomenta(motion) = &mut self.form {
+            return motion.restart(t, y);
+        }
+        let Some(kept) = &mut self.kept else { return };
+        let mut state = y.to_vec();
+        if let Some(surface) = &mut self.surface
+            && surface.project(t, &mut state, &self.parameters).is_err()
+        {
+            state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
+        }
+        kept.set_levels((t, &state, &self.parameters));
+    }
+
+    fn breaks(&self) -> &[f64] {
+        self.signals().breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        match &mut self.form {
+            Form::InMomenta(motion) => motion.inner_mut().enter(t, end),
+            Form::Unrolled(_) | Form::Staged(_) => self.signals.enter(t, end),
+        }
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
+    }
+}

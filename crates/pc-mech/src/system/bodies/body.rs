@@ -1,0 +1,49 @@
+//! Something with mass.
+
+use pc_expr::{Expr, Graph};
+
+use crate::error::{MechError, shape};
+use crate::system::bodies::moving::{Moving, Share};
+use crate::system::bodies::particle::Particle;
+use crate::system::bodies::rigid_body::RigidBody;
+
+/// Something with mass.
+#[derive(Clone, Debug)]
+pub(crate) enum Body<'g> {
+    Particle(Particle<'g>),
+    Rigid(Box<RigidBody<'g>>),
+}
+
+impl<'g> Body<'g> {
+    /// T and Q_1..Q_k.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`], [`MechError::BodyOfVelocities`], [`MechError::AngularVelocityNotAffine`].
+    pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
+        match self {
+            Body::Particle(particle) => particle.share(moving),
+            Body::Rigid(body) => body.share(moving),
+        }
+    }
+
+    /// m g · r, what L has of it in a field of gravity.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`]
+    pub(crate) fn weight(&self, graph: &'g Graph, acceleration: &[Expr<'g>]) -> Result<Expr<'g>, MechError> {
+        let (mass, position) = match self {
+            Body::Particle(particle) => particle.mass_and_position(),
+            Body::Rigid(body) => body.mass_and_position(),
+        };
+        shape("the acceleration of gravity", acceleration.len(), position.len())?;
+        Ok(mass * graph.dot(acceleration.iter().copied(), position.iter().copied()))
+    }
+
+    /// The name it was given.
+    pub(crate) fn name(&self) -> Option<&str> {
+        match self {
+            Body::Particle(particle) => particle.name(),
+            Body::Rigid(body) => body.name(),
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! How bodies move with a frame, and what they add to a system.
+
+use pc_algebra::Frame;
+use pc_expr::Expr;
+
+use crate::error::MechError;
+use crate::system::system::check_no_state;
+
+/// What a body adds to a system.
+#[derive(Clone, Debug)]
+pub(crate) struct Share<'g> {
+    /// T in terms of (t, x, η).
+    pub(crate) kinetic: Expr<'g>,
+    /// Q_1..Q_k, those aside that come from the force function.
+    pub(crate) forces: Vec<Expr<'g>>,
+    /// U(t, x), which has to be part of L.
+    pub(crate) force_function: Expr<'g>,
+    /// ṙ
+    pub(crate) velocity: Vec<Expr<'g>>,
+    /// ω, if it turns.
+    pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
+}
+
+/// A frame with its quasi-velocities, and the symbols x' of its velocities.
+pub(crate) struct Moving<'a, 'g> {
+    pub(crate) frame: &'a Frame<'g>,
+    pub(crate) eta: &'a [Expr<'g>],
+    states: &'a [(Expr<'g>, Expr<'g>)],
+    /// Each x_i' with b_is η_s + b_i0, but for those that are the name of a quasi-velocity.
+    velocities: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'a, 'g> Moving<'a, 'g> {
+    pub(crate) fn new(
+        frame: &'a Frame<'g>,
+        eta: &'a [Expr<'g>],
+        states: &'a [(Expr<'g>, Expr<'g>)],
+    ) -> Moving<'a, 'g> {
+        let symbols = frame.coordinates().iter().map(|x| frame.graph().symbol(&format!("{x}'")));
+        let velocities = symbols.zip(frame.velocities(eta)).filter(|(symbol, _)| !eta.contains(symbol));
+        Moving { frame, eta, states, velocities: velocities.collect() }
+    }
+
+    /// Functions of (t, x, η) and ẋ in terms of (t, x, η).
+    pub(crate) fn in_quasi_velocities(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.frame.graph().substitute(functions, &self.velocities)
+    }
+
+    /// X_s f for each function f of (t, x), s = 0..k.
+    ///
+    /// # Errors
+    /// [`MechError::BodyOfVelocities`] if they depend on velocities, [`MechError::OfState`] if on first-order states; `what` is
+    /// their name.
+    pub(crate) fn operators(
+        &self,
+        what: &'static str,
+        functions: &[Expr<'g>],
+    ) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
+        self.check_at_rest(what, functions)?;
+        check_no_state(self.states, what, functions)?;
+        Ok((0..=self.eta.len()).map(|s| self.frame.apply(s, functions)).collect())
+    }
+
+    /// # Errors
+    /// [`MechError::BodyOfVelocities`] if one of the functions depends on velocities.
+    pub(crate) fn check_at_rest(&self, what: &'static str, functions: &[Expr<'g>]) -> Result<(), MechError> {
+        let known = self.frame.graph().symbols_of(functions);
+        let mut velocities = self.velocities.iter().map(|(symbol, _)| symbol).chain(self.eta);
+        match velocities.find(|velocity| known.contains(velocity)) {
+            Some(velocity) => Err(MechError::BodyOfVelocities { what, velocity: velocity.to_string() }),
+            None => Ok(()),
+        }
+    }
+
+    /// u_0 + η_s u_s, component by component, for the vectors u_0..u_k.
+    pub(crate) fn combine(&self, vectors: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let graph = self.frame.graph();
+        let weights = || std::iter::once(Expr::ONE).chain(self.eta.iter().copied());
+        let components = vectors.first().map_or(0, Vec::len);
+        (0..components).map(|i| graph.dot(vectors.iter().map(|u| u[i]), weights())).collect()
+    }
+
+    /// f · u_s for s = 1..k, for the vectors u_0..u_k.
+    pub(crate) fn work(&self, f: &[Expr<'g>], vectors: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let graph = self.frame.graph();
+        vectors[1..].iter().map(|u| graph.dot(f.iter().copied(), u.iter().copied())).collect()
+    }
+}
