@@ -14,7 +14,8 @@ use crate::graph::node::Folding;
 /// The field only tests identity, values are always computed in `f64`.
 ///
 /// ```
-/// /// let graph = Graph::new();
+/// use pc_expr::Graph;
+/// let graph = Graph::new();
 /// let x = graph.symbol("x");
 /// assert_eq!(x.sin() * x.sin() + x.cos() * x.cos(), 1.0.into());
 /// assert_eq!(((x + 1.0) * (x - 1.0)).derivative(x), 2.0 * x);

@@ -13,7 +13,7 @@ const SMALL: u64 = 1 << 20;
 ///
 /// ```
 /// use pc_expr::{Number, Residue};
-/// let third = Residue::of_number(Number::ratio(1, 3)).expect("rational");
+/// let third: Residue = Residue::of_number(Number::ratio(1, 3)).expect("rational");
 /// assert_eq!(third * Residue::integer(6), Residue::integer(2));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
