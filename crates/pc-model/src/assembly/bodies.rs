@@ -3,12 +3,11 @@
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::{Expression, Orientation};
-use crate::names::scope::Stage;
+use crate::document::{self, Expression, Orientation};
+use crate::names::stage::Stage;
 
 /// A body as the mechanics knows it.
 pub(super) enum Body<'g> {

@@ -3,7 +3,7 @@
 use pc_mech::{Constraint, Expr, Multipliers, System};
 use pc_nonholo::Redundant;
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::assembly::resultant::{force_names, torque_names};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;

@@ -3,11 +3,11 @@
 use pc_algebra::affine;
 use pc_mech::{AlgebraError, Expr, LieAlgebra, StructureCoefficients};
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document::{AlgebraDefinition, Bracket};
-use crate::names::scope::Stage;
+use crate::document::{AlgebraDefinition, Bracket};
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// The structure coefficients given in `[algebra]`.
@@ -41,7 +41,7 @@ impl<'g> Assembler<'g, '_> {
         eta: &[Expr<'g>],
     ) -> Result<StructureCoefficients<'g>, ModelError> {
         let k = eta.len();
-        let index = |name: &crate::document::document::Name| -> Result<usize, ModelError> {
+        let index = |name: &crate::document::Name| -> Result<usize, ModelError> {
             let declared = &self.model.document().quasi_velocities;
             match declared.iter().position(|q| q.name.text == name.text) {
                 Some(s) => Ok(s + 1),

@@ -4,13 +4,13 @@ use pc_mech::{Constraint, Expr, System};
 use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
 
 use super::trial::{StartHeld, Trial};
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::assembly::constraint_treatment::{Bound, Form, Held, Verdict};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::ConstraintKind;
-use crate::names::scope::Stage;
+use crate::document;
+use crate::document::ConstraintKind;
+use crate::names::stage::Stage;
 
 /// A constraint of the text with its expression, x' still symbols.
 pub(super) struct Written<'g> {

@@ -2,7 +2,7 @@
 
 use pc_mech::Expr;
 
-use crate::model::model::Assembly;
+use crate::assembly::assembly::Assembly;
 
 /// What is this small against the largest entry of a matrix is rounding.
 const ROUNDING: f64 = 1e-12;

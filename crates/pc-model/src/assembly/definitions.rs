@@ -5,11 +5,11 @@ use pc_mech::{AlgebraError, Constraint, Expr, Frame, System};
 use pc_nonholo::Binding;
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document::Expression;
-use crate::names::scope::Stage;
+use crate::document::Expression;
+use crate::names::stage::Stage;
 
 /// A coefficient smaller than this against the largest of its row is no pivot.
 const SMALL: f64 = 1e-3;

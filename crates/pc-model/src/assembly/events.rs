@@ -2,14 +2,15 @@
 
 use pc_expr::{Direction, Expr};
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::assembly::constraint_treatment::Bound;
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::NamedExpression;
-use crate::names::scope::{Stage, entry};
+use crate::document;
+use crate::document::NamedExpression;
+use crate::names::scope::entry;
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// What passes through zero, ẋ = b η + b_0 put in, in the order of the file.

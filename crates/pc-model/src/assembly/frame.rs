@@ -3,11 +3,12 @@
 use pc_mech::{AlgebraError, Expr, Frame};
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document::NamedExpression;
-use crate::names::scope::{Stage, entry};
+use crate::document::NamedExpression;
+use crate::names::scope::entry;
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.

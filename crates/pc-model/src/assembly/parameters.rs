@@ -7,9 +7,10 @@ use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
 use pc_mech::Table;
 
 use crate::assembly::tables;
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::fault::Fault;
-use crate::document::document::{Document, Expression, InputValue, Name};
+use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression in

@@ -1,14 +1,16 @@
 //! The start of a motion from what is given of it.
 
 use pc_algebra::affine;
-use pc_mech::{Expr, Frame};
+use pc_mech::{Expr, Frame, Graph};
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::fault::Fault;
-use crate::document::document::Expression;
-use crate::names::scope::{Stage, entry};
+use crate::document::Expression;
+use crate::model::model::Model;
+use crate::names::scope::{Scope, entry};
+use crate::names::stage::Stage;
 
 /// What is left of a unit vector that depends on others, beside rounding.
 const DEPENDENT: f64 = 1e-9;
@@ -26,6 +28,18 @@ pub(super) struct Given {
     velocities: Vec<f64>,
     /// First-order states; zero where nothing is given.
     pub(super) states: Vec<f64>,
+}
+
+/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
+///
+/// # Errors
+/// [`ModelError`] where one is not a number.
+pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
+    let parameters: Vec<(Expr<'_>, f64)> =
+        model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
+    let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
+    let given = assembler.given_start(&parameters)?;
+    Ok([given.values, given.states].concat())
 }
 
 impl<'g> Assembler<'g, '_> {

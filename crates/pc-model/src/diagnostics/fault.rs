@@ -2,7 +2,7 @@
 
 use pc_mech::acts_as_zero;
 
-use crate::diagnostics::error::Category;
+use crate::diagnostics::category::Category;
 use crate::diagnostics::words::{against, at, listed, rounded, suggest, undetermined_text};
 
 /// A fault of the meaning; quasi-velocities stand for their operators.

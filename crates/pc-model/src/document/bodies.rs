@@ -1,7 +1,8 @@
 //! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::document::{Body, Gravity, Inertia, Orientation};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];

@@ -3,7 +3,8 @@
 use pc_mech::Interpolation;
 
 use super::reader::{Item, Table};
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::document::{Input, InputValue, TableFile};
 
 const KEYS: &[&str] = &["times", "values", "file", "column", "time", "interpolation"];

@@ -3,11 +3,11 @@
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
-use super::reading::Reading;
+use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::Form;
 use crate::diagnostics::error::ModelError;
-use crate::flow::flow::inputs;
-use crate::model::model::{Assembly, Model};
+use crate::flow::reading::{Reading, inputs};
+use crate::model::model::Model;
 
 /// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
 /// larger, is no rounding.

@@ -1,14 +1,15 @@
 //! The vector field that is integrated, what happens on its way, and what a table shows of its states.
 
-use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
-use pc_mech::{LegendreTransform, MechError, Motion, System};
+use pc_expr::{Backend, Evaluator, Expr, Program};
+use pc_mech::{LegendreTransform, MechError, Motion};
 
+use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::Form;
 use crate::diagnostics::error::ModelError;
-pub use crate::flow::events::FlowEvents;
-use crate::flow::reading::Reading;
+use crate::flow::events::FlowEvents;
+use crate::flow::reading::{Reading, inputs};
 use crate::flow::variables::Variables;
-use crate::model::model::{Assembly, Model};
+use crate::model::model::Model;
 
 /// Equations of motion of a model, compiled and tried at the start, with what is read off their states.
 #[derive(Clone, Debug)]
@@ -156,14 +157,5 @@ impl Flow {
     /// Number of quasi-velocities.
     pub fn quasi_velocities(&self) -> usize {
         self.names.len() - self.motion.coordinates() - self.motion.states()
-    }
-}
-
-/// Time, a state of these symbols, and the parameters.
-pub(super) fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
-    Inputs {
-        time: Some(system.frame().time()),
-        state: state.to_vec(),
-        parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
     }
 }

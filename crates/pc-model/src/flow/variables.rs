@@ -2,9 +2,10 @@
 
 use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
+use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::Form;
 use crate::diagnostics::error::ModelError;
-use crate::model::model::{Assembly, Model};
+use crate::model::model::Model;
 
 /// The variables of the state beside the coordinates, and so which equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

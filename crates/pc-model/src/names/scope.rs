@@ -7,75 +7,13 @@ use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
 use crate::assembly::resultant::{force_names, torque_names};
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::fault::Fault;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::document::{Body, Document, Expression, NamedExpression};
-
-/// What an expression may contain, by the place where it stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Stage {
-    /// The value of a parameter: parameters before it.
-    Parameter,
-    /// A start value: parameters, and definitions made of them.
-    Start,
-    /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
-    Definition,
-    /// Kinematics: coordinates, t, and quasi-velocities.
-    Kinematics,
-    /// Mass, inertia, place and attitude of a body: coordinates and t.
-    Position,
-    /// Mass and inertia of a body: coordinates, first-order states and t.
-    Inertia,
-    /// The rate of a first-order state: everything but accelerations.
-    Rate,
-    /// The acceleration of gravity: parameters and t.
-    Gravity,
-    /// A constraint: everything but accelerations.
-    Constraint,
-    /// The energy or a force: everything but accelerations.
-    Dynamics,
-    /// An event: everything but accelerations.
-    Event,
-    /// A function that is asked for: everything but accelerations.
-    Function,
-    /// Integrals and outputs: everything.
-    Observation,
-}
-
-impl Stage {
-    fn place(self) -> &'static str {
-        match self {
-            Stage::Parameter => "the value of a parameter",
-            Stage::Start => "a start value",
-            Stage::Definition => "the definition of a quasi-velocity",
-            Stage::Kinematics => "[kinematics]",
-            Stage::Position | Stage::Inertia => "the mass, inertia, position or rotation of a body",
-            Stage::Rate => "the rate of a first-order state",
-            Stage::Gravity => "the acceleration of gravity",
-            Stage::Constraint => "a constraint",
-            Stage::Dynamics => "the Lagrangian or a force",
-            Stage::Event => "an event",
-            Stage::Function => "a function of the state",
-            Stage::Observation => "an integral or output",
-        }
-    }
-
-    fn allowed(self) -> &'static str {
-        match self {
-            Stage::Parameter => "numbers and parameters before it",
-            Stage::Start => "numbers, parameters and definitions made of them",
-            Stage::Definition => "parameters, coordinates, velocities x' and t",
-            Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
-            Stage::Position | Stage::Inertia => "parameters, coordinates and t",
-            Stage::Gravity => "numbers, parameters, inputs and t",
-            Stage::Constraint => "parameters, coordinates, velocities and t",
-            Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
-                "declared names"
-            }
-        }
-    }
-}
+use crate::document::{Body, Document, Expression, NamedExpression};
+use crate::names::functions::call;
+use crate::names::stage::Stage;
 
 /// A part of the model as written, and the expression it became: what is looked through when something is not a
 /// number.
@@ -471,8 +409,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
-        let input =
-            |input: &&crate::document::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
+        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
             return Err(self.error(expression, span, |_| Fault::RateOfInput { name }));
@@ -500,31 +437,6 @@ impl<'g, 'd> Scope<'g, 'd> {
             rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
         }
         Ok(self.graph.directional(&[value], &rates)[0])
-    }
-}
-
-fn call<'g>(function: &str, args: &[Expr<'g>], graph: &'g Graph) -> Expr<'g> {
-    match (function, args) {
-        ("sin", &[x]) => x.sin(),
-        ("cos", &[x]) => x.cos(),
-        ("tan", &[x]) => x.tan(),
-        ("cot", &[x]) => x.cot(),
-        ("asin", &[x]) => x.asin(),
-        ("acos", &[x]) => x.acos(),
-        ("atan", &[x]) => x.atan(),
-        ("sinh", &[x]) => x.sinh(),
-        ("cosh", &[x]) => x.cosh(),
-        ("tanh", &[x]) => x.tanh(),
-        ("exp", &[x]) => x.exp(),
-        ("log", &[x]) => x.log(),
-        ("sqrt", &[x]) => x.sqrt(),
-        ("abs", &[x]) => x.abs(),
-        ("sign", &[x]) => x.sign(),
-        ("atan2", &[y, x]) => y.atan2(x),
-        ("min", &[x, y]) => x.min(y),
-        ("max", &[x, y]) => x.max(y),
-        ("step", &[x, a, b]) => x.step(a, b),
-        _ => unreachable!("the parser knows the functions and their arguments: {function} of {graph:?}"),
     }
 }
 
