@@ -4,7 +4,7 @@ use pc_mech::{Constraint, Equations, Expr, Multipliers};
 use pc_model::{Assembly, Form as Kept};
 use pc_nonholo::{Kind, NonholoError, Voronets};
 
-use crate::Form;
+use crate::form::Form;
 
 /// Equations of motion with what belongs to them.
 #[derive(Clone, Debug)]
