@@ -7,11 +7,12 @@ use std::process::ExitCode;
 
 use pc_cli::args::args::RunForm;
 use pc_cli::args::input;
-use pc_cli::commands::run::{Run, integrate};
-use pc_cli::output::output::Destination;
-use pc_cli::plot::plot::Picture;
+use pc_cli::commands::run::integrate;
+use pc_cli::motion::plan::Plan;
+use pc_cli::motion::run::Run;
+use pc_cli::output::destination::Destination;
+use pc_cli::plot::picture::Picture;
 use pc_cli::report::text;
-use pc_cli::run::plan::Plan;
 use pc_mech::Graph;
 use pc_model::{Builtin, Model};
 use pc_print::{balance, brackets, columns, kinematics};

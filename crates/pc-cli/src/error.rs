@@ -8,9 +8,10 @@ use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
 use pc_verify::VerifyError;
 
-use crate::plot::plot::PlotError;
+use crate::exit_code;
+use crate::motion::checkpoint_error::SavingError;
+use crate::plot::error::PlotError;
 use crate::report::text::short;
-use crate::run::checkpoint::SavingError;
 use crate::sweep::error::SweepError;
 
 /// An error of the program.
@@ -127,7 +128,7 @@ pub enum CliError {
 
 impl CliError {
     /// Exit code of a wrong command line.
-    pub const USAGE: u8 = 2;
+    pub const USAGE: u8 = exit_code::USAGE;
 
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {

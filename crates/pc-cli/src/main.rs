@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use pc_cli::CliError;
-use pc_cli::args::args::{Arguments, Command};
+use pc_cli::args::command_line::{Arguments, Command};
 use pc_cli::commands::{check, derive, emit, models, run};
 use pc_cli::report::text;
 use pc_cli::sweep::sweep;

@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 
 use crate::args::args;
 use crate::args::args::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
-use crate::run::checkpoint::SavingArguments;
+use crate::args::checkpoint::SavingArguments;
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]

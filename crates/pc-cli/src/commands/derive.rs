@@ -6,8 +6,8 @@ use pc_print::page;
 use crate::args::args::DeriveArguments;
 use crate::args::input;
 use crate::error::CliError;
+use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
-use crate::report::text::print;
 
 /// Prints the equations of a model.
 ///

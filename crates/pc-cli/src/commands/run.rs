@@ -1,87 +1,28 @@
 //! `pc run`: integrate, write, sum up.
 
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pc_mech::Graph;
 use pc_model::{Flow, Model};
-use pc_solve::{self as solver, Events, HybridMotion, SolveError, Statistics, Trajectory};
+use pc_solve::{self as solver, Events, HybridMotion, Trajectory};
 
 use crate::args::args::{Outputs, RunArguments, RunForm};
+use crate::args::checkpoint::SavingArguments;
 use crate::args::input;
 use crate::error::CliError;
-use crate::output::output::Destination;
-use crate::plot::plot::Picture;
+use crate::motion::checkpoint::Saving;
+use crate::motion::follow::follow;
+use crate::motion::interrupt;
+use crate::motion::plan::Plan;
+use crate::motion::progress::Progress;
+use crate::motion::run::{Ending, Run};
+use crate::motion::table::Table;
+use crate::output::destination::Destination;
+use crate::plot::picture::Picture;
 use crate::report::notes::{dropped, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
-use crate::run::checkpoint::{Saving, SavingArguments};
-use crate::run::follow::follow;
-use crate::run::interrupt;
-use crate::run::plan::Plan;
-use crate::run::progress::Progress;
-use crate::run::table::Table;
-
-/// A motion as far as it was computed, and how that went.
-#[derive(Debug)]
-pub struct Run {
-    /// What the model calls itself.
-    pub title: String,
-    /// The parameters with their values.
-    pub parameters: Vec<(String, f64)>,
-    /// How it was to be computed.
-    pub plan: Plan,
-    /// Names of the components of the state that was integrated.
-    pub state: Vec<String>,
-    /// What was reached.
-    pub table: Table,
-    /// The constraints that are held, with the largest residual of each at the output times.
-    pub constraints: Vec<(String, f64)>,
-    /// The constraints that were dropped, each with the reason.
-    pub dropped: Vec<(String, String)>,
-    /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
-    pub keeps_energy: bool,
-    /// The names of the events that the model has.
-    pub events: Vec<String>,
-    /// What occurred, in order: the numbers of events, and when.
-    pub occurrences: Vec<(usize, f64)>,
-    /// How it ended.
-    pub ending: Ending,
-    /// What a second derivation says; none where it was not asked.
-    pub verification: Option<Verification>,
-    /// The work done.
-    pub statistics: Statistics,
-    /// The time it took.
-    pub wall: Duration,
-}
-
-/// How a run ended.
-#[derive(Debug)]
-pub enum Ending {
-    /// At its end.
-    Completed,
-    /// By a terminal event.
-    Event {
-        /// Its name.
-        name: String,
-    },
-    /// By Ctrl-C.
-    Interrupted,
-    /// The integration could not go on.
-    Failed(Box<SolveError>),
-}
-
-impl Ending {
-    /// In a word.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Ending::Completed => "completed",
-            Ending::Event { .. } => "event",
-            Ending::Interrupted => "interrupted",
-            Ending::Failed(_) => "failed",
-        }
-    }
-}
 
 /// Does what `pc run` is asked to.
 ///

@@ -11,10 +11,10 @@ use pc_solve::{Ending, Events, HybridMotion, Options, Stop, Trajectory};
 use super::design::Design;
 use super::record::{Record, Status};
 use crate::args::args::RunForm;
-use crate::run::follow::follow;
-use crate::run::interrupt;
-use crate::run::plan::Plan;
-use crate::run::table::Table;
+use crate::motion::follow::follow;
+use crate::motion::interrupt;
+use crate::motion::plan::Plan;
+use crate::motion::table::Table;
 
 /// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
 /// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.

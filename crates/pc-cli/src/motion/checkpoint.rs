@@ -7,19 +7,20 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Args;
 use pc_model::{Flow, Model};
 use pc_solve::{
     Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_with_events_checkpointed,
 };
 
 use crate::args::args::RunForm;
+use crate::args::checkpoint::SavingArguments;
 use crate::error::CliError;
+use crate::motion::checkpoint_error::SavingError;
+use crate::motion::identity;
+use crate::motion::identity::Identity;
+use crate::motion::plan::Plan;
 use crate::output::atomic;
 use crate::report::text;
-use crate::run::identity;
-use crate::run::identity::Identity;
-use crate::run::plan::Plan;
 
 /// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
 /// against them.
@@ -28,61 +29,6 @@ const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 /// The file is written again after so many times as long as it took the last time; how often does not change the
 /// numbers.
 const PATIENCE: u32 = 20;
-
-/// Arguments of `pc run` for checkpoints.
-#[derive(Clone, Debug, Default, Args)]
-pub struct SavingArguments {
-    /// Keep a checkpoint in FILE, for --resume. The integrator is begun anew at each, which changes the motion within its
-    /// tolerance
-    #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<PathBuf>,
-    /// Internal steps from one checkpoint to the next [default: 1000, or as in the FILE of --resume]
-    #[arg(long, value_name = "N")]
-    pub every: Option<NonZeroU64>,
-    /// Go on from the checkpoint in FILE, of the same model and options; the result is that of a run that was never
-    /// interrupted, to the last bit. Checkpoints go on to be kept there unless --checkpoint names another file
-    #[arg(long, value_name = "FILE")]
-    pub resume: Option<PathBuf>,
-}
-
-/// Why a run cannot go on from a file, or keep checkpoints there.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SavingError {
-    /// The file cannot be read.
-    #[error("--resume {}: it cannot be read", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// What is in the file is no checkpoint, or no longer one.
-    #[error("--resume {}: {source}; begin anew without --resume", path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// The checkpoint is that of another run.
-    #[error("--resume {}: it is of a run with {what}; repeat that command, or begin anew without --resume", path.display())]
-    OtherRun {
-        /// The file.
-        path: PathBuf,
-        /// What is different, then and now.
-        what: String,
-    },
-    /// A checkpoint would overwrite something else.
-    #[error("--checkpoint {}: the file is there and is no checkpoint; give another name", path.display())]
-    Occupied {
-        /// The file.
-        path: PathBuf,
-    },
-    /// `--every` where no checkpoint is kept.
-    #[error("--every says how often; give --checkpoint FILE too")]
-    Nowhere,
-}
 
 /// Checkpoints of one run.
 #[derive(Debug)]
