@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 27] = [
+const FILES: [&str; 28] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -59,6 +59,7 @@ const FILES: [&str; 27] = [
     "api/bodies.rs",
     "api/settings.rs",
     "api/options.rs",
+    "machinery/system.rs",
     "api/system.rs",
     "api/force.rs",
     "api/rates.rs",

@@ -5,12 +5,13 @@ use std::ffi::c_char;
 use pc_expr::Evaluator;
 use pc_mech::{Expr, Graph};
 
-use crate::api::mechanics::{compile, evaluate};
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
+use crate::machinery::mechanics::{compile, evaluate};
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
 ///

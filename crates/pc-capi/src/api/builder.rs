@@ -6,7 +6,8 @@ use pc_mech::Graph;
 
 use crate::api::model::{Contents, Origin, boxed, change, pc_model};
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, finite, numbers, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};

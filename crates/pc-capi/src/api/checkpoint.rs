@@ -6,7 +6,6 @@ use pc_solve::Checkpoint;
 
 use crate::api::options::{pc_solver_options, take};
 use crate::api::solver::{integrate, pc_solver};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
 use crate::ffi::boundary::entry;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{bytes, clear, text, write};
@@ -14,6 +13,7 @@ use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
 /// in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.

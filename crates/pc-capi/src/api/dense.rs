@@ -5,9 +5,10 @@ use std::ffi::c_uint;
 use pc_solve::{DenseOutput, InputError, SolveError};
 
 use crate::api::solver::{integrate, pc_solver};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{clear, handle, room, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
+use crate::ffi::pointer::{clear, free, handle, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 

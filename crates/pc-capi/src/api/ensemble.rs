@@ -10,14 +10,15 @@ use ::pc_model::FlowEvents;
 use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
 
 use crate::api::options::{pc_solver_options, take};
-use crate::api::system::pc_system;
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{finite, handle, numbers};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Engine;
 use crate::machinery::event_set::Followed;
 use crate::machinery::field::Field;
+use crate::machinery::system::pc_system;
 
 /// What has come of a member of an ensemble. It may grow at the end.
 #[repr(C)]

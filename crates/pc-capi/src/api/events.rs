@@ -7,11 +7,12 @@ use pc_expr::{Direction, Event, Events};
 use crate::api::builder::draft;
 use crate::api::model::pc_model;
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, count, inside, name, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{numbers, room, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
+use crate::machinery::system::{Inner, Inventory, count, inside, name, pc_system};
 
 /// In which direction the function of an event passes through zero, as the integration goes.
 #[repr(C)]

@@ -6,13 +6,14 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::api::system::{Inner, holding, pc_system};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{are_usable, clear, fresh, handle, numbers, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
+use crate::ffi::pointer::{are_usable, clear, free, fresh, handle, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::field::Field;
 use crate::machinery::lock_free_rhs::Direct;
+use crate::machinery::system::{Inner, holding, pc_system};
 
 /// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
 /// pc_kernel_free.

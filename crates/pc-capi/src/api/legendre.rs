@@ -3,9 +3,10 @@
 use pc_mech::{Graph, LegendreTransform, MechError};
 
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
     /// The transform of the state, derived when first asked for.

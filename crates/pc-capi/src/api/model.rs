@@ -5,9 +5,10 @@ use std::sync::OnceLock;
 
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{bytes, clear, finite, handle, text, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
+use crate::ffi::pointer::{bytes, clear, finite, free, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, give, nth};
 use crate::machinery::draft::Draft;

@@ -1,9 +1,10 @@
 //! What is watched along a motion.
 
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
 ///

@@ -7,7 +7,8 @@ use pc_expr::Event;
 
 use crate::api::events::direction;
 use crate::api::solver::{integrate, pc_solver};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{apart, handle, room, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, nth};

@@ -5,7 +5,7 @@ use std::ffi::c_int;
 use ::pc_model::Variables;
 use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
-use crate::ffi::error::Fault;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{aligned, numbers};
 
 /// Which equations of motion; values of pc_system_options.form.

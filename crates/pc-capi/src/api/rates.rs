@@ -4,11 +4,12 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::api::system::{Inner, Inventory, holding, inside, pc_system};
 use crate::ffi::boundary::succeeded;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, holding, inside, pc_system};
 
 /// A state from C.
 #[derive(Clone, Copy)]

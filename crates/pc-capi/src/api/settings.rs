@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use crate::api::builder::draft;
 use crate::api::model::{Contents, Origin, change, pc_model};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{finite, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};

@@ -8,15 +8,16 @@ use pc_expr::Events;
 use pc_solve::Checkpoint;
 
 use crate::api::options::{pc_solver_options, take};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{clear, handle, numbers, room, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
+use crate::ffi::pointer::{clear, free, handle, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::c_string;
 use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
 use crate::machinery::exclusive::Held;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {

@@ -6,12 +6,13 @@ use ::pc_model::Variables;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::{Form, Page};
 
-use crate::api::system::{Inventory, pc_system};
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
+use crate::machinery::system::{Inventory, pc_system};
 
 /// How equations are printed.
 #[repr(C)]

@@ -5,7 +5,8 @@ use pc_solve::Statistics;
 use crate::api::options::give;
 use crate::api::solver::pc_solver;
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 

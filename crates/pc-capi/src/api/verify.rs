@@ -4,11 +4,12 @@ use std::ffi::c_char;
 
 use pc_verify::{Options, VerifyError, verify};
 
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
 /// random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,

@@ -4,7 +4,8 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::error::pc_error;
+use crate::ffi::fault::Fault;
 use crate::ffi::status::pc_status;
 
 /// Runs `body`, catching panics, and writes its fault to `*error`, or null.
@@ -56,20 +57,6 @@ fn message_of(panic: Box<dyn Any + Send>) -> String {
     // Ours are texts; one of another kind might panic again where it is dropped.
     let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
     message
-}
-
-/// Frees a box that was given to C.
-///
-/// # Safety
-/// Null, or made by `Box::into_raw` and used by nobody any more.
-pub(crate) unsafe fn free<T>(boxed: *mut T) {
-    if !boxed.is_null() {
-        // Unwind safe: nobody sees the box again.
-        let _ = catch_unwind(AssertUnwindSafe(|| {
-            // SAFETY: not null, and then as promised.
-            drop(unsafe { Box::from_raw(boxed) });
-        }));
-    }
 }
 
 #[cfg(test)]

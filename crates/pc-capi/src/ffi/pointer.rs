@@ -1,9 +1,10 @@
 //! Pointers from C as references and slices, checked as far as they can be.
 
 use std::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use crate::ffi::error::Fault;
+use crate::ffi::fault::Fault;
 
 /// The object of a handle.
 ///
@@ -195,4 +196,18 @@ pub(crate) unsafe fn texts<'a>(
     let list = unsafe { slice::from_raw_parts(list, length) };
     // SAFETY: as promised.
     list.iter().map(|&entry| unsafe { text(entry, what) }).collect()
+}
+
+/// Frees a box that was given to C.
+///
+/// # Safety
+/// Null, or made by `Box::into_raw` and used by nobody any more.
+pub(crate) unsafe fn free<T>(boxed: *mut T) {
+    if !boxed.is_null() {
+        // Unwind safe: nobody sees the box again.
+        let _ = catch_unwind(AssertUnwindSafe(|| {
+            // SAFETY: not null, and then as promised.
+            drop(unsafe { Box::from_raw(boxed) });
+        }));
+    }
 }

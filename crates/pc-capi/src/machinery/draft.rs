@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use ::pc_model::{Document, ModelError, Source, UnknownParameter, UnknownStart};
 
-use crate::ffi::error::Fault;
+use crate::ffi::fault::Fault;
 
 /// Entries in the order in which they came, each in a section of the text.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use pc_expr::{Event, Events};
 use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
 
-use crate::ffi::error::Fault;
+use crate::ffi::fault::Fault;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::field::Field;
 

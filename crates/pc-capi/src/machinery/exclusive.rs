@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::ffi::error::Fault;
+use crate::ffi::fault::Fault;
 
 const FREE: u8 = 0;
 const IN_USE: u8 = 1;

@@ -2,7 +2,7 @@
 
 use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
-use crate::api::force::Controller;
+use crate::machinery::controller::Controller;
 
 /// The vector field of the equations of motion, with or without forces that a function of the program computes.
 #[derive(Clone)]
