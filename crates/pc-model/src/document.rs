@@ -18,9 +18,9 @@ pub(crate) mod syntax;
 pub(crate) mod text_map;
 
 pub use document::{
-    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, Event, Form, Gravity,
-    Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity, Simulation, State,
-    TableFile,
+    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
+    Gravity, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity, Simulation,
+    State, TableFile,
 };
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use simulation::MOST_SAMPLES;

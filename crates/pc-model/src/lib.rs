@@ -2,7 +2,7 @@
 //!
 //! A [`Document`] is what stands in the text, section by section. A [`Model`] is one with the values of its parameters;
 //! [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a [`System`](pc_mech::System) in quasi-velocities with
-//! its start, the constraints, and in which way they [bind](Bound) it. Any consistent units will do.
+//! its start, the constraints, and in which way they [bind](ConstraintTreatment) it. Any consistent units will do.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -31,14 +31,16 @@ mod model;
 mod names;
 
 pub use assembly::assembly::Assembly;
-pub use assembly::constraint_treatment::{Bound, Form, Held, Verdict};
+pub use assembly::constraint_treatment::{
+    ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
+};
 pub use assembly::event::Event;
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;
 pub use diagnostics::category::Category;
 pub use diagnostics::error::{Diagnostic, ModelError};
 pub use diagnostics::error_kind::ErrorKind;
-pub use diagnostics::fault::Fault;
+pub use diagnostics::meaning::MeaningError;
 pub use diagnostics::source::Source;
 pub use document::Document;
 pub use flow::events::FlowEvents;

@@ -1,7 +1,7 @@
 //! Equations of motion in one of their forms, with what belongs to them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
-use pc_model::{Assembly, Form as Kept};
+use pc_model::{Assembly, ConstraintFormulation};
 use pc_nonholo::{Kind, NonholoError, Voronets};
 
 use crate::form::Form;
@@ -29,9 +29,9 @@ impl<'g> Derived<'g> {
     /// # Errors
     /// [`NonholoError`] if there are none.
     pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
-        let (bound, system) = (&assembly.bound, &assembly.system);
+        let (bound, system) = (&assembly.constraints, &assembly.system);
         let multipliers = bound.multipliers();
-        let kinds = bound.verdicts().iter().map(|verdict| verdict.kind);
+        let kinds = bound.classified().iter().map(|verdict| verdict.kind);
         let constraints = multipliers.map(Multipliers::constraints).unwrap_or_default();
         let plain = Derived {
             equations: assembly.equations()?,
@@ -111,7 +111,7 @@ impl<'g> Derived<'g> {
 
 /// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
 pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
-    let Kept::Held(held) = assembly.bound.form() else { return None };
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();
     let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
     (!same).then_some(ENERGY_REMARK)

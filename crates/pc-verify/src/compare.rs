@@ -217,7 +217,7 @@ impl Second {
             // is looked at here, and that the motion follows them.
             let dropped = |a: &usize| {
                 let name = &derivation.text.names.constraints[*a];
-                assembly.bound.redundant().iter().any(|redundant| redundant.constraint == *name)
+                assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
             };
             let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
             let mut kept = derivation.independent(&start, &last).unwrap_or_default();

@@ -4,8 +4,8 @@ use std::ffi::c_char;
 
 use crate::api::builder::draft;
 use crate::api::model::pc_model;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
@@ -120,8 +120,8 @@ fn part(
     draft: &mut Draft,
     body: *const c_char,
     key: &str,
-    value: impl FnOnce() -> Result<String, Fault>,
-) -> Result<(), Fault> {
+    value: impl FnOnce() -> Result<String, CallError>,
+) -> Result<(), CallError> {
     // SAFETY: null or text, as the preamble demands of the callers.
     let body = unsafe { text(body, "body") }?;
     draft.put(Section::Bodies, &[body, key], value()?);
@@ -129,7 +129,7 @@ fn part(
 }
 
 /// Three expressions as a list.
-fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, Fault> {
+fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, CallError> {
     // SAFETY: null or text, as the preamble demands of the callers.
     Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
 }

@@ -6,8 +6,8 @@ use pc_expr::Evaluator;
 use pc_mech::{Expr, Graph};
 
 use crate::api::rates::{State, Target, slices};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
 use crate::machinery::mechanics::{compile, evaluate};
@@ -47,24 +47,24 @@ pub unsafe extern "C" fn pc_system_bracket(
 }
 
 /// (f, g) as a function of t and (x, η), η those of the state.
-fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, Fault> {
+fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
-    if assembly.bound.nonlinear().is_some() {
+    if assembly.constraints.nonlinear().is_some() {
         let why = "a constraint is not affine in the velocities";
-        return Err(Fault::Unsupported { what: "a bracket", why });
+        return Err(CallError::Unsupported { what: "a bracket", why });
     }
     let refused = |error| model.constraint_error(error);
     let canonical = model.canonical_in(&assembly, ::pc_model::Variables::Momenta)?;
     canonical.closed_quasi_velocities().map_err(|error| model.derivation_error(error))?;
-    let bracket = match assembly.bound.constrained(&assembly.at_start()).map_err(refused)? {
+    let bracket = match assembly.constraints.constrained(&assembly.at_start()).map_err(refused)? {
         Some(constrained) => constrained.almost_poisson_bracket().map_err(refused)?,
         None => canonical.system().bracket(),
     };
     let all = assembly.system.quasi_velocities();
     let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities()).map_err(refused)?;
     let known: Vec<(Expr<'_>, Expr<'_>)> = all.iter().copied().zip(of_free).collect();
-    let in_momenta = |text: &str| -> Result<Expr<'_>, Fault> {
+    let in_momenta = |text: &str| -> Result<Expr<'_>, CallError> {
         let function = model.function(&assembly, text)?;
         Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
     };

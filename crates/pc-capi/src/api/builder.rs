@@ -6,8 +6,8 @@ use pc_mech::Graph;
 
 use crate::api::model::{Contents, Origin, boxed, change, pc_model};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, finite, numbers, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
@@ -54,11 +54,11 @@ pub(crate) unsafe fn draft(
     model: *mut pc_model,
     error: *mut *mut pc_error,
     what: &'static str,
-    write: impl FnOnce(&mut Draft) -> Result<(), Fault>,
+    write: impl FnOnce(&mut Draft) -> Result<(), CallError>,
 ) -> pc_status {
     let change_draft = |contents: &mut Contents| match &mut contents.origin {
         Origin::Calls(draft) => write(draft),
-        Origin::Text(_) => Err(Fault::NotADraft { what }),
+        Origin::Text(_) => Err(CallError::NotADraft { what }),
     };
     // SAFETY: as promised.
     unsafe { change(model, error, change_draft) }
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn pc_model_add_input_file(
             )
         };
         let absolute =
-            std::path::absolute(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+            std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
         draft.add(Section::Inputs, &[name, "column"], quoted(column));
         if !time.is_null() {
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn pc_model_add_input_file(
 ///
 /// # Safety
 /// `word` is null or text.
-unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, Fault> {
+unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, CallError> {
     // SAFETY: as promised.
     if word.is_null() { Ok("linear") } else { unsafe { text(word, what) } }
 }

@@ -6,8 +6,8 @@ use pc_solve::{DenseOutput, InputError, SolveError};
 
 use crate::api::solver::{integrate, pc_solver};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, free, handle, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
@@ -91,7 +91,7 @@ unsafe fn at(
         let y = unsafe { room(y, y_length, dense.dim, "y") }?;
         let value = value(&dense.motion, t).map_err(SolveError::from)?;
         y.copy_from_slice(&value);
-        Ok::<(), Fault>(())
+        Ok::<(), CallError>(())
     };
     // SAFETY: as promised.
     unsafe { entry(error, evaluate) }

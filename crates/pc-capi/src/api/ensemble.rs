@@ -11,13 +11,13 @@ use pc_solve::{Checkpoint, Cvode, Ending, Ensemble, Options, Panicked, Stop};
 
 use crate::api::options::{pc_solver_options, take};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{finite, handle, numbers};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Engine;
 use crate::machinery::event_set::Followed;
-use crate::machinery::field::Field;
+use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::pc_system;
 
 /// What has come of a member of an ensemble. It may grow at the end.
@@ -46,7 +46,7 @@ pub type pc_member_observer =
 
 /// What all members have in common, and where each has its own.
 struct Plan<'a> {
-    prototype: Mutex<(Field, FlowEvents)>,
+    prototype: Mutex<(MotionField, FlowEvents)>,
     t: f64,
     /// Of the model.
     start: &'a [f64],
@@ -70,13 +70,13 @@ impl Outcome {
         Outcome { status: pc_status::PC_OK, message: None, times: Vec::new(), states: Vec::new() }
     }
 
-    fn of(fault: &Fault) -> Outcome {
+    fn of(fault: &CallError) -> Outcome {
         let mut outcome = Outcome::new();
         outcome.fail(fault);
         outcome
     }
 
-    fn fail(&mut self, fault: &Fault) {
+    fn fail(&mut self, fault: &CallError) {
         let (status, message) = fault.told();
         (self.status, self.message) = (status, Some(message));
     }
@@ -133,7 +133,7 @@ impl Plan<'_> {
         outcome
     }
 
-    fn engine(&self, member: usize) -> Result<Engine, Fault> {
+    fn engine(&self, member: usize) -> Result<Engine, CallError> {
         let row = |all: &'_ [f64], length: usize| all[member * length..(member + 1) * length].to_vec();
         // Nothing is changed while it is locked.
         let (mut field, mut events) = self.prototype.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -189,7 +189,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
             if data.is_null() && found == 0 {
                 return Ok(None);
             }
-            let too_many = Fault::Length { what, found, expected: usize::MAX };
+            let too_many = CallError::Length { what, found, expected: usize::MAX };
             let expected = members.checked_mul(width).ok_or(too_many)?;
             // SAFETY: `found` numbers, as the preamble demands.
             unsafe { numbers(data, found, expected, what) }.map(Some)
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(start.len()) }?;
-        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+        let observer = observer.ok_or(CallError::Null { what: "observer" })?;
 
         let t = if states.is_none() { t_start } else { t };
         if let Some(&end) = times.last() {
@@ -217,12 +217,12 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let work = |member: u64, stop: &Stop<'_>| plan.follow(member as usize, stop);
         let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
             let outcome =
-                outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&Fault::Panic { message }));
+                outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&CallError::Panic { message }));
             // SAFETY: a function of that type, as the preamble demands.
             unsafe { outcome.tell(member as usize, start.len(), observer, user) }
         };
         match ensemble.map(0..members as u64, work, consume)? {
-            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Stopped => Err(CallError::Stopped),
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }
     };

@@ -7,8 +7,8 @@ use pc_expr::{Direction, Event, Events};
 use crate::api::builder::draft;
 use crate::api::model::pc_model;
 use crate::api::rates::{State, Target, slices};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{numbers, room, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
@@ -26,12 +26,12 @@ pub enum pc_direction {
 }
 
 /// The direction of that number, and its name in the text.
-pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), Fault> {
+pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallError> {
     match value {
         -1 => Ok((Direction::Falling, "falling")),
         0 => Ok((Direction::Both, "both")),
         1 => Ok((Direction::Rising, "rising")),
-        value => Err(Fault::Choice { what: "pc_direction", value: value.into() }),
+        value => Err(CallError::Choice { what: "pc_direction", value: value.into() }),
     }
 }
 
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn pc_system_event_reset(
     let reset = |inventory: &Inventory, inner: &mut Inner| {
         let count = inventory.events.len();
         let Some(known) = inventory.events.get(event) else {
-            return Err(Fault::Index { what: "the events", index: event, count });
+            return Err(CallError::Index { what: "the events", index: event, count });
         };
         // SAFETY: as the preamble demands.
         let mut state = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();

@@ -4,8 +4,8 @@ use std::ffi::{c_char, c_int, c_void};
 
 use crate::api::model::{Contents, change, pc_model};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::nth;
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     let mut unused = Controller::default();
     let Some(function) = function else {
         // SAFETY: `error` is null or a place for a pointer.
-        return unsafe { entry(error, || Err(Fault::Null { what: "function" })) };
+        return unsafe { entry(error, || Err(CallError::Null { what: "function" })) };
     };
     let set = |_: &Inventory, inner: &mut Inner| {
         let controller = Controller::new(function, jacobian, user);
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     status
 }
 
-const NO_FORCES: Fault = Fault::Unsupported {
+const NO_FORCES: CallError = CallError::Unsupported {
     what: "an external force",
     why: "the model declares none; pc_model_add_external_force does",
 };

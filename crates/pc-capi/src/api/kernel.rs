@@ -7,12 +7,12 @@ use std::slice;
 use pc_mech::VectorField;
 
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{are_usable, clear, free, fresh, handle, numbers, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::field::Field;
 use crate::machinery::lock_free_rhs::Direct;
+use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, holding, pc_system};
 
 /// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
@@ -25,11 +25,11 @@ pub struct pc_kernel {
     direct: Option<Direct>,
     /// For `direct` to compute in.
     room: Vec<f64>,
-    motion: Field,
+    motion: MotionField,
 }
 
 impl pc_kernel {
-    fn new(mut motion: Field, dim: usize) -> pc_kernel {
+    fn new(mut motion: MotionField, dim: usize) -> pc_kernel {
         let direct = Direct::of(&mut motion);
         let room = vec![0.0; direct.as_ref().map_or(0, Direct::room)];
         pc_kernel { dim, direct, room, motion }
@@ -79,12 +79,12 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 ) -> pc_status {
     let set = || {
         // SAFETY: null or a live kernel that no other thread uses, as its documentation demands.
-        let kernel = unsafe { kernel.as_mut() }.ok_or(Fault::Null { what: "kernel" })?;
+        let kernel = unsafe { kernel.as_mut() }.ok_or(CallError::Null { what: "kernel" })?;
         let parameters = kernel.motion.parameters_mut();
         // SAFETY: null or `length` numbers, as the preamble demands.
         let values = unsafe { numbers(values, length, parameters.len(), "values") }?;
         if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-            return Err(Fault::NotFinite { what: "a parameter", value });
+            return Err(CallError::NotFinite { what: "a parameter", value });
         }
         parameters.copy_from_slice(values);
         if let Some(direct) = &kernel.direct {
@@ -137,7 +137,7 @@ unsafe fn evaluate(
     target: *mut f64,
     kernel: *mut c_void,
     len: impl FnOnce(usize) -> usize,
-    function: impl FnOnce(&mut Field, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
+    function: impl FnOnce(&mut MotionField, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
 ) -> c_int {
     // SAFETY: as promised.
     let Some(kernel) = (unsafe { kernel.cast::<pc_kernel>().as_mut() }) else { return -1 };

@@ -3,14 +3,14 @@
 use pc_mech::{Graph, LegendreTransform, MechError};
 
 use crate::api::rates::{State, Target, slices};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
     /// The transform of the state, derived when first asked for.
-    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, Fault> {
+    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
         if self.legendre.is_none() {
             let model = &inventory.model;
             let graph = Graph::new();
@@ -19,7 +19,8 @@ impl Inner {
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }
-        const MISSING: Fault = Fault::Unsupported { what: "the transform", why: "it was not derived" };
+        const MISSING: CallError =
+            CallError::Unsupported { what: "the transform", why: "it was not derived" };
         self.legendre.as_mut().ok_or(MISSING)
     }
 }

@@ -4,21 +4,21 @@ use ::pc_model::Variables;
 use pc_mech::VectorField;
 
 use crate::api::rates::{State, Target, slices};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{apart, numbers, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::field::Field;
 use crate::machinery::mechanics::{Mechanics, evaluate};
+use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
     /// The parts of the equations, derived when first asked for, with the motion.
-    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut Field), Fault> {
+    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut MotionField), CallError> {
         if self.mechanics.is_none() {
             self.mechanics = Some(Mechanics::of(&inventory.model, inventory.variables)?);
         }
-        const MISSING: Fault = Fault::Unsupported { what: "M η̇ = r", why: "it was not derived" };
+        const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field))
     }
 
@@ -28,7 +28,7 @@ impl Inner {
         inventory: &Inventory,
         t: f64,
         y: &[f64],
-    ) -> Result<Vec<f64>, Fault> {
+    ) -> Result<Vec<f64>, CallError> {
         match inventory.variables {
             Variables::QuasiVelocities => Ok(y.to_vec()),
             Variables::Momenta => Ok(self.legendre(inventory)?.to_quasi_velocities(t, y)?),

@@ -6,17 +6,17 @@ use std::sync::OnceLock;
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{bytes, clear, finite, free, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, give, nth};
 use crate::machinery::draft::Draft;
-use crate::machinery::exclusive::Held;
+use crate::machinery::exclusive::Exclusive;
 
 /// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
 pub struct pc_model {
-    pub(crate) contents: Held<Contents>,
+    pub(crate) contents: Exclusive<Contents>,
 }
 
 #[derive(Clone)]
@@ -37,7 +37,7 @@ pub(crate) enum Origin {
 
 impl Contents {
     /// The model, its settings applied.
-    pub(crate) fn model(&self) -> Result<Model, Fault> {
+    pub(crate) fn model(&self) -> Result<Model, CallError> {
         let mut model = match &self.origin {
             Origin::Text(model) => Model::clone(model),
             Origin::Calls(draft) => Model::new(draft.document()?),
@@ -62,7 +62,7 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         projects_start: false,
         observes_reactions: false,
     };
-    Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }))
+    Box::into_raw(Box::new(pc_model { contents: Exclusive::new(contents) }))
 }
 
 fn of_document(document: Document) -> *mut pc_model {
@@ -107,7 +107,8 @@ pub unsafe extern "C" fn pc_model_from_file(
         unsafe { clear(model, "model") }?;
         // SAFETY: as above.
         let path = unsafe { text(path, "path") }?;
-        let bytes = std::fs::read(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+        let bytes =
+            std::fs::read(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         let document = Document::parse(Source::from_bytes(path, &bytes))?;
         // SAFETY: as above.
         unsafe { write(model, of_document(document), "model") }
@@ -128,7 +129,7 @@ pub unsafe extern "C" fn pc_model_builtin(
         unsafe { clear(model, "model") }?;
         // SAFETY: as above.
         let name = unsafe { text(name, "name") }?;
-        let builtin = Builtin::named(name).ok_or_else(|| Fault::NoSuchModel { name: name.to_owned() })?;
+        let builtin = Builtin::named(name).ok_or_else(|| CallError::NoSuchModel { name: name.to_owned() })?;
         // SAFETY: as above.
         unsafe { write(model, of_document(builtin.document()?), "model") }
     };
@@ -161,7 +162,7 @@ pub unsafe extern "C" fn pc_model_clone(
         unsafe { clear(copy, "copy") }?;
         // SAFETY: as above.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
-        let cloned = Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }));
+        let cloned = Box::into_raw(Box::new(pc_model { contents: Exclusive::new(contents) }));
         // SAFETY: as above.
         unsafe { write(copy, cloned, "copy") }
     };
@@ -186,7 +187,7 @@ pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
 pub(crate) unsafe fn change(
     model: *mut pc_model,
     error: *mut *mut pc_error,
-    change: impl FnOnce(&mut Contents) -> Result<(), Fault>,
+    change: impl FnOnce(&mut Contents) -> Result<(), CallError>,
 ) -> pc_status {
     // SAFETY: as promised.
     unsafe { entry(error, || change(&mut *handle(model, "model")?.contents.take()?)) }

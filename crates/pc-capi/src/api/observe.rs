@@ -1,8 +1,8 @@
 //! What is watched along a motion.
 
 use crate::api::rates::{State, Target, slices};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
@@ -33,9 +33,9 @@ pub unsafe extern "C" fn pc_system_observe(
 }
 
 /// That there are values.
-fn all_finite(what: &'static str, values: &[f64]) -> Result<(), Fault> {
+fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(Fault::NoValue { what, value }),
+        Some(&value) => Err(CallError::NoValue { what, value }),
         None => Ok(()),
     }
 }
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn pc_system_reactions(
         let reactions = &inventory.reactions;
         if reactions.is_empty() {
             let why = "there are none, or pc_model_observe_reactions was not asked";
-            return Err(Fault::Unsupported { what: "the reactions", why });
+            return Err(CallError::Unsupported { what: "the reactions", why });
         }
         let target = Target { data: values, length, expected: reactions.len(), what: "values" };
         // SAFETY: as the preamble demands.

@@ -7,8 +7,8 @@ use pc_expr::Event;
 
 use crate::api::events::direction;
 use crate::api::solver::{integrate, pc_solver};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{apart, handle, room, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, nth};
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn pc_solver_add_event(
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
         let (direction, _) = self::direction(direction)?;
-        let function = function.ok_or(Fault::Null { what: "function" })?;
+        let function = function.ok_or(CallError::Null { what: "function" })?;
         let event = Event::new(name).direction(direction).terminal(terminal != 0).resetting(reset.is_some());
         integration.add(event, Own { name: name.to_owned(), function, reset, user })?;
         // SAFETY: a live handle: it has given the integration.
@@ -132,8 +132,8 @@ pub unsafe extern "C" fn pc_solver_event_occurrences(
     unsafe { integrate(solver, error, read) }
 }
 
-fn no_such(event: usize, count: usize) -> Fault {
-    Fault::Index { what: "the events", index: event, count }
+fn no_such(event: usize, count: usize) -> CallError {
+    CallError::Index { what: "the events", index: event, count }
 }
 
 /// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not occurred. Only
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
             // SAFETY: a live handle: it has given the integration.
             let name = nth(&names(unsafe { handle(solver, "solver") }?), event);
             // SAFETY: the name of an event that there is.
-            return Err(Fault::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
+            return Err(CallError::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
         };
         before.copy_from_slice(&last.state_before[..before.len()]);
         after.copy_from_slice(&last.state_after[..after.len()]);
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn pc_solver_terminal_event(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let read = |integration: &mut Integration, _: usize| {
-        let number = integration.record.terminal.ok_or(Fault::NotEnded)?;
+        let number = integration.record.terminal.ok_or(CallError::NotEnded)?;
         // SAFETY: null or a place for a number, as the preamble demands.
         unsafe { write(event, number, "event") }
     };

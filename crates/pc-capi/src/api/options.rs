@@ -5,7 +5,7 @@ use std::ffi::c_int;
 use ::pc_model::Variables;
 use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
-use crate::ffi::fault::Fault;
+use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{aligned, numbers};
 
 /// Which equations of motion; values of pc_system_options.form.
@@ -38,11 +38,11 @@ impl Default for pc_system_options {
 
 impl pc_system_options {
     /// The variables of the state.
-    pub(crate) fn variables(&self) -> Result<Variables, Fault> {
+    pub(crate) fn variables(&self) -> Result<Variables, CallError> {
         match self.form {
             0 => Ok(Variables::QuasiVelocities),
             1 => Ok(Variables::Momenta),
-            value => Err(Fault::Choice { what: "pc_form", value: value.into() }),
+            value => Err(CallError::Choice { what: "pc_form", value: value.into() }),
         }
     }
 }
@@ -181,7 +181,7 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
 /// # Safety
 /// `T` is plain data that any bytes of the caller's are valid for, and begins with a size; `place` is null or has as many bytes as
 /// that size says.
-pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, Fault> {
+pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, CallError> {
     let mut options = T::default();
     if place.is_null() {
         return Ok(options);
@@ -191,7 +191,7 @@ pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str
     let found = unsafe { place.cast::<usize>().read() };
     let (least, most) = (size_of::<usize>(), size_of::<T>());
     if !(least..=most).contains(&found) || found % align_of::<T>() != 0 {
-        return Err(Fault::StructSize { what, found, least, most });
+        return Err(CallError::StructSize { what, found, least, most });
     }
     let target = std::ptr::from_mut(&mut options).cast::<u8>();
     // SAFETY: both have `found` bytes, and any are valid.
@@ -204,8 +204,8 @@ impl pc_solver_options {
     ///
     /// # Safety
     /// The tolerances are null or as many numbers as said.
-    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, Fault> {
-        let choice = |what, value: c_int| Fault::Choice { what, value: value.into() };
+    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, CallError> {
+        let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };
         let mut options = Options::new(match self.method {
             0 => Method::Adams,
             1 => Method::Bdf,

@@ -5,8 +5,8 @@ use std::slice;
 use pc_mech::VectorField;
 
 use crate::ffi::boundary::succeeded;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, holding, inside, pc_system};
@@ -36,7 +36,7 @@ pub(crate) unsafe fn slices<'a>(
     state: State,
     dim: usize,
     target: Target,
-) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+) -> Result<(&'a [f64], &'a mut [f64]), CallError> {
     let Target { data, length, expected, .. } = target;
     if state.length == dim && length == expected && are_usable((state.y, dim), (data, expected)) {
         // SAFETY: not null, aligned, and as promised; they share no memory.
@@ -52,7 +52,11 @@ pub(crate) unsafe fn slices<'a>(
 /// # Safety
 /// As for [`slices`].
 #[cold]
-unsafe fn misfits<'a>(state: State, dim: usize, target: Target) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+unsafe fn misfits<'a>(
+    state: State,
+    dim: usize,
+    target: Target,
+) -> Result<(&'a [f64], &'a mut [f64]), CallError> {
     let Target { data, length, expected, what } = target;
     if state.length == dim && length == expected {
         apart((state.y, dim, "y"), (data, expected, what))?;
@@ -172,8 +176,8 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
     unsafe { crate::ffi::boundary::entry(error, get) }
 }
 
-const NO_PATTERN: Fault =
-    Fault::Unsupported { what: "the zero pattern of the Jacobian", why: "it has no Jacobian" };
+const NO_PATTERN: CallError =
+    CallError::Unsupported { what: "the zero pattern of the Jacobian", why: "it has no Jacobian" };
 
 /// Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
 #[unsafe(no_mangle)]

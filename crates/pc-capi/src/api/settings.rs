@@ -4,8 +4,8 @@ use std::ffi::c_char;
 
 use crate::api::builder::draft;
 use crate::api::model::{Contents, Origin, change, pc_model};
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{finite, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
@@ -225,7 +225,7 @@ unsafe fn set_number(
     what: &'static str,
     values: &[(&'static str, f64)],
 ) -> pc_status {
-    let write = |draft: &mut Draft| -> Result<(), Fault> {
+    let write = |draft: &mut Draft| -> Result<(), CallError> {
         for &(key, value) in values {
             finite(value, key)?;
         }

@@ -9,19 +9,19 @@ use pc_solve::Checkpoint;
 
 use crate::api::options::{pc_solver_options, take};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, free, handle, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::c_string;
 use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
-use crate::machinery::exclusive::Held;
+use crate::machinery::exclusive::Exclusive;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {
-    pub(crate) inner: Held<Integration>,
+    pub(crate) inner: Exclusive<Integration>,
     pub(crate) dim: usize,
     /// Of the events, which may be read while an observer runs.
     pub(crate) event_names: Mutex<Vec<CString>>,
@@ -30,7 +30,7 @@ pub struct pc_solver {
 impl pc_solver {
     pub(crate) fn boxed(integration: Integration, events: &Followed, dim: usize) -> *mut pc_solver {
         let names = events.events().iter().map(|event| c_string(event.name())).collect();
-        let inner = Held::new(integration);
+        let inner = Exclusive::new(integration);
         Box::into_raw(Box::new(pc_solver { inner, dim, event_names: Mutex::new(names) }))
     }
 }
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&mut Integration, usize) -> Result<(), Fault>,
+    body: impl FnOnce(&mut Integration, usize) -> Result<(), CallError>,
 ) -> pc_status {
     let body = || {
         // SAFETY: as promised.
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn pc_solver_run(
     let run = |integration: &mut Integration, _: usize| {
         // SAFETY: null or `times_length` numbers, as the preamble demands.
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
-        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+        let observer = observer.ok_or(CallError::Null { what: "observer" })?;
         let output = |t: f64, y: &[f64]| {
             // SAFETY: the observer is a function of that type, as the preamble demands.
             match unsafe { observer(t, y.as_ptr(), y.len(), user) } {

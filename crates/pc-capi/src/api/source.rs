@@ -7,8 +7,8 @@ use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::{Form, Page};
 
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
@@ -43,7 +43,7 @@ pub unsafe extern "C" fn pc_system_print(
             0 => Page::Text,
             1 => Page::Latex,
             2 => Page::Json,
-            value => return Err(Fault::Choice { what: "pc_format", value: value.into() }),
+            value => return Err(CallError::Choice { what: "pc_format", value: value.into() }),
         };
         // SAFETY: as above.
         let printed = printed(&unsafe { handle(system, "system") }?.inventory, page)?;
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn pc_system_print(
     unsafe { entry(error, print) }
 }
 
-fn printed(inventory: &Inventory, page: Page) -> Result<String, Fault> {
+fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
     let form = match inventory.variables {
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
     unsafe { entry(error, emit) }
 }
 
-fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], Fault> {
+fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
     let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;

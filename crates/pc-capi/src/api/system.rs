@@ -5,8 +5,8 @@ use std::ffi::c_char;
 use crate::api::model::pc_model;
 use crate::api::options::{pc_system_options, take};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, finite, free, handle, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, count, holding, inside, name, pc_system};
@@ -223,11 +223,14 @@ pub unsafe extern "C" fn pc_system_set_parameter(
     let set = |system: &pc_system, inner: &mut Inner| {
         let count = system.inventory.parameters.len();
         if index >= count {
-            return Err(Fault::Index { what: "the parameters", index, count });
+            return Err(CallError::Index { what: "the parameters", index, count });
         }
         let value = finite(value, "value")?;
         if inner.values.is_table(index) {
-            return Err(Fault::Unsupported { what: "setting this input", why: "it is read from a table" });
+            return Err(CallError::Unsupported {
+                what: "setting this input",
+                why: "it is read from a table",
+            });
         }
         inner.values.set(index, value);
         let values = inner.values.values().to_vec();

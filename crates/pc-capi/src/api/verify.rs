@@ -4,8 +4,8 @@ use std::ffi::c_char;
 
 use pc_verify::{Options, VerifyError, verify};
 
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::{clear, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn pc_system_verify(
     unsafe { inside(system, error, compare) }
 }
 
-fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, Fault> {
+fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, CallError> {
     let mut model = inventory.model.clone();
     let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
     for (name, &value) in names.iter().zip(parameters) {
@@ -48,8 +48,8 @@ fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<St
     let usual = Options::default();
     let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };
     let agreement = verify(&model, &options).map_err(|error| match error {
-        VerifyError::Model(error) => Fault::Model(error),
-        other => Fault::Verify(other),
+        VerifyError::Model(error) => CallError::Model(error),
+        other => CallError::Verify(other),
     })?;
     let more = agreement.not_compared.iter().map(|what| format!("not compared: {what}\n"));
     Ok(format!("{agreement}\n{}", more.collect::<String>()))

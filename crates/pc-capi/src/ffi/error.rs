@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char, c_int};
 
 use pc_solve::Code;
 
-use crate::ffi::fault::Fault;
+use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::free;
 use crate::ffi::status::pc_status;
 
@@ -27,10 +27,10 @@ struct Place {
     length: usize,
 }
 
-impl Fault {
+impl CallError {
     pub(crate) fn into_error(self) -> pc_error {
         let place = match &self {
-            Fault::Model(error) => {
+            CallError::Model(error) => {
                 let (span, position) = (error.span(), error.position());
                 let (line, column) = (position.line, position.column);
                 Place { line, column, offset: span.start, length: span.len() }
@@ -38,13 +38,13 @@ impl Fault {
             _ => Place::default(),
         };
         let code = match &self {
-            Fault::Solve(error) => error.code().map_or(0, Code::number),
+            CallError::Solve(error) => error.code().map_or(0, Code::number),
             _ => 0,
         };
         let (status, message) = self.told();
         let recoverable = match &self {
-            Fault::Evaluation(failure) => failure.is_recoverable(),
-            Fault::NoValue { .. } => true,
+            CallError::Evaluation(failure) => failure.is_recoverable(),
+            CallError::NoValue { .. } => true,
             _ => false,
         };
         pc_error { status, message, place, integrator_code: code, recoverable }

@@ -6,20 +6,20 @@ use std::ops::ControlFlow;
 use pc_expr::{Event, Events};
 use pc_solve::{Checkpoint, Cvode, DenseOutput, Ending, Hybrid, Occurrence, Options, SolveError, Statistics};
 
-use crate::ffi::fault::Fault;
+use crate::ffi::call_error::CallError;
 use crate::machinery::event_set::{Followed, Own};
-use crate::machinery::field::Field;
+use crate::machinery::motion_field::MotionField;
 
 /// The integration.
 pub(crate) enum Engine {
-    Smooth(Box<Cvode<Field>>),
-    Hybrid(Box<Hybrid<Field, Followed>>),
+    Smooth(Box<Cvode<MotionField>>),
+    Hybrid(Box<Hybrid<MotionField, Followed>>),
 }
 
 impl Engine {
     /// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
     pub(crate) fn new(
-        mut field: Field,
+        mut field: MotionField,
         from: &Checkpoint,
         options: &Options,
         events: Followed,
@@ -49,7 +49,7 @@ impl Engine {
         }
     }
 
-    fn field(&self) -> &Field {
+    fn field(&self) -> &MotionField {
         match self {
             Engine::Smooth(cvode) => cvode.field(),
             Engine::Hybrid(hybrid) => hybrid.field(),
@@ -128,7 +128,7 @@ pub(crate) struct Integration {
 
 impl Integration {
     pub(crate) fn new(
-        field: Field,
+        field: MotionField,
         from: &Checkpoint,
         options: Options,
         events: Followed,
@@ -139,9 +139,9 @@ impl Integration {
     }
 
     /// Follows one more event. Where that is refused, nothing has changed.
-    pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), Fault> {
+    pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
-            return Err(Fault::Begun { what: "an event" });
+            return Err(CallError::Begun { what: "an event" });
         }
         let events = self.events.with(event, own);
         self.begin(&Checkpoint::start(self.time(), self.state()), events)?;
@@ -159,19 +159,19 @@ impl Integration {
     }
 
     /// What the motion can be taken up from. It begins anew there itself.
-    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, Fault> {
+    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, CallError> {
         let checkpoint = self.stand("a checkpoint")?;
         self.begin(&checkpoint, self.events.clone())?;
         Ok(checkpoint)
     }
 
     /// Begins anew where it stands with these values of the parameters.
-    pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), CallError> {
         let stand = self.stand("a change of parameters")?;
         let (mut field, mut events) = (self.engine.field().clone(), self.events.clone());
         let (found, expected) = (values.len(), field.parameters().len());
         if found != expected {
-            return Err(Fault::Length { what: "the parameters", found, expected });
+            return Err(CallError::Length { what: "the parameters", found, expected });
         }
         field.parameters_mut().copy_from_slice(values);
         events.set_parameters(values);
@@ -181,9 +181,9 @@ impl Integration {
         Ok(())
     }
 
-    fn stand(&self, what: &'static str) -> Result<Checkpoint, Fault> {
+    fn stand(&self, what: &'static str) -> Result<Checkpoint, CallError> {
         if self.events.has_own() {
-            return Err(Fault::Unsupported { what, why: "there are events of the program's own" });
+            return Err(CallError::Unsupported { what, why: "there are events of the program's own" });
         }
         Ok(match &self.engine {
             Engine::Smooth(cvode) => cvode.checkpoint(),
@@ -241,13 +241,13 @@ impl Integration {
     }
 
     /// What the end of a call means to its caller.
-    pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), Fault> {
+    pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), CallError> {
         match ending {
             Ending::Completed => Ok(()),
-            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Stopped => Err(CallError::Stopped),
             Ending::Event { event } => {
                 self.record.terminal = Some(event);
-                Err(Fault::Terminal)
+                Err(CallError::Terminal)
             }
         }
     }

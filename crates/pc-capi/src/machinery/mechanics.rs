@@ -4,7 +4,7 @@ use ::pc_model::{Model, Variables};
 use pc_expr::{Evaluator, Inputs, Program};
 use pc_mech::{Backend, Equations, Expr, Graph, MechError};
 
-use crate::ffi::fault::Fault;
+use crate::ffi::call_error::CallError;
 
 /// The parts of M η̇ = r and of ẋ = b η + b_0, functions of t and (x, η).
 #[derive(Clone)]
@@ -21,7 +21,7 @@ pub(crate) struct Mechanics {
 }
 
 impl Mechanics {
-    pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, Fault> {
+    pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
         let graph = Graph::new();
         let assembly = model.assemble(&graph)?;
         let equations = model.equations_in(&assembly)?;
@@ -32,7 +32,8 @@ impl Mechanics {
         let coefficients = pairs.flat_map(|(r, s)| (1..=operators).map(move |m| structure.get(r, s, m)));
         let of_states: Vec<Expr<'_>> = equations.system().states().iter().map(|&(_, rate)| rate).collect();
         let right = [equations.velocities(), equations.right_hand_side(), &of_states].concat();
-        let held = matches!(assembly.bound.form(), ::pc_model::Form::Held(_));
+        let held =
+            matches!(assembly.constraints.formulation(), ::pc_model::ConstraintFormulation::Multipliers(_));
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
         let compiled = |values: &[Expr<'_>], forces: &[Expr<'_>]| {
@@ -69,7 +70,7 @@ pub(crate) fn evaluate(
     program: &mut Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
     values: &mut [f64],
-) -> Result<(), Fault> {
+) -> Result<(), CallError> {
     program.eval(t, state, parameters, values);
     if values.iter().all(|value| value.is_finite()) {
         return Ok(());

@@ -8,20 +8,20 @@ use pc_expr::{Event, Events, Pattern};
 use pc_mech::{Graph, LegendreTransform, VectorField};
 
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::fault::Fault;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, c_strings, nth};
-use crate::machinery::exclusive::Held;
-use crate::machinery::field::Field;
+use crate::machinery::exclusive::Exclusive;
 use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::mechanics::Mechanics;
+use crate::machinery::motion_field::MotionField;
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {
     /// Dropped first: what functions of the program destroy may look at names.
-    pub(crate) inner: Held<Inner>,
+    pub(crate) inner: Exclusive<Inner>,
     /// What needs the field to live, but not to be held; known after the first evaluation.
     direct: OnceLock<Option<Direct>>,
     pub(crate) inventory: Arc<Inventory>,
@@ -63,7 +63,7 @@ impl Inventory {
 
 #[derive(Clone)]
 pub(crate) struct Inner {
-    pub(crate) field: Field,
+    pub(crate) field: MotionField,
     /// The values of the parameters, of which some follow others.
     pub(crate) values: Parameters,
     /// The time and state with the values of the integrals that are kept by projection.
@@ -77,7 +77,7 @@ pub(crate) struct Inner {
 
 impl pc_system {
     /// `reactions` says whether there are reactions among the outputs.
-    pub(crate) fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, Fault> {
+    pub(crate) fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, CallError> {
         let graph = Graph::new();
         let assembly = model.assemble(&graph)?;
         let flow = Flow::new(&model, &assembly, variables)?;
@@ -113,22 +113,26 @@ impl pc_system {
             event_names: flow.events.events().iter().map(|event| c_string(event.name())).collect(),
             model,
         };
-        let field = Field::new(flow.motion, forces)?;
+        let field = MotionField::new(flow.motion, forces)?;
         let kept_at = (assembly.t_start, flow.start);
         let values = inventory.model.parameter_values().clone();
         let inner = Inner { field, values, kept_at, events: flow.events, mechanics: None, legendre: None };
-        Ok(pc_system { inventory: Arc::new(inventory), direct: OnceLock::new(), inner: Held::new(inner) })
+        Ok(pc_system {
+            inventory: Arc::new(inventory),
+            direct: OnceLock::new(),
+            inner: Exclusive::new(inner),
+        })
     }
 
     /// Another one of the same equations.
-    pub(crate) fn copy(&self) -> Result<pc_system, Fault> {
+    pub(crate) fn copy(&self) -> Result<pc_system, CallError> {
         let mut inner = self.inner.take()?.clone();
         let direct = OnceLock::new();
         if self.direct().is_some() {
             // The code is there, and the copy has it as well.
             direct.get_or_init(|| Direct::of(&mut inner.field));
         }
-        Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Held::new(inner) })
+        Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Exclusive::new(inner) })
     }
 
     /// The machine code of f, where it is all that f is, and known to be.
@@ -175,7 +179,7 @@ impl Inner {
 pub(crate) unsafe fn inside(
     system: *const pc_system,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&Inventory, &mut Inner) -> Result<(), Fault>,
+    body: impl FnOnce(&Inventory, &mut Inner) -> Result<(), CallError>,
 ) -> pc_status {
     // SAFETY: as promised.
     unsafe { holding(system, error, |system, inner| body(&system.inventory, inner)) }
@@ -188,7 +192,7 @@ pub(crate) unsafe fn inside(
 pub(crate) unsafe fn holding(
     system: *const pc_system,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&pc_system, &mut Inner) -> Result<(), Fault>,
+    body: impl FnOnce(&pc_system, &mut Inner) -> Result<(), CallError>,
 ) -> pc_status {
     let body = || {
         // SAFETY: as promised.

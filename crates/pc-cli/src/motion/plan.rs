@@ -39,8 +39,8 @@ impl Plan {
     pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
         let written = model.document().simulation.form.as_ref().map(|form| form.value);
         arguments.form.unwrap_or(match written {
-            Some(document::Form::Canonical) => RunForm::Canonical,
-            Some(document::Form::Poincare) | None => RunForm::Poincare,
+            Some(document::EquationForm::Canonical) => RunForm::Canonical,
+            Some(document::EquationForm::Poincare) | None => RunForm::Poincare,
         })
     }
 

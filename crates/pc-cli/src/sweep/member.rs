@@ -53,7 +53,7 @@ impl Prototype {
         }
         let graph = Graph::new();
         let assembly = model.assemble(&graph).ok()?;
-        if !assembly.bound.redundant().is_empty() {
+        if !assembly.constraints.redundant().is_empty() {
             return None;
         }
         let flow = Flow::new(model, &assembly, form.into()).ok()?;

@@ -4,10 +4,10 @@ use pc_mech::{Expr, Graph, MechError, System};
 
 use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
-use crate::assembly::bodies::Body;
+use crate::assembly::bodies::SystemBody;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
 use crate::document::{Method, NamedExpression};
 use crate::model::model::Model;
@@ -97,8 +97,8 @@ impl<'g> Assembler<'g, '_> {
             .force_on_coordinates(|_, _, _| on_coordinates);
         for body in bodies {
             builder = match body {
-                Body::Particle(particle) => builder.particle(|_, _, _| particle),
-                Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
+                SystemBody::Particle(particle) => builder.particle(|_, _, _| particle),
+                SystemBody::Rigid(body) => builder.rigid_body(|_, _, _| *body),
             };
         }
         for (symbol, rate) in states.into_iter().zip(rates) {
@@ -132,7 +132,7 @@ impl<'g> Assembler<'g, '_> {
         let events =
             self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;
-        Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
+        Ok(Assembly { system, constraints: bound, t_start, start, written_start, declared, events })
     }
 
     /// That no momentum depends on an input: it would change with it, at a rate that is not known.
@@ -203,7 +203,7 @@ impl<'g> Assembler<'g, '_> {
                     let known = quasi_velocities.chain(coordinates).collect();
                     return Err(self
                         .model
-                        .error(&name.place, Fault::NothingToPush { name: name.text.clone(), known }));
+                        .error(&name.place, MeaningError::NothingToPush { name: name.text.clone(), known }));
                 }
             }
         }
@@ -272,7 +272,7 @@ impl<'g> Assembler<'g, '_> {
             let Ok(value) = self.graph.evaluate(&[value], values) else { continue };
             let shown = values.iter().filter(|(symbol, _)| state.contains(symbol));
             let state = shown.map(|(symbol, value)| (symbol.to_string(), *value)).collect();
-            let fault = Fault::NotFinite { text: written.text.clone(), value: value[0], state };
+            let fault = MeaningError::NotFinite { text: written.text.clone(), value: value[0], state };
             return Err(self.model.error(&written.place, fault));
         }
         Ok(())

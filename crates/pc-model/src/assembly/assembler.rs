@@ -3,7 +3,7 @@
 use pc_mech::{Expr, Graph};
 
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Expression, Name};
 use crate::model::model::Model;
 use crate::names::scope::Scope;
@@ -24,7 +24,7 @@ impl<'g> Assembler<'g, '_> {
 
     pub(super) fn not_a_coordinate(&self, name: &Name) -> ModelError {
         let coordinates = self.model.document().coordinates.iter().map(|c| c.name.text.clone()).collect();
-        self.model.error(&name.place, Fault::NotACoordinate { name: name.text.clone(), coordinates })
+        self.model.error(&name.place, MeaningError::NotACoordinate { name: name.text.clone(), coordinates })
     }
 
     /// An expression of the dynamics with ẋ = b η + b_0 put in.

@@ -3,7 +3,7 @@
 use pc_mech::{Equations, Expr, System};
 use pc_nonholo::NonholoError;
 
-use crate::assembly::constraint_treatment::{Bound, Form};
+use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
 
 /// The system of a model, with the state its motion starts from.
@@ -11,7 +11,7 @@ pub struct Assembly<'g> {
     /// The system, without its constraints. Its quasi-velocities are those declared and those that constraints define.
     pub system: System<'g>,
     /// Its constraints.
-    pub bound: Bound<'g>,
+    pub constraints: ConstraintTreatment<'g>,
     /// Start time.
     pub t_start: f64,
     /// Start state: coordinates, quasi-velocities, first-order states.
@@ -37,7 +37,7 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.
     pub fn equations(&self) -> Result<Equations<'g>, NonholoError> {
-        self.bound.equations(&self.system, &self.at_start())
+        self.constraints.equations(&self.system, &self.at_start())
     }
 
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
@@ -45,7 +45,7 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`NonholoError`] if it cannot be derived.
     pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
-        self.bound.free_system(&self.system, &self.at_start())
+        self.constraints.free_system(&self.system, &self.at_start())
     }
 
     /// Each quasi-velocity of the system as a function of time, coordinates and the `free` ones, those of a
@@ -54,7 +54,7 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`NonholoError`] if these do not determine the others.
     pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, NonholoError> {
-        self.bound.quasi_velocities_of(self.system.quasi_velocities(), free)
+        self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free)
     }
 
     /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold constraints, else that
@@ -62,13 +62,13 @@ impl<'g> Assembly<'g> {
     /// homogeneous in the velocities, so that their reactions do no work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
-        match self.bound.form() {
-            Form::Held(held) => {
+        match self.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) => {
                 let mut constraints = held.multipliers.constraints().iter();
                 system.energy_rate().is_zero() && constraints.all(|c| c.is_workless(system))
             }
-            Form::Free => system.energy_rate().is_zero(),
-            Form::Vanishing(constrained) => {
+            ConstraintFormulation::Free => system.energy_rate().is_zero(),
+            ConstraintFormulation::Vanishing(constrained) => {
                 let zeros: Vec<_> = constrained.vanishing().iter().map(|&eta| (eta, Expr::ZERO)).collect();
                 graph.substitute(&[system.energy_rate()], &zeros)[0].is_zero()
             }

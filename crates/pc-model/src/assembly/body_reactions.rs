@@ -6,7 +6,7 @@ use pc_nonholo::Redundant;
 use crate::assembly::assembler::Assembler;
 use crate::assembly::resultant::{force_names, torque_names};
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 
 /// What the reactions do to bodies, each component with its name.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl<'g> Assembler<'g, '_> {
     /// outputs where all reactions are to be observed; and what of them is not determined, in words.
     ///
     /// # Errors
-    /// [`Fault::ForceNotDetermined`] if such a one is named.
+    /// [`MeaningError::ForceNotDetermined`] if such a one is named.
     pub(crate) fn with_resultants(
         &self,
         system: System<'g>,
@@ -86,7 +86,7 @@ impl<'g> Assembler<'g, '_> {
         match self.scope.resultants.iter().find(|(symbol, _)| unknown(symbol)) {
             None => Ok(()),
             Some((symbol, place)) => {
-                Err(self.model.error(place, Fault::ForceNotDetermined { name: symbol.to_string() }))
+                Err(self.model.error(place, MeaningError::ForceNotDetermined { name: symbol.to_string() }))
             }
         }
     }

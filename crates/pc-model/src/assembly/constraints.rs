@@ -1,13 +1,15 @@
 //! The constraints of a model: sorted, checked at the start, and put where they are cheapest to keep.
 
 use pc_mech::{Constraint, Expr, System};
-use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
+use pc_nonholo::{Constrained, ConstraintClassification, Kind, Redundant};
 
 use super::trial::{StartHeld, Trial};
 use crate::assembly::assembler::Assembler;
-use crate::assembly::constraint_treatment::{Bound, Form, Held, Verdict};
+use crate::assembly::constraint_treatment::{
+    ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
+};
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document;
 use crate::document::ConstraintKind;
 use crate::names::stage::Stage;
@@ -79,17 +81,17 @@ impl<'g> Assembler<'g, '_> {
         at: &[(Expr<'g>, f64)],
         (t_start, start): (f64, &mut Vec<f64>),
         prescribed: usize,
-    ) -> Result<Bound<'g>, ModelError> {
+    ) -> Result<ConstraintTreatment<'g>, ModelError> {
         if written.is_empty() {
-            return Ok(Bound::free());
+            return Ok(ConstraintTreatment::free());
         }
         let constraints: Vec<Constraint<'g>> = written.iter().map(|w| self.constraint(w, x_dot)).collect();
         self.check_nonlinear(system, &constraints)?;
         let trial = Trial { model: self.model, system, constraints: &constraints, t: t_start };
         trial.check_finite(start)?;
         let refused = |error| self.model.constraint_error(error);
-        let sorted = Sorted::new(system, &constraints, at).map_err(refused)?;
-        let verdicts = self.verdicts(&sorted)?;
+        let sorted = ConstraintClassification::new(system, &constraints, at).map_err(refused)?;
+        let classified = self.classified(&sorted)?;
         let projects = self.model.projects_start();
         if projects || !sorted.redundant().is_empty() {
             // Quasi-velocities that determine the others stay as they are prescribed.
@@ -112,7 +114,9 @@ impl<'g> Assembler<'g, '_> {
             multipliers.constraints().iter().map(bare).collect()
         });
         let (redundant, combinations) = (sorted.redundant().to_vec(), sorted.integrable_combinations());
-        let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
+        let Some(multipliers) = sorted.multipliers() else {
+            return Ok(ConstraintTreatment::nothing(redundant));
+        };
         // What is dropped has no reaction.
         let none =
             |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
@@ -126,13 +130,20 @@ impl<'g> Assembler<'g, '_> {
         let followers: Vec<Constraint<'g>> = constraints.iter().filter(dropped).cloned().collect();
         let multipliers = multipliers.preferring(declared).followed_by(&followers);
         let Some(vanishing) = vanishing else {
-            let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
-            let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);
+            let held =
+                MultiplierFormulation { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
+            let bound = ConstraintTreatment::new(
+                ConstraintFormulation::Multipliers(Box::new(held)),
+                multipliers,
+                classified,
+                redundant,
+            );
             return Ok(bound.with_undetermined(undetermined).with_integrable_combinations(combinations));
         };
         let constrained = |system: &System<'g>| Constrained::new(system, &vanishing).map_err(refused);
-        let form = Form::Vanishing(Box::new(constrained(&system)?));
-        let bound = Bound::new(form, multipliers.clone(), verdicts.clone(), redundant.clone());
+        let form = ConstraintFormulation::Vanishing(Box::new(constrained(&system)?));
+        let bound =
+            ConstraintTreatment::new(form, multipliers.clone(), classified.clone(), redundant.clone());
         let bound = bound.with_undetermined(undetermined.clone()).with_integrable_combinations(combinations);
         let observed = system.integrals().iter().chain(system.outputs());
         let reactions = multipliers.reactions();
@@ -140,8 +151,9 @@ impl<'g> Assembler<'g, '_> {
             return Ok(bound);
         }
         let known = bound.reactions(at).map_err(refused)?;
-        let form = Form::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
-        let bound = Bound::new(form, multipliers, verdicts, redundant).with_undetermined(undetermined);
+        let form = ConstraintFormulation::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
+        let bound = ConstraintTreatment::new(form, multipliers, classified, redundant)
+            .with_undetermined(undetermined);
         Ok(bound.with_integrable_combinations(combinations))
     }
 
@@ -166,7 +178,7 @@ impl<'g> Assembler<'g, '_> {
             let text = self.model.constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
             if let Some(kind) = text {
                 let constraint = constraint.name().to_owned();
-                return Err(self.model.error(&kind.place, Fault::NotNonlinear { constraint, what }));
+                return Err(self.model.error(&kind.place, MeaningError::NotNonlinear { constraint, what }));
             }
         }
         Ok(())
@@ -177,7 +189,10 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// What each binding constraint does, unless the text says otherwise.
-    fn verdicts(&self, sorted: &Sorted<'g>) -> Result<Vec<Verdict>, ModelError> {
+    fn classified(
+        &self,
+        sorted: &ConstraintClassification<'g>,
+    ) -> Result<Vec<ClassifiedConstraint>, ModelError> {
         let Some(multipliers) = sorted.multipliers() else { return Ok(Vec::new()) };
         multipliers
             .constraints()
@@ -189,9 +204,11 @@ impl<'g> Assembler<'g, '_> {
                     && given.value == ConstraintKind::Holonomic
                 {
                     let constraint = constraint.name().to_owned();
-                    return Err(self.model.error(&given.place, Fault::NotHolonomic { constraint, residual }));
+                    return Err(self
+                        .model
+                        .error(&given.place, MeaningError::NotHolonomic { constraint, residual }));
                 }
-                Ok(Verdict { constraint: constraint.name().to_owned(), kind })
+                Ok(ClassifiedConstraint { constraint: constraint.name().to_owned(), kind })
             })
             .collect()
     }

@@ -7,7 +7,7 @@ use pc_nonholo::Binding;
 use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
@@ -47,7 +47,9 @@ impl<'g> Assembler<'g, '_> {
         let positions = binding.iter().filter(|(_, constraint)| constraint.is_holonomic(&kinematic)).count();
         let (all, coordinates) = (definitions.len() + binding.len(), x.len());
         if all != coordinates && all - positions != coordinates {
-            return Err(self.model.error(place, Fault::DefinitionCount { definitions: all, coordinates }));
+            return Err(self
+                .model
+                .error(place, MeaningError::DefinitionCount { definitions: all, coordinates }));
         }
         if self.graph.generic_rank(&rows) < rows.len() {
             return Err(self.dependent(&rows, &Completion::default(), constraints));
@@ -76,7 +78,7 @@ impl<'g> Assembler<'g, '_> {
         for quasi_velocity in &self.model.document().quasi_velocities {
             let Some(is) = &quasi_velocity.is else {
                 let name = quasi_velocity.name.text.clone();
-                return Err(self.model.error(&quasi_velocity.name.place, Fault::Undefined { name }));
+                return Err(self.model.error(&quasi_velocity.name.place, MeaningError::Undefined { name }));
             };
             definitions.push(self.scope.resolve(is, Stage::Definition)?);
         }
@@ -89,7 +91,7 @@ impl<'g> Assembler<'g, '_> {
         let texts = self.model.document().quasi_velocities.iter().filter_map(|q| q.is.as_ref());
         let row = |(&definition, is): (&Expr<'g>, &Expression)| {
             let parts = affine(self.graph, definition, &velocities);
-            let fault = |text| Fault::NotAffine { text, variables: "velocities" };
+            let fault = |text| MeaningError::NotAffine { text, variables: "velocities" };
             parts.map(|(row, _)| row).ok_or_else(|| self.scope.error(is, is.ast.span, fault))
         };
         definitions.iter().zip(texts).map(row).collect()
@@ -206,7 +208,9 @@ impl<'g> Assembler<'g, '_> {
     ) -> ModelError {
         let row = (0..rows.len()).find(|&r| self.graph.generic_rank(&rows[..=r]) <= r).unwrap_or(0);
         let at_rest = rows[row].iter().all(|slope| slope.is_zero());
-        let fault = |text| if at_rest { Fault::NoVelocity { text } } else { Fault::DependentDefinitions };
+        let fault = |text| {
+            if at_rest { MeaningError::NoVelocity { text } } else { MeaningError::DependentDefinitions }
+        };
         let document = self.model.document();
         let of_constraint = |row: usize| {
             let place = completion.constraints.get(row)?;
@@ -218,7 +222,7 @@ impl<'g> Assembler<'g, '_> {
         };
         match text {
             Some(text) => self.scope.error(text, text.ast.span, fault),
-            None => self.model.error(&document.end(), Fault::DependentDefinitions),
+            None => self.model.error(&document.end(), MeaningError::DependentDefinitions),
         }
     }
 }

@@ -3,10 +3,10 @@
 use pc_expr::{Direction, Expr};
 
 use crate::assembly::assembler::Assembler;
-use crate::assembly::constraint_treatment::Bound;
+use crate::assembly::constraint_treatment::ConstraintTreatment;
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document;
 use crate::document::NamedExpression;
 use crate::names::scope::entry;
@@ -25,7 +25,7 @@ impl<'g> Assembler<'g, '_> {
         &mut self,
         crossings: Vec<Expr<'g>>,
         x_dot: &[(Expr<'g>, Expr<'g>)],
-        bound: &Bound<'g>,
+        bound: &ConstraintTreatment<'g>,
         first_state: usize,
     ) -> Result<Vec<Event<'g>>, ModelError> {
         let mut events = Vec::with_capacity(crossings.len());
@@ -59,7 +59,7 @@ impl<'g> Assembler<'g, '_> {
     fn reset_place(
         &self,
         reset: &NamedExpression,
-        bound: &Bound<'g>,
+        bound: &ConstraintTreatment<'g>,
         first_state: usize,
     ) -> Result<usize, ModelError> {
         let document = self.model.document();
@@ -104,7 +104,7 @@ impl<'g> Assembler<'g, '_> {
         refuse(self.not_reset(name, what, bound))
     }
 
-    fn not_reset(&self, name: &str, what: &'static str, bound: &Bound<'g>) -> Fault {
+    fn not_reset(&self, name: &str, what: &'static str, bound: &ConstraintTreatment<'g>) -> MeaningError {
         let document = self.model.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
         let states = document.states.iter().map(|state| state.name.text.clone());
@@ -115,7 +115,7 @@ impl<'g> Assembler<'g, '_> {
                 document.quasi_velocities.iter().map(|eta| &eta.name.text).filter(moving).cloned().collect()
             }
         };
-        Fault::NotReset {
+        MeaningError::NotReset {
             name: name.to_owned(),
             what,
             known: coordinates.chain(velocities).chain(states).collect(),
@@ -124,7 +124,7 @@ impl<'g> Assembler<'g, '_> {
 }
 
 /// Whether a constraint says that this quasi-velocity vanishes, and no more.
-fn vanishes<'g>(bound: &Bound<'g>, eta: Expr<'g>) -> bool {
+fn vanishes<'g>(bound: &ConstraintTreatment<'g>, eta: Expr<'g>) -> bool {
     let constraints = bound.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
     constraints.iter().any(|constraint| constraint.expression() == eta)
 }

@@ -5,7 +5,7 @@ use pc_mech::{AlgebraError, Expr, Frame};
 use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::NamedExpression;
 use crate::names::scope::entry;
 use crate::names::stage::Stage;
@@ -31,7 +31,7 @@ impl<'g> Assembler<'g, '_> {
         let frame = match (defined, document.kinematics.first()) {
             (Some(defined), Some(_)) => Err(self
                 .model
-                .error(&defined.name.place, Fault::TwoKinematics { name: defined.name.text.clone() })),
+                .error(&defined.name.place, MeaningError::TwoKinematics { name: defined.name.text.clone() })),
             (Some(_), None) => return self.frame_of_definitions(time, x, constraints, at),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
             (None, None) if self.is_lagrangian_form() => Ok(Frame::coordinate(self.graph, time, x)),
@@ -42,7 +42,7 @@ impl<'g> Assembler<'g, '_> {
             }
             (None, None) => {
                 let name = &document.quasi_velocities[0].name;
-                Err(self.model.error(&name.place, Fault::Undefined { name: name.text.clone() }))
+                Err(self.model.error(&name.place, MeaningError::Undefined { name: name.text.clone() }))
             }
         };
         Ok((frame?, Vec::new()))
@@ -54,9 +54,10 @@ impl<'g> Assembler<'g, '_> {
         for coordinate in &document.coordinates {
             let Some(kinematics) = entry(&document.kinematics, &coordinate.name.text) else {
                 let coordinate = coordinate.name.text.clone();
-                return Err(self
-                    .model
-                    .error(&document.kinematics[0].name.place, Fault::KinematicsMissing { coordinate }));
+                return Err(self.model.error(
+                    &document.kinematics[0].name.place,
+                    MeaningError::KinematicsMissing { coordinate },
+                ));
             };
             velocities.push(self.scope.resolve(&kinematics.expression, Stage::Kinematics)?);
         }
@@ -64,7 +65,7 @@ impl<'g> Assembler<'g, '_> {
         Frame::from_velocities(self.graph, time, x, &eta, &velocities).map_err(|error| match error {
             AlgebraError::NotAffine { coordinate, .. } => match entry(&document.kinematics, &coordinate) {
                 Some(NamedExpression { expression, .. }) => {
-                    let fault = |text| Fault::NotAffine { text, variables: "quasi-velocities" };
+                    let fault = |text| MeaningError::NotAffine { text, variables: "quasi-velocities" };
                     self.scope.error(expression, expression.ast.span, fault)
                 }
                 None => {

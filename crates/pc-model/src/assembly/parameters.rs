@@ -9,7 +9,7 @@ use pc_mech::Table;
 use crate::assembly::tables;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
@@ -158,6 +158,6 @@ impl Parameters {
 }
 
 fn not_finite(document: &Document, expression: &Expression, value: f64) -> ModelError {
-    let fault = Fault::ParameterNotFinite { text: expression.text.clone(), value };
+    let fault = MeaningError::ParameterNotFinite { text: expression.text.clone(), value };
     document.source.error(&expression.place(expression.ast.span), ErrorKind::Meaning(fault))
 }

@@ -6,7 +6,7 @@ use pc_mech::{Expr, Frame, Graph};
 use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
@@ -95,7 +95,7 @@ impl<'g> Assembler<'g, '_> {
         if value.is_finite() {
             return Ok(value);
         }
-        let fault = |text| Fault::NotFinite { text, value, state: Vec::new() };
+        let fault = |text| MeaningError::NotFinite { text, value, state: Vec::new() };
         Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
@@ -103,7 +103,7 @@ impl<'g> Assembler<'g, '_> {
     /// velocities, b η + b_0 = x', and from the constraints; where these leave them open, those declared are zero.
     ///
     /// # Errors
-    /// [`Fault::StartVelocity`] for a velocity that the others contradict; [`Fault::StartOpen`] where those that complete the
+    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those that complete the
     /// definitions are left open.
     pub(super) fn start_state(
         &self,
@@ -140,7 +140,7 @@ impl<'g> Assembler<'g, '_> {
             (0..eta.len()).filter(|&s| equations.leaves_open(&unit(s))).map(|s| eta[s].to_string()).collect();
         if !open.is_empty() {
             let place = &self.model.document().quasi_velocities[0].name.place;
-            return Err(self.model.error(place, Fault::StartOpen { velocities: open }));
+            return Err(self.model.error(place, MeaningError::StartOpen { velocities: open }));
         }
         let solution = equations.solution(eta.len());
         for (s, value) in solution.into_iter().enumerate() {
@@ -172,7 +172,7 @@ impl<'g> Assembler<'g, '_> {
             };
             if let Some(found) = equations.add(row, given - drift) {
                 let (coordinate, found) = (velocity.name.text.clone(), found + drift);
-                let fault = Fault::StartVelocity { coordinate, given, found };
+                let fault = MeaningError::StartVelocity { coordinate, given, found };
                 return Err(self.model.error(&velocity.expression.whole(), fault));
             }
         }

@@ -6,7 +6,7 @@ use pc_expr::parse::{FUNCTIONS, ParseError};
 use thiserror::Error;
 
 use crate::diagnostics::category::Category;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 
 /// The ways in which a model can be wrong.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -192,7 +192,7 @@ pub enum ErrorKind {
     Expression(#[from] ParseError),
     /// Text that is well formed and says something that cannot be.
     #[error(transparent)]
-    Meaning(#[from] Fault),
+    Meaning(#[from] MeaningError),
     /// Something that the program cannot do yet.
     #[error("{what} not supported yet")]
     Unsupported {

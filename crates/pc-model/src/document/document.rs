@@ -275,7 +275,7 @@ pub enum Method {
 
 /// Forms of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum EquationForm {
     /// Equations for η.
     Poincare,
     /// Equations for the momenta.
@@ -306,7 +306,7 @@ pub struct Simulation {
     /// Integration method.
     pub method: Option<Located<Method>>,
     /// Form of the equations.
-    pub form: Option<Located<Form>>,
+    pub form: Option<Located<EquationForm>>,
     /// Integrals, or `energy`, to whose values at the start the motion is projected.
     pub project: Vec<Located<String>>,
 }

@@ -5,7 +5,7 @@ use pc_expr::Direction;
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::document::{Event, Form, Method, Simulation};
+use crate::document::document::{EquationForm, Event, Method, Simulation};
 use crate::document::expression::{Located, NamedExpression};
 
 /// The most rows of a table: each is held in memory.
@@ -38,8 +38,10 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
                 ])?);
             }
             "form" => {
-                result.form =
-                    Some(item.choice(&[("poincare", Form::Poincare), ("canonical", Form::Canonical)])?);
+                result.form = Some(item.choice(&[
+                    ("poincare", EquationForm::Poincare),
+                    ("canonical", EquationForm::Canonical),
+                ])?);
             }
             "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {

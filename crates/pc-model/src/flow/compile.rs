@@ -7,9 +7,9 @@ use pc_mech::{
 };
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
 impl Model {
@@ -20,13 +20,13 @@ impl Model {
     /// [`ModelError`] if it cannot be evaluated there.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
         let refused = |error| self.constraint_error(error);
-        match assembly.bound.form() {
-            Form::Held(held) => {
+        match assembly.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) => {
                 let (compiled, start) =
                     (held.multipliers.compile_for(self.options()), assembly.start.clone());
                 self.started(compiled, || held.multipliers.kept(self.kept()), assembly.t_start, start)
             }
-            Form::Free | Form::Vanishing(_) => {
+            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
                 let equations = assembly.equations().map_err(refused)?;
                 let system = equations.system();
                 let state = system.state();
@@ -80,7 +80,7 @@ impl Model {
         t_start: f64,
         start: Vec<f64>,
     ) -> Result<(Motion, Vec<f64>), ModelError> {
-        let refuse = |cause: String| self.error(&self.energy_place(), Fault::SingularStart { cause });
+        let refuse = |cause: String| self.error(&self.energy_place(), MeaningError::SingularStart { cause });
         let mut motion = compiled.map_err(|error| refuse(error.to_string()))?.driven_by(self.signals());
         let mut rate = vec![0.0; start.len()];
         motion.rhs(t_start, &start, &mut rate).map_err(|failure| match MechError::from(failure) {
@@ -90,7 +90,7 @@ impl Model {
         if let Some(name) = self.kept().first().filter(|_| !self.parameter_values().tables().is_empty()) {
             let message = format!("`{name}` cannot be kept where inputs change with time");
             let help = "leave it out of `project`, or give the inputs constant values";
-            return Err(self.error(&self.kept_place(name), Fault::NoForm { message, help }));
+            return Err(self.error(&self.kept_place(name), MeaningError::NoForm { message, help }));
         }
         if !self.kept().is_empty() {
             let kept = kept().map_err(|error| self.derivation_error(error))?;

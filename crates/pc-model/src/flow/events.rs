@@ -4,7 +4,7 @@ use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
@@ -69,9 +69,11 @@ impl FlowEvents {
             let (places, values): (Vec<_>, Vec<_>) = event.resets.iter().copied().unzip();
             Ok(Reset { places, values: compiled(&values)? })
         });
-        let held = matches!(assembly.bound.form(), Form::Held(_)) && !declared.is_empty();
+        let held = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_))
+            && !declared.is_empty();
         // Those declared, where others complete them to a frame and follow from them.
-        let bound = assembly.bound.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
+        let bound =
+            assembly.constraints.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
         let follow = bound > 0 && assembly.declared + bound == system.quasi_velocities().len();
         Ok(FlowEvents {
             determining: if follow { (0..assembly.declared).collect() } else { Vec::new() },

@@ -4,7 +4,7 @@ use pc_expr::{Backend, Evaluator, Expr, Program};
 use pc_mech::{LegendreTransform, MechError, Motion};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::flow::events::FlowEvents;
 use crate::flow::reading::{Reading, inputs};
@@ -41,16 +41,20 @@ impl Flow {
             }
             Variables::Momenta => {
                 let mut transform = model.legendre_transform(assembly, variables)?;
-                let system = match assembly.bound.form() {
-                    Form::Held(_) => assembly.system.clone(),
-                    Form::Free | Form::Vanishing(_) => model.system_in(assembly, variables)?,
+                let system = match assembly.constraints.formulation() {
+                    ConstraintFormulation::Multipliers(_) => assembly.system.clone(),
+                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
+                        model.system_in(assembly, variables)?
+                    }
                 };
                 let start = assembly.start_of(&system.state());
                 let start = transform.to_momenta(assembly.t_start, &start);
                 let start = start.map_err(|error| model.derivation_error(error))?;
-                let motion = match assembly.bound.form() {
-                    Form::Held(held) => model.compile_in_momenta(&held.multipliers, assembly, &start)?,
-                    Form::Free | Form::Vanishing(_) => {
+                let motion = match assembly.constraints.formulation() {
+                    ConstraintFormulation::Multipliers(held) => {
+                        model.compile_in_momenta(&held.multipliers, assembly, &start)?
+                    }
+                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
                         let canonical = model.canonical_in(assembly, variables)?;
                         model.compile_canonical(&canonical, assembly.t_start, &start)?
                     }

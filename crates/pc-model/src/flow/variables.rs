@@ -3,7 +3,7 @@
 use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::model::model::Model;
 
@@ -29,11 +29,13 @@ impl Model {
         variables: Variables,
     ) -> Result<System<'g>, ModelError> {
         let free = || assembly.free_system().map_err(|error| self.constraint_error(error));
-        Ok(match (variables, assembly.bound.form()) {
-            (Variables::QuasiVelocities, Form::Held(_)) => assembly.system.without_observed(),
+        Ok(match (variables, assembly.constraints.formulation()) {
+            (Variables::QuasiVelocities, ConstraintFormulation::Multipliers(_)) => {
+                assembly.system.without_observed()
+            }
             // What is observed may contain velocities that are not among the free ones.
-            (Variables::Momenta, Form::Held(_)) => free()?.without_observed(),
-            (_, Form::Free | Form::Vanishing(_)) => free()?,
+            (Variables::Momenta, ConstraintFormulation::Multipliers(_)) => free()?.without_observed(),
+            (_, ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_)) => free()?,
         })
     }
 
@@ -42,9 +44,9 @@ impl Model {
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
     pub fn equations_in<'g>(&self, assembly: &Assembly<'g>) -> Result<Equations<'g>, ModelError> {
-        match assembly.bound.form() {
-            Form::Held(held) => Ok(held.multipliers.equations().clone()),
-            Form::Free | Form::Vanishing(_) => {
+        match assembly.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) => Ok(held.multipliers.equations().clone()),
+            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
                 assembly.equations().map_err(|error| self.constraint_error(error))
             }
         }
@@ -79,8 +81,8 @@ impl Model {
         assembly: &Assembly<'_>,
         variables: Variables,
     ) -> Result<LegendreTransform, ModelError> {
-        let transform = match (variables, assembly.bound.form()) {
-            (Variables::Momenta, Form::Held(held)) => {
+        let transform = match (variables, assembly.constraints.formulation()) {
+            (Variables::Momenta, ConstraintFormulation::Multipliers(held)) => {
                 held.multipliers.legendre_transform(&assembly.start_velocities())
             }
             _ => self.canonical_in(assembly, variables)?.legendre_transform(),

@@ -5,7 +5,7 @@ use pc_nonholo::NonholoError;
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
 use crate::document::{self, AlgebraDefinition, Bracket};
 use crate::model::model::Model;
@@ -15,7 +15,7 @@ impl Model {
     pub fn constraint_error(&self, error: NonholoError) -> ModelError {
         let message = error.to_string();
         let cannot = |name: &str, help| {
-            self.constraint_fault(name, Fault::Constraint { message: message.clone(), help })
+            self.constraint_fault(name, MeaningError::Constraint { message: message.clone(), help })
         };
         let last = self.document().constraints.last().map_or("", |constraint| constraint.name.text.as_str());
         match error {
@@ -29,7 +29,7 @@ impl Model {
                 MechError::ConstraintNotAffine { constraint } => {
                     let text = self.constraint_text(&constraint).map(|c| c.expression.text.clone());
                     let text = text.unwrap_or_default();
-                    let fault = Fault::ConstraintNotAffine { constraint: constraint.clone(), text };
+                    let fault = MeaningError::ConstraintNotAffine { constraint: constraint.clone(), text };
                     self.constraint_fault(&constraint, fault)
                 }
                 MechError::TooManyConstraints { .. } => cannot(
@@ -60,7 +60,7 @@ impl Model {
     }
 
     /// A fault of a constraint, at its expression.
-    pub(crate) fn constraint_fault(&self, name: &str, fault: Fault) -> ModelError {
+    pub(crate) fn constraint_fault(&self, name: &str, fault: MeaningError) -> ModelError {
         let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
         let place = expression.map(|expression| expression.place(expression.ast.span));
         self.error(&place.unwrap_or_else(|| self.document().end()), fault)
@@ -70,25 +70,27 @@ impl Model {
     pub fn derivation_error(&self, error: MechError) -> ModelError {
         match error {
             MechError::DegenerateLagrangian { rank, size, quasi_velocities: undetermined } => {
-                self.error(&self.energy_place(), Fault::Degenerate { rank, size, undetermined })
+                self.error(&self.energy_place(), MeaningError::Degenerate { rank, size, undetermined })
             }
             error @ (MechError::Redundant { .. }
             | MechError::Algebra(AlgebraError::DependentOperators { .. })) => {
                 let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
-                self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
+                self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
             error @ MechError::NotQuadratic { .. } => {
                 let help = "its forms are poincare and, where the coordinates are independent, lagrange";
-                self.error(&self.energy_place(), Fault::NoForm { message: error.to_string(), help })
+                self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
             MechError::Algebra(error) => self.algebra_error(error),
             MechError::UnknownIntegral { name, known } => {
-                self.error(&self.kept_place(&name), Fault::UnknownIntegral { name, known })
+                self.error(&self.kept_place(&name), MeaningError::UnknownIntegral { name, known })
             }
             MechError::NotAnIntegral { name, t, rate } => {
-                self.error(&self.kept_place(&name), Fault::NotAnIntegral { name, t, rate })
+                self.error(&self.kept_place(&name), MeaningError::NotAnIntegral { name, t, rate })
             }
-            other => self.error(&self.energy_place(), Fault::Derivation { message: other.to_string() }),
+            other => {
+                self.error(&self.energy_place(), MeaningError::Derivation { message: other.to_string() })
+            }
         }
     }
 
@@ -149,26 +151,27 @@ impl Model {
         match error {
             AlgebraError::RankDeficient { rank, operators, pair } => self.error(
                 &self.operator_place(pair.1),
-                Fault::RankDeficient { rank, operators, pair: names(pair) },
+                MeaningError::RankDeficient { rank, operators, pair: names(pair) },
             ),
             AlgebraError::Undetermined { combination, operators, .. } => {
                 let last = combination.last().map_or(1, |&(s, _)| s);
                 let names = (1..=operators).map(|s| self.operator_name(s)).collect();
-                self.error(&self.operator_place(last), Fault::Undetermined { combination, names })
+                self.error(&self.operator_place(last), MeaningError::Undetermined { combination, names })
             }
-            AlgebraError::NotClosed { pair, residual } => {
-                self.error(&self.operator_place(pair.1), Fault::NotClosed { pair: names(pair), residual })
-            }
+            AlgebraError::NotClosed { pair, residual } => self
+                .error(&self.operator_place(pair.1), MeaningError::NotClosed { pair: names(pair), residual }),
             AlgebraError::Contradiction { pair, residual } => {
-                self.error(&brackets_of(pair), Fault::Contradiction { pair: names(pair), residual })
+                self.error(&brackets_of(pair), MeaningError::Contradiction { pair: names(pair), residual })
             }
             AlgebraError::Jacobi { triple: (r, s, u), component, defect } => {
                 let triple = [r, s, u].map(|s| self.operator_name(s));
-                let fault = Fault::Jacobi { triple, component: self.operator_name(component), defect };
+                let fault = MeaningError::Jacobi { triple, component: self.operator_name(component), defect };
                 self.error(&brackets_of((r, s)), fault)
             }
-            AlgebraError::AlgebraNeeded => self.error(&self.operator_place(1), Fault::AlgebraNeeded),
-            other => self.error(&self.operator_place(1), Fault::Derivation { message: other.to_string() }),
+            AlgebraError::AlgebraNeeded => self.error(&self.operator_place(1), MeaningError::AlgebraNeeded),
+            other => {
+                self.error(&self.operator_place(1), MeaningError::Derivation { message: other.to_string() })
+            }
         }
     }
 }

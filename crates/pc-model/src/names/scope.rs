@@ -9,7 +9,7 @@ use pc_expr::{Expr, Graph};
 use crate::assembly::resultant::{force_names, torque_names};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Body, Document, Expression, NamedExpression};
 use crate::names::functions::call;
@@ -134,7 +134,9 @@ impl<'g, 'd> Scope<'g, 'd> {
         let before = self.graph.zero_divisions();
         let value = self.ast(expression, &expression.ast, stage)?;
         if self.graph.zero_divisions() > before {
-            return Err(self.error(expression, expression.ast.span, |text| Fault::DivisionByZero { text }));
+            return Err(
+                self.error(expression, expression.ast.span, |text| MeaningError::DivisionByZero { text })
+            );
         }
         self.note(expression, expression.ast.span, value);
         Ok(value)
@@ -144,7 +146,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         &self,
         expression: &Expression,
         span: Span,
-        fault: impl FnOnce(String) -> Fault,
+        fault: impl FnOnce(String) -> MeaningError,
     ) -> ModelError {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
         self.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
@@ -214,7 +216,9 @@ impl<'g, 'd> Scope<'g, 'd> {
                 let before = self.graph.zero_divisions();
                 let value = call(function, &values, self.graph);
                 if self.graph.zero_divisions() > before {
-                    return Err(self.error(expression, ast.span, |text| Fault::DivisionByZero { text }));
+                    return Err(
+                        self.error(expression, ast.span, |text| MeaningError::DivisionByZero { text })
+                    );
                 }
                 self.note(expression, ast.span, value);
                 Ok(value)
@@ -238,7 +242,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             let span = Span { start, end: ast.span.end };
             if value.is_zero() {
-                return Err(self.error(expression, span, |text| Fault::DivisionByZero { text }));
+                return Err(self.error(expression, span, |text| MeaningError::DivisionByZero { text }));
             }
             product = product / value;
             self.note(expression, span, product);
@@ -255,8 +259,11 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let document = self.document;
         let refuse = |scope: &Self| {
-            let fault =
-                |_| Fault::NotHere { name: name.to_owned(), place: stage.place(), allowed: stage.allowed() };
+            let fault = |_| MeaningError::NotHere {
+                name: name.to_owned(),
+                place: stage.place(),
+                allowed: stage.allowed(),
+            };
             Err(scope.error(expression, span, fault))
         };
         if name == "pi" {
@@ -264,7 +271,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
         let own = self.context.definition.map(|(_, own)| own);
         let is_late = |place| own.is_some_and(|own| own <= place);
-        let late = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
+        let late = |_| MeaningError::UsedBeforeDefined { name: name.to_owned() };
         if let Some(place) = document.parameters.iter().position(|p| p.name.text == name) {
             if stage == Stage::Parameter && is_late(place) {
                 return Err(self.error(expression, span, late));
@@ -316,7 +323,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Ok(symbol)
             }
             _ => {
-                let fault = |_| Fault::UnknownName { name: name.to_owned(), known: self.known() };
+                let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
             }
         }
@@ -360,7 +367,7 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let coordinates = &self.document.coordinates;
         if !coordinates.iter().any(|c| c.name.text == name) {
-            let fault = |_| Fault::NotACoordinate {
+            let fault = |_| MeaningError::NotACoordinate {
                 name: name.to_owned(),
                 coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
             };
@@ -372,7 +379,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
-            | Stage::Gravity => Err(self.error(expression, span, |text| Fault::NotHere {
+            | Stage::Gravity => Err(self.error(expression, span, |text| MeaningError::NotHere {
                 name: text,
                 place: stage.place(),
                 allowed: stage.allowed(),
@@ -405,19 +412,20 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Observation => false,
         };
         if refused {
-            let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
+            let fault =
+                |text| MeaningError::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
         let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
-            return Err(self.error(expression, span, |_| Fault::RateOfInput { name }));
+            return Err(self.error(expression, span, |_| MeaningError::RateOfInput { name }));
         }
         let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
         let moves = |z: &Expr<'g>| value.depends_on(*z);
         if stage != Stage::Observation && velocities.iter().chain(&eta).any(moves) {
-            return Err(self.error(expression, span, |_| Fault::Acceleration { place: stage.place() }));
+            return Err(self.error(expression, span, |_| MeaningError::Acceleration { place: stage.place() }));
         }
         let rate = |symbol: &Expr<'g>| (*symbol, self.graph.symbol(&format!("{symbol}'")));
         let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
@@ -430,8 +438,11 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             if stage == Stage::Rate {
                 // The rates of two states may each contain that of the other.
-                let fault =
-                    |text| Fault::NotHere { name: text, place: stage.place(), allowed: "rates written out" };
+                let fault = |text| MeaningError::NotHere {
+                    name: text,
+                    place: stage.place(),
+                    allowed: "rates written out",
+                };
                 return Err(self.error(expression, span, fault));
             }
             rates.push((z, self.resolve(&state.rate, Stage::Rate)?));

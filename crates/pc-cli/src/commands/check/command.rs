@@ -1,7 +1,7 @@
 //! `pc check`: whether a model holds together.
 
 use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, System, VectorField};
-use pc_model::{Assembly, Form, Model, Verdict};
+use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
 use pc_nonholo::{Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
 use pc_verify::{Agreement, Options, VerifyError, verify};
@@ -61,7 +61,7 @@ struct Report<'g> {
     frame: FrameFacts,
     /// Each with what it does.
     constraints: Vec<(String, String)>,
-    verdicts: Vec<Verdict>,
+    classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
     integrable_combinations: usize,
     start_residual: f64,
@@ -123,9 +123,9 @@ impl<'g> Report<'g> {
             largest_rate: if evaluated { largest_rate } else { f64::NAN },
             frame: FrameFacts::of(system, &near),
             constraints: constraints(assembly),
-            verdicts: assembly.bound.verdicts().to_vec(),
-            redundant: assembly.bound.redundant().to_vec(),
-            integrable_combinations: assembly.bound.integrable_combinations(),
+            classified: assembly.constraints.classified().to_vec(),
+            redundant: assembly.constraints.redundant().to_vec(),
+            integrable_combinations: assembly.constraints.integrable_combinations(),
             start_residual: start_residual(assembly, &near),
             steady: steady_motion(assembly, equations, motion, &integrals),
             integrals,
@@ -234,7 +234,7 @@ impl<'g> Report<'g> {
             "frame_constraints": frame_constraints,
             "holonomic": holonomic,
             "closure_residual": self.closure_residual,
-            "constraints": self.verdicts.iter().map(constraint).collect::<Vec<_>>(),
+            "constraints": self.classified.iter().map(constraint).collect::<Vec<_>>(),
             "dropped_constraints": self.redundant.iter().map(dropped_object).collect::<Vec<_>>(),
             "integrable_combinations": self.integrable_combinations,
             "jacobi_residual": self.jacobi_residual,
@@ -285,11 +285,11 @@ fn steady_motion<'g>(
     integrals: &[Integral<'g>],
 ) -> Search {
     let system = equations.system();
-    if assembly.bound.nonlinear().is_some() {
+    if assembly.constraints.nonlinear().is_some() {
         return Search::Nonlinear;
     }
     let start = assembly.start_of(&system.state());
-    let Form::Held(held) = assembly.bound.form() else {
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
         return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
     };
     let Ok(mut independent) = equations.compile() else { return Search::None };
@@ -303,7 +303,7 @@ fn steady_motion<'g>(
 
 /// The constraints, those dropped at the end, each with what it does.
 fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
-    let binding = assembly.bound.verdicts().iter().map(|verdict| {
+    let binding = assembly.constraints.classified().iter().map(|verdict| {
         let words = kind_in_words(verdict.kind);
         let words = match verdict.kind {
             Kind::Nonholonomic { residual } => format!("{words}, by {} in a bracket", short(residual, 3)),
@@ -315,7 +315,7 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     binding.chain(redundant).collect()
 }
 
-fn constraint(verdict: &Verdict) -> Value {
+fn constraint(verdict: &ClassifiedConstraint) -> Value {
     let residual = match verdict.kind {
         Kind::Nonholonomic { residual } => Some(residual),
         Kind::Position | Kind::Integrable => Some(0.0),
@@ -330,7 +330,7 @@ fn dropped_object(redundant: &Redundant) -> Value {
 
 /// The largest value at the start of what should vanish.
 fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
-    let Some(multipliers) = assembly.bound.multipliers() else { return 0.0 };
+    let Some(multipliers) = assembly.constraints.multipliers() else { return 0.0 };
     let graph = assembly.system.graph();
     let value = |x: Expr<'_>| graph.evaluate(&[x], &near.centre).map_or(f64::NAN, |values| values[0]);
     let constraints = multipliers.constraints().iter();

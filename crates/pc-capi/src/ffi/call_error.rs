@@ -14,7 +14,7 @@ use crate::ffi::strings::c_string;
 
 /// The ways in which a call can fail.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum Fault {
+pub(crate) enum CallError {
     #[error("{what} is a null pointer")]
     Null { what: &'static str },
     #[error("{what}: room for {found} numbers, but there are {expected}")]
@@ -87,49 +87,51 @@ pub(crate) enum Fault {
     Solve(#[from] SolveError),
 }
 
-impl Fault {
+impl CallError {
     pub(crate) fn status(&self) -> pc_status {
         match self {
-            Fault::Null { .. }
-            | Fault::Length { .. }
-            | Fault::TooLong { .. }
-            | Fault::Misaligned { .. }
-            | Fault::NotText { .. }
-            | Fault::NotFinite { .. }
-            | Fault::Overlap { .. }
-            | Fault::Choice { .. }
-            | Fault::StructSize { .. }
-            | Fault::Index { .. }
-            | Fault::NotADraft { .. }
-            | Fault::Begun { .. }
-            | Fault::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
-            Fault::Model(error) => match error.category() {
+            CallError::Null { .. }
+            | CallError::Length { .. }
+            | CallError::TooLong { .. }
+            | CallError::Misaligned { .. }
+            | CallError::NotText { .. }
+            | CallError::NotFinite { .. }
+            | CallError::Overlap { .. }
+            | CallError::Choice { .. }
+            | CallError::StructSize { .. }
+            | CallError::Index { .. }
+            | CallError::NotADraft { .. }
+            | CallError::Begun { .. }
+            | CallError::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
+            CallError::Model(error) => match error.category() {
                 Category::Text => pc_status::PC_INVALID_MODEL,
                 Category::Unsupported => pc_status::PC_UNSUPPORTED,
                 Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
             },
-            Fault::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
-            Fault::Unsupported { .. } | Fault::Verify(_) => pc_status::PC_UNSUPPORTED,
-            Fault::NoSuchModel { .. }
-            | Fault::UnknownParameter(_)
-            | Fault::UnknownIntegral(_)
-            | Fault::UnknownStart(_)
-            | Fault::NotForced(_)
-            | Fault::NoSuchEvent { .. }
-            | Fault::NotOccurred { .. }
-            | Fault::NotEnded => pc_status::PC_NOT_FOUND,
-            Fault::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+            CallError::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
+            CallError::Unsupported { .. } | CallError::Verify(_) => pc_status::PC_UNSUPPORTED,
+            CallError::NoSuchModel { .. }
+            | CallError::UnknownParameter(_)
+            | CallError::UnknownIntegral(_)
+            | CallError::UnknownStart(_)
+            | CallError::NotForced(_)
+            | CallError::NoSuchEvent { .. }
+            | CallError::NotOccurred { .. }
+            | CallError::NotEnded => pc_status::PC_NOT_FOUND,
+            CallError::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
                 pc_status::PC_NOT_FOUND
             }
-            Fault::Read { .. } => pc_status::PC_IO,
-            Fault::Evaluation(_) | Fault::Mechanics(_) | Fault::NoValue { .. } => pc_status::PC_EVALUATION,
-            Fault::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
-            Fault::Stopped => pc_status::PC_STOPPED,
-            Fault::Terminal => pc_status::PC_EVENT,
-            Fault::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
-            Fault::Busy => pc_status::PC_BUSY,
+            CallError::Read { .. } => pc_status::PC_IO,
+            CallError::Evaluation(_) | CallError::Mechanics(_) | CallError::NoValue { .. } => {
+                pc_status::PC_EVALUATION
+            }
+            CallError::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
+            CallError::Stopped => pc_status::PC_STOPPED,
+            CallError::Terminal => pc_status::PC_EVENT,
+            CallError::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
+            CallError::Busy => pc_status::PC_BUSY,
             // Of the solver: its set-up, which fails for want of memory, as threads do.
-            Fault::Broken | Fault::Panic { .. } | Fault::Ensemble(_) | Fault::Solve(_) => {
+            CallError::Broken | CallError::Panic { .. } | CallError::Ensemble(_) | CallError::Solve(_) => {
                 pc_status::PC_INTERNAL
             }
         }
@@ -139,8 +141,8 @@ impl Fault {
     fn message(&self) -> String {
         let mut message = self.to_string();
         let mut cause = match self {
-            Fault::Solve(error) => error.source(),
-            Fault::Ensemble(error) => error.source(),
+            CallError::Solve(error) => error.source(),
+            CallError::Ensemble(error) => error.source(),
             _ => None,
         };
         while let Some(error) = cause {
