@@ -18,7 +18,7 @@
 //! let model = Model::new(Document::parse(Source::new("oscillator.toml", text))?);
 //! let graph = Graph::new();
 //! let assembly = model.assemble(&graph)?;
-//! let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
+//! let equations = assembly.equations()?;
 //! assert_eq!(equations.right_hand_side()[0].to_string(), "-4*x");
 //! # Ok::<(), pc_model::ModelError>(())
 //! ```

@@ -1,7 +1,7 @@
 //! Equations of motion in one of their forms, with what belongs to them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
-use pc_model::{Assembly, ConstraintFormulation};
+use pc_model::{Assembly, ConstraintFormulation, ModelError};
 use pc_nonholo::{Kind, NonholoError, Voronets};
 
 use crate::form::Form;
@@ -27,14 +27,18 @@ impl<'g> Derived<'g> {
     /// The equations in a form, with its name.
     ///
     /// # Errors
-    /// [`NonholoError`] if there are none.
-    pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
+    /// [`ModelError`] if there are none.
+    pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), ModelError> {
+        assembly.placed(Derived::of(form, assembly))
+    }
+
+    fn of(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
         let (bound, system) = (&assembly.constraints, &assembly.system);
         let multipliers = bound.multipliers();
         let kinds = bound.classified().iter().map(|verdict| verdict.kind);
         let constraints = multipliers.map(Multipliers::constraints).unwrap_or_default();
         let plain = Derived {
-            equations: assembly.equations()?,
+            equations: assembly.constraints.equations(system, &assembly.at_start())?,
             vanishing: Vec::new(),
             constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
             definitions: Vec::new(),

@@ -1,8 +1,7 @@
 //! The equations of a model on a page.
 
 use pc_mech::MechError;
-use pc_model::Assembly;
-use pc_nonholo::NonholoError;
+use pc_model::{Assembly, ModelError};
 
 use crate::derived::Derived;
 use crate::form::Form;
@@ -23,12 +22,12 @@ pub enum Page {
 /// The equations of an assembled model, called `title`, in one of their forms.
 ///
 /// # Errors
-/// [`NonholoError`] if they cannot be derived.
-pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, NonholoError> {
+/// [`ModelError`] if they cannot be derived.
+pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, ModelError> {
     if form == Form::Canonical {
         let (_, derived) = Derived::new(form, assembly)?;
-        let equations = assembly.free_system()?.canonical()?;
-        let operations = Operations::of_canonical(&equations).map_err(MechError::from)?;
+        let equations = assembly.placed(assembly.free_system()?.canonical())?;
+        let operations = assembly.placed(Operations::of_canonical(&equations).map_err(MechError::from))?;
         let heading = format!("{title}: canonical equations");
         return Ok(match page {
             Page::Text => text::underlined(&heading) + &text::canonical(&derived, &equations, &operations),
@@ -38,7 +37,7 @@ pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Res
     }
     let (name, derived) = Derived::new(form, assembly)?;
     let heading = format!("{title}: {name}");
-    let operations = Operations::of(&derived.equations).map_err(MechError::from)?;
+    let operations = assembly.placed(Operations::of(&derived.equations).map_err(MechError::from))?;
     Ok(match page {
         Page::Text => text::underlined(&heading) + &text::poincare(&derived, &operations),
         Page::Latex => latex::poincare(&heading, &derived),

@@ -54,23 +54,22 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallErr
         let why = "a constraint is not affine in the velocities";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }
-    let refused = |error| model.constraint_error(error);
-    let canonical = model.canonical_in(&assembly, ::pc_model::Variables::Momenta)?;
-    canonical.closed_quasi_velocities().map_err(|error| model.derivation_error(error))?;
-    let bracket = match assembly.constraints.constrained(&assembly.at_start()).map_err(refused)? {
-        Some(constrained) => constrained.almost_poisson_bracket().map_err(refused)?,
+    let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
+    assembly.placed(canonical.closed_quasi_velocities())?;
+    let bracket = match assembly.placed(assembly.constraints.constrained(&assembly.at_start()))? {
+        Some(constrained) => assembly.placed(constrained.almost_poisson_bracket())?,
         None => canonical.system().bracket(),
     };
     let all = assembly.system.quasi_velocities();
-    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities()).map_err(refused)?;
+    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities())?;
     let known: Vec<(Expr<'_>, Expr<'_>)> = all.iter().copied().zip(of_free).collect();
     let in_momenta = |text: &str| -> Result<Expr<'_>, CallError> {
         let function = model.function(&assembly, text)?;
         Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
     };
-    let value = bracket.of(in_momenta(f)?, in_momenta(g)?).map_err(|error| model.derivation_error(error))?;
+    let value = assembly.placed(bracket.of(in_momenta(f)?, in_momenta(g)?))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = model.equations_in(&assembly)?;
-    compile(&equations, &[value], &[]).map_err(|error| model.derivation_error(error).into())
+    let equations = assembly.equations_in()?;
+    Ok(assembly.placed(compile(&equations, &[value], &[]))?)
 }

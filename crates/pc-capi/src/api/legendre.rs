@@ -15,7 +15,7 @@ impl Inner {
             let model = &inventory.model;
             let graph = Graph::new();
             let assembly = model.assemble(&graph)?;
-            let mut transform = model.legendre_transform(&assembly, inventory.variables)?;
+            let mut transform = assembly.legendre_transform(inventory.variables)?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }

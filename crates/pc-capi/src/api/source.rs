@@ -61,8 +61,7 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
         Variables::QuasiVelocities => Form::Poincare,
         Variables::Momenta => Form::Canonical,
     };
-    let printed = pc_print::page(form, page, model.title(), &assembly);
-    Ok(printed.map_err(|error| model.constraint_error(error))?)
+    Ok(pc_print::page(form, page, model.title(), &assembly)?)
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
@@ -103,7 +102,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
 fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
-    let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;
+    let equations = assembly.equations()?;
     let mut options = EmitOptions::new(Language::C, name);
     if let Some(title) = &model.document().model.name {
         options = options.title(title.value.clone());
@@ -119,7 +118,7 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
         let state = equations.system().state();
         options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
     }
-    let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
+    let files = assembly.placed(equations.emit(&options))?;
     let mut texts = files.into_iter().map(|file| file.text);
     Ok([texts.next().unwrap_or_default(), texts.next().unwrap_or_default()])
 }

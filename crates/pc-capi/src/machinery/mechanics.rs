@@ -24,7 +24,7 @@ impl Mechanics {
     pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
         let graph = Graph::new();
         let assembly = model.assemble(&graph)?;
-        let equations = model.equations_in(&assembly)?;
+        let equations = assembly.equations_in()?;
         let structure = equations.system().structure();
         let operators = structure.operators();
         let all = || 0..=operators;
@@ -36,9 +36,8 @@ impl Mechanics {
             matches!(assembly.constraints.formulation(), ::pc_model::ConstraintFormulation::Multipliers(_));
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
-        let compiled = |values: &[Expr<'_>], forces: &[Expr<'_>]| {
-            compile(&equations, values, forces).map_err(|error| model.derivation_error(error))
-        };
+        let compiled =
+            |values: &[Expr<'_>], forces: &[Expr<'_>]| assembly.placed(compile(&equations, values, forces));
         Ok(Mechanics {
             mass: compiled(equations.mass_matrix().entries(), &[])?,
             structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,

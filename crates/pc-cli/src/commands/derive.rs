@@ -19,7 +19,6 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
-    let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly);
-    let page = page.map_err(|error| model.constraint_error(error))?;
+    let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly)?;
     print(|out| write!(out, "{page}"))
 }

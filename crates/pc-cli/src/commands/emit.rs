@@ -58,7 +58,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
         let system = equations.system();
         options = options.start(assembly.t_start, &assembly.start_of(&system.state()), t_end.value);
     }
-    let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
+    let files = assembly.placed(equations.emit(&options))?;
 
     let directory = &arguments.output;
     let cannot = |path: &Path, source| CliError::Write { path: path.display().to_string(), source };

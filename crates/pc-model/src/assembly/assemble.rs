@@ -27,7 +27,7 @@ impl Model {
 
     fn refuse_unsupported(&self) -> Result<(), ModelError> {
         let document = self.document();
-        let refuse = |place: &Place, what| Err(self.error(place, ErrorKind::Unsupported { what }));
+        let refuse = |place: &Place, what| Err(self.document().error(place, ErrorKind::Unsupported { what }));
         let simulation = &document.simulation;
         if let Some(method) = &simulation.method
             && !matches!(method.value, Method::Bdf | Method::Adams)
@@ -124,15 +124,26 @@ impl<'g> Assembler<'g, '_> {
             builder = builder.structure(structure);
         }
         builder = builder.external_force(self.model.external_forces());
-        let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
+        let system =
+            builder.frame(frame).build().map_err(|error| self.model.document().derivation_error(error))?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let prescribed = if completing.is_empty() { 0 } else { declared };
-        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
+        let constraints =
+            self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
         let events =
-            self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
+            self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;
-        Ok(Assembly { system, constraints: bound, t_start, start, written_start, declared, events })
+        Ok(Assembly {
+            system,
+            constraints,
+            t_start,
+            start,
+            written_start,
+            declared,
+            events,
+            document: self.model.shared_document(),
+        })
     }
 
     /// That no momentum depends on an input: it would change with it, at a rate that is not known.
@@ -143,7 +154,7 @@ impl<'g> Assembler<'g, '_> {
         match inputs.find(moves) {
             Some(input) => {
                 let error = MechError::SignalInMomentum { input: input.clone() };
-                Err(self.model.derivation_error(error))
+                Err(self.model.document().derivation_error(error))
             }
             None => Ok(()),
         }
@@ -203,6 +214,7 @@ impl<'g> Assembler<'g, '_> {
                     let known = quasi_velocities.chain(coordinates).collect();
                     return Err(self
                         .model
+                        .document()
                         .error(&name.place, MeaningError::NothingToPush { name: name.text.clone(), known }));
                 }
             }
@@ -273,7 +285,7 @@ impl<'g> Assembler<'g, '_> {
             let shown = values.iter().filter(|(symbol, _)| state.contains(symbol));
             let state = shown.map(|(symbol, value)| (symbol.to_string(), *value)).collect();
             let fault = MeaningError::NotFinite { text: written.text.clone(), value: value[0], state };
-            return Err(self.model.error(&written.place, fault));
+            return Err(self.model.document().error(&written.place, fault));
         }
         Ok(())
     }

@@ -24,7 +24,9 @@ impl<'g> Assembler<'g, '_> {
 
     pub(super) fn not_a_coordinate(&self, name: &Name) -> ModelError {
         let coordinates = self.model.document().coordinates.iter().map(|c| c.name.text.clone()).collect();
-        self.model.error(&name.place, MeaningError::NotACoordinate { name: name.text.clone(), coordinates })
+        self.model
+            .document()
+            .error(&name.place, MeaningError::NotACoordinate { name: name.text.clone(), coordinates })
     }
 
     /// An expression of the dynamics with ẋ = b η + b_0 put in.

@@ -1,10 +1,14 @@
 //! The mechanical system of a model, its constraints and its start.
 
+use std::sync::Arc;
+
 use pc_mech::{Equations, Expr, System};
 use pc_nonholo::NonholoError;
 
 use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
+use crate::diagnostics::error::ModelError;
+use crate::document::Document;
 
 /// The system of a model, with the state its motion starts from.
 pub struct Assembly<'g> {
@@ -22,6 +26,8 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
     pub events: Vec<Event<'g>>,
+    /// The text, in which errors have their places.
+    pub(crate) document: Arc<Document>,
 }
 
 impl<'g> Assembly<'g> {
@@ -32,29 +38,37 @@ impl<'g> Assembly<'g> {
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
+    /// What came of a derivation from this system, an error put at the place in the file that is to blame.
+    ///
+    /// # Errors
+    /// [`ModelError`] for the error there is.
+    pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
+        derived.map_err(|error| self.document.constraint_error(error.into()))
+    }
+
     /// The equations of motion in independent quasi-velocities.
     ///
     /// # Errors
-    /// [`NonholoError`] if they cannot be derived.
-    pub fn equations(&self) -> Result<Equations<'g>, NonholoError> {
-        self.constraints.equations(&self.system, &self.at_start())
+    /// [`ModelError`] if they cannot be derived.
+    pub fn equations(&self) -> Result<Equations<'g>, ModelError> {
+        self.placed(self.constraints.equations(&self.system, &self.at_start()))
     }
 
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
     ///
     /// # Errors
-    /// [`NonholoError`] if it cannot be derived.
-    pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
-        self.constraints.free_system(&self.system, &self.at_start())
+    /// [`ModelError`] if it cannot be derived.
+    pub fn free_system(&self) -> Result<System<'g>, ModelError> {
+        self.placed(self.constraints.free_system(&self.system, &self.at_start()))
     }
 
     /// Each quasi-velocity of the system as a function of time, coordinates and the `free` ones, those of a
     /// [free system](Assembly::free_system) or all.
     ///
     /// # Errors
-    /// [`NonholoError`] if these do not determine the others.
-    pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, NonholoError> {
-        self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free)
+    /// [`ModelError`] if these do not determine the others.
+    pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, ModelError> {
+        self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
     /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold constraints, else that

@@ -85,9 +85,10 @@ impl<'g> Assembler<'g, '_> {
         let unknown = |symbol: &Expr<'g>| found.known.iter().all(|(known, _)| known != symbol);
         match self.scope.resultants.iter().find(|(symbol, _)| unknown(symbol)) {
             None => Ok(()),
-            Some((symbol, place)) => {
-                Err(self.model.error(place, MeaningError::ForceNotDetermined { name: symbol.to_string() }))
-            }
+            Some((symbol, place)) => Err(self
+                .model
+                .document()
+                .error(place, MeaningError::ForceNotDetermined { name: symbol.to_string() })),
         }
     }
 }

@@ -19,18 +19,20 @@ impl<'g> Assembler<'g, '_> {
         match &algebra.definition {
             AlgebraDefinition::Catalogue(name) => {
                 let algebra = LieAlgebra::named(&name.value).map_err(|error| match error {
-                    AlgebraError::UnknownAlgebra { name: wrong, known } => {
-                        self.model.error(&name.place, MeaningError::UnknownAlgebra { name: wrong, known })
-                    }
-                    other => {
-                        self.model.error(&name.place, MeaningError::Derivation { message: other.to_string() })
-                    }
+                    AlgebraError::UnknownAlgebra { name: wrong, known } => self
+                        .model
+                        .document()
+                        .error(&name.place, MeaningError::UnknownAlgebra { name: wrong, known }),
+                    other => self
+                        .model
+                        .document()
+                        .error(&name.place, MeaningError::Derivation { message: other.to_string() }),
                 })?;
                 if algebra.dim() != eta.len() {
                     let (dimension, operators) = (algebra.dim(), eta.len());
                     let fault =
                         MeaningError::AlgebraDimension { name: name.value.clone(), dimension, operators };
-                    return Err(self.model.error(&name.place, fault));
+                    return Err(self.model.document().error(&name.place, fault));
                 }
                 Ok(Some(algebra.structure_coefficients()))
             }
@@ -53,7 +55,7 @@ impl<'g> Assembler<'g, '_> {
                     let known =
                         declared.iter().map(|q| q.name.text.clone()).chain(["t".to_owned()]).collect();
                     let fault = MeaningError::UnknownName { name: name.text.clone(), known };
-                    Err(self.model.error(&name.place, fault))
+                    Err(self.model.document().error(&name.place, fault))
                 }
             }
         };
@@ -73,6 +75,7 @@ impl<'g> Assembler<'g, '_> {
                 let (left, right) = (bracket.left.text.clone(), bracket.right.text.clone());
                 return Err(self
                     .model
+                    .document()
                     .error(&bracket.left.place, MeaningError::BracketsNotSkew { left, right }));
             }
             table.push((pair, constants));

@@ -82,6 +82,11 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { combinations, ..self }
     }
 
+    /// The same, kept in another formulation.
+    pub(crate) fn in_formulation(self, formulation: ConstraintFormulation<'g>) -> ConstraintTreatment<'g> {
+        ConstraintTreatment { formulation, ..self }
+    }
+
     pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> ConstraintTreatment<'g> {
         ConstraintTreatment { undetermined, ..self }
     }

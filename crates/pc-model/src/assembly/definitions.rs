@@ -49,6 +49,7 @@ impl<'g> Assembler<'g, '_> {
         if all != coordinates && all - positions != coordinates {
             return Err(self
                 .model
+                .document()
                 .error(place, MeaningError::DefinitionCount { definitions: all, coordinates }));
         }
         if self.graph.generic_rank(&rows) < rows.len() {
@@ -67,7 +68,7 @@ impl<'g> Assembler<'g, '_> {
                     all.iter().map(|&value| self.graph.gradient(value, &velocities)).collect::<Vec<_>>();
                 self.dependent(&slopes, &completion, constraints)
             }
-            other => self.model.algebra_error(other),
+            other => self.model.document().algebra_error(other),
         })?;
         Ok((frame, completion.symbols))
     }
@@ -78,7 +79,10 @@ impl<'g> Assembler<'g, '_> {
         for quasi_velocity in &self.model.document().quasi_velocities {
             let Some(is) = &quasi_velocity.is else {
                 let name = quasi_velocity.name.text.clone();
-                return Err(self.model.error(&quasi_velocity.name.place, MeaningError::Undefined { name }));
+                return Err(self
+                    .model
+                    .document()
+                    .error(&quasi_velocity.name.place, MeaningError::Undefined { name }));
             };
             definitions.push(self.scope.resolve(is, Stage::Definition)?);
         }
@@ -113,7 +117,7 @@ impl<'g> Assembler<'g, '_> {
         let parameters = self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value));
         let builder = parameters.fold(builder, |builder, (symbol, value)| builder.parameter(symbol, value));
         let kinematic = builder.lagrangian(|_, _, _| Expr::ZERO).build();
-        let kinematic = kinematic.map_err(|error| self.model.derivation_error(error))?;
+        let kinematic = kinematic.map_err(|error| self.model.document().derivation_error(error))?;
         let put: Vec<_> = eta.iter().copied().zip(definitions.iter().copied()).collect();
         let contains = |value: Expr<'g>, symbols: &[Expr<'g>]| symbols.iter().any(|&s| value.depends_on(s));
         let (mut places, mut restricting) = (Vec::new(), Vec::new());
@@ -127,7 +131,7 @@ impl<'g> Assembler<'g, '_> {
             }
         }
         let binding = Binding::new(&kinematic, &restricting, at);
-        let binding = binding.map_err(|error| self.model.constraint_error(error))?;
+        let binding = binding.map_err(|error| self.model.document().constraint_error(error))?;
         let independent = binding.binding().iter().map(|&a| (places[a], restricting[a].clone())).collect();
         Ok((kinematic, independent))
     }
@@ -222,7 +226,7 @@ impl<'g> Assembler<'g, '_> {
         };
         match text {
             Some(text) => self.scope.error(text, text.ast.span, fault),
-            None => self.model.error(&document.end(), MeaningError::DependentDefinitions),
+            None => self.model.document().error(&document.end(), MeaningError::DependentDefinitions),
         }
     }
 }

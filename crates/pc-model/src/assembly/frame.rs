@@ -31,6 +31,7 @@ impl<'g> Assembler<'g, '_> {
         let frame = match (defined, document.kinematics.first()) {
             (Some(defined), Some(_)) => Err(self
                 .model
+                .document()
                 .error(&defined.name.place, MeaningError::TwoKinematics { name: defined.name.text.clone() })),
             (Some(_), None) => return self.frame_of_definitions(time, x, constraints, at),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
@@ -38,11 +39,15 @@ impl<'g> Assembler<'g, '_> {
             (None, None) if x.is_empty() => {
                 let k = document.quasi_velocities.len();
                 let b = pc_mech::Matrix::from_fn(0, k, |_, _| Expr::ZERO);
-                Frame::new(self.graph, time, x, b, Vec::new()).map_err(|e| self.model.algebra_error(e))
+                Frame::new(self.graph, time, x, b, Vec::new())
+                    .map_err(|e| self.model.document().algebra_error(e))
             }
             (None, None) => {
                 let name = &document.quasi_velocities[0].name;
-                Err(self.model.error(&name.place, MeaningError::Undefined { name: name.text.clone() }))
+                Err(self
+                    .model
+                    .document()
+                    .error(&name.place, MeaningError::Undefined { name: name.text.clone() }))
             }
         };
         Ok((frame?, Vec::new()))
@@ -54,7 +59,7 @@ impl<'g> Assembler<'g, '_> {
         for coordinate in &document.coordinates {
             let Some(kinematics) = entry(&document.kinematics, &coordinate.name.text) else {
                 let coordinate = coordinate.name.text.clone();
-                return Err(self.model.error(
+                return Err(self.model.document().error(
                     &document.kinematics[0].name.place,
                     MeaningError::KinematicsMissing { coordinate },
                 ));
@@ -68,11 +73,12 @@ impl<'g> Assembler<'g, '_> {
                     let fault = |text| MeaningError::NotAffine { text, variables: "quasi-velocities" };
                     self.scope.error(expression, expression.ast.span, fault)
                 }
-                None => {
-                    self.model.algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() })
-                }
+                None => self
+                    .model
+                    .document()
+                    .algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() }),
             },
-            other => self.model.algebra_error(other),
+            other => self.model.document().algebra_error(other),
         })
     }
 }

@@ -140,7 +140,7 @@ impl<'g> Assembler<'g, '_> {
             (0..eta.len()).filter(|&s| equations.leaves_open(&unit(s))).map(|s| eta[s].to_string()).collect();
         if !open.is_empty() {
             let place = &self.model.document().quasi_velocities[0].name.place;
-            return Err(self.model.error(place, MeaningError::StartOpen { velocities: open }));
+            return Err(self.model.document().error(place, MeaningError::StartOpen { velocities: open }));
         }
         let solution = equations.solution(eta.len());
         for (s, value) in solution.into_iter().enumerate() {
@@ -173,7 +173,7 @@ impl<'g> Assembler<'g, '_> {
             if let Some(found) = equations.add(row, given - drift) {
                 let (coordinate, found) = (velocity.name.text.clone(), found + drift);
                 let fault = MeaningError::StartVelocity { coordinate, given, found };
-                return Err(self.model.error(&velocity.expression.whole(), fault));
+                return Err(self.model.document().error(&velocity.expression.whole(), fault));
             }
         }
         Ok(())

@@ -56,13 +56,13 @@ impl<'g> Trial<'_, 'g> {
     /// [`ModelError`] if none is found.
     pub(super) fn nearest(
         &self,
-        sorted: &ConstraintClassification<'g>,
+        classification: &ConstraintClassification<'g>,
         state: &[f64],
         held: &StartHeld,
     ) -> Result<Vec<f64>, ModelError> {
         let mut nearest = state.to_vec();
-        let refused = |error: MechError| self.model.constraint_error(error.into());
-        if let Some(multipliers) = sorted.multipliers() {
+        let refused = |error: MechError| self.model.document().constraint_error(error.into());
+        if let Some(multipliers) = classification.multipliers() {
             let options = CompileOptions::default().jacobian(false);
             let mut motion = multipliers.compile_for(options).map_err(refused)?;
             if held.is_empty() {
@@ -74,7 +74,7 @@ impl<'g> Trial<'_, 'g> {
                     MechError::SingularConstraint { constraint, .. } => {
                         let held = held.names(self.system);
                         let fault = MeaningError::StartHeld { constraint: constraint.clone(), held };
-                        self.model.constraint_fault(&constraint, fault)
+                        self.model.document().constraint_fault(&constraint, fault)
                     }
                     other => refused(other),
                 })?;
@@ -90,7 +90,8 @@ impl<'g> Trial<'_, 'g> {
     pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
         for constraint in self.constraints {
             let value = self.value(constraint.velocity(self.system), state);
-            let Some(text) = self.model.constraint_text(constraint.name()).filter(|_| !value.is_finite())
+            let Some(text) =
+                self.model.document().constraint_text(constraint.name()).filter(|_| !value.is_finite())
             else {
                 continue;
             };
@@ -99,7 +100,7 @@ impl<'g> Trial<'_, 'g> {
                 if constraint.is_holonomic(self.system) { format!("d({whole})") } else { whole.clone() };
             let names = self.state_symbols().map(|x| x.to_string()).zip(state.iter().copied());
             let fault = MeaningError::NotFinite { text: text_of_rate, value, state: names.collect() };
-            return Err(self.model.error(&text.expression.place(text.expression.ast.span), fault));
+            return Err(self.model.document().error(&text.expression.place(text.expression.ast.span), fault));
         }
         Ok(())
     }
@@ -111,10 +112,10 @@ impl<'g> Trial<'_, 'g> {
     /// [`MeaningError::Contradictory`]
     pub(super) fn check_redundant(
         &self,
-        sorted: &ConstraintClassification<'g>,
+        classification: &ConstraintClassification<'g>,
         on: &[f64],
     ) -> Result<(), ModelError> {
-        for redundant in sorted.redundant() {
+        for redundant in classification.redundant() {
             let written = self.constraints.iter().find(|c| c.name() == redundant.constraint);
             if let Some((constraint, (_, residual))) = written.and_then(|c| Some((c, self.off(c, on)?))) {
                 let others = redundant.follows_from.clone();
@@ -123,7 +124,7 @@ impl<'g> Trial<'_, 'g> {
                     others,
                     residual,
                 };
-                return Err(self.model.constraint_fault(constraint.name(), fault));
+                return Err(self.model.document().constraint_fault(constraint.name(), fault));
             }
         }
         Ok(())
@@ -140,7 +141,7 @@ impl<'g> Trial<'_, 'g> {
             None => Ok(()),
             Some((constraint, (what, residual))) => {
                 let fault = MeaningError::OffConstraint { what, constraint: constraint.clone(), residual };
-                Err(self.model.constraint_fault(&constraint, fault))
+                Err(self.model.document().constraint_fault(&constraint, fault))
             }
         }
     }

@@ -19,7 +19,6 @@ impl Model {
     /// # Errors
     /// [`ModelError`] if it cannot be evaluated there.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
-        let refused = |error| self.constraint_error(error);
         match assembly.constraints.formulation() {
             ConstraintFormulation::Multipliers(held) => {
                 let (compiled, start) =
@@ -27,7 +26,7 @@ impl Model {
                 self.started(compiled, || held.multipliers.kept(self.kept()), assembly.t_start, start)
             }
             ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
-                let equations = assembly.equations().map_err(refused)?;
+                let equations = assembly.equations()?;
                 let system = equations.system();
                 let state = system.state();
                 let (compiled, start) = (equations.compile_for(self.options()), assembly.start_of(&state));
@@ -80,25 +79,31 @@ impl Model {
         t_start: f64,
         start: Vec<f64>,
     ) -> Result<(Motion, Vec<f64>), ModelError> {
-        let refuse = |cause: String| self.error(&self.energy_place(), MeaningError::SingularStart { cause });
+        let refuse = |cause: String| {
+            self.document().error(&self.document().energy_place(), MeaningError::SingularStart { cause })
+        };
         let mut motion = compiled.map_err(|error| refuse(error.to_string()))?.driven_by(self.signals());
         let mut rate = vec![0.0; start.len()];
         motion.rhs(t_start, &start, &mut rate).map_err(|failure| match MechError::from(failure) {
-            error @ MechError::SingularConstraint { .. } => self.constraint_error(error.into()),
+            error @ MechError::SingularConstraint { .. } => self.document().constraint_error(error.into()),
             error => refuse(error.to_string()),
         })?;
         if let Some(name) = self.kept().first().filter(|_| !self.parameter_values().tables().is_empty()) {
             let message = format!("`{name}` cannot be kept where inputs change with time");
             let help = "leave it out of `project`, or give the inputs constant values";
-            return Err(self.error(&self.kept_place(name), MeaningError::NoForm { message, help }));
+            return Err(self
+                .document()
+                .error(&self.document().kept_place(name), MeaningError::NoForm { message, help }));
         }
         if !self.kept().is_empty() {
-            let kept = kept().map_err(|error| self.derivation_error(error))?;
+            let kept = kept().map_err(|error| self.document().derivation_error(error))?;
             let forces = motion.parameters().len() - self.external.len()..;
             for (i, force) in motion.parameters_mut()[forces.clone()].iter_mut().enumerate() {
                 *force = std::f64::consts::PI / (i + 1) as f64; // in balance with nothing that is written
             }
-            motion = motion.keep(kept, t_start, &start).map_err(|error| self.derivation_error(error))?;
+            motion = motion
+                .keep(kept, t_start, &start)
+                .map_err(|error| self.document().derivation_error(error))?;
             motion.parameters_mut()[forces].fill(0.0);
         }
         Ok((motion, start))

@@ -60,7 +60,7 @@ impl FlowEvents {
         let inputs = inputs(system, &system.state());
         let compiled = |values: &[_]| {
             let program = Program::new(system.graph(), &inputs, values);
-            let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;
+            let program = assembly.placed(program.map_err(MechError::from))?;
             Ok(Evaluator::new(program, Backend::Interpreter))
         };
         let declared = &assembly.events;

@@ -40,22 +40,22 @@ impl Flow {
                 Flow::of(model, assembly, &free, compiled, None)
             }
             Variables::Momenta => {
-                let mut transform = model.legendre_transform(assembly, variables)?;
+                let mut transform = assembly.legendre_transform(variables)?;
                 let system = match assembly.constraints.formulation() {
                     ConstraintFormulation::Multipliers(_) => assembly.system.clone(),
                     ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
-                        model.system_in(assembly, variables)?
+                        assembly.system_in(variables)?
                     }
                 };
                 let start = assembly.start_of(&system.state());
                 let start = transform.to_momenta(assembly.t_start, &start);
-                let start = start.map_err(|error| model.derivation_error(error))?;
+                let start = start.map_err(|error| assembly.document.derivation_error(error))?;
                 let motion = match assembly.constraints.formulation() {
                     ConstraintFormulation::Multipliers(held) => {
                         model.compile_in_momenta(&held.multipliers, assembly, &start)?
                     }
                     ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
-                        let canonical = model.canonical_in(assembly, variables)?;
+                        let canonical = assembly.canonical_in(variables)?;
                         model.compile_canonical(&canonical, assembly.t_start, &start)?
                     }
                 };
@@ -75,13 +75,13 @@ impl Flow {
         let system = &assembly.system;
         let x = system.frame().coordinates();
         let declared = &system.quasi_velocities()[..assembly.declared];
-        let all = assembly.quasi_velocities_of(free).map_err(|error| model.constraint_error(error))?;
+        let all = assembly.quasi_velocities_of(free)?;
         let eta = system.quasi_velocities();
         let free_places = free.iter().filter_map(|free| eta.iter().position(|eta| eta == free)).collect();
         let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
         let inputs = inputs(system, &[x, free, &states].concat());
-        let program = Program::new(system.graph(), &inputs, &all)
-            .map_err(|error| model.derivation_error(MechError::from(error)))?;
+        let program = Program::new(system.graph(), &inputs, &all).map_err(MechError::from);
+        let program = assembly.placed(program)?;
         let reading = Reading {
             coordinates: x.len(),
             quasi_velocities: Evaluator::new(program, Backend::Interpreter),

@@ -7,17 +7,16 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
-use crate::document::{self, AlgebraDefinition, Bracket};
-use crate::model::model::Model;
+use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
-impl Model {
+impl Document {
     /// Puts an error of the derivation under constraints at the place in the file that is to blame.
-    pub fn constraint_error(&self, error: NonholoError) -> ModelError {
+    pub(crate) fn constraint_error(&self, error: NonholoError) -> ModelError {
         let message = error.to_string();
         let cannot = |name: &str, help| {
             self.constraint_fault(name, MeaningError::Constraint { message: message.clone(), help })
         };
-        let last = self.document().constraints.last().map_or("", |constraint| constraint.name.text.as_str());
+        let last = self.constraints.last().map_or("", |constraint| constraint.name.text.as_str());
         match error {
             NonholoError::Contradictory { constraint, .. } => {
                 cannot(&constraint, "no motion satisfies it; mend it or leave it out")
@@ -55,19 +54,19 @@ impl Model {
     }
 
     /// The text of a constraint.
-    pub(crate) fn constraint_text(&self, name: &str) -> Option<&document::Constraint> {
-        self.document().constraints.iter().find(|constraint| constraint.name.text == name)
+    pub(crate) fn constraint_text(&self, name: &str) -> Option<&Constraint> {
+        self.constraints.iter().find(|constraint| constraint.name.text == name)
     }
 
     /// A fault of a constraint, at its expression.
     pub(crate) fn constraint_fault(&self, name: &str, fault: MeaningError) -> ModelError {
         let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
         let place = expression.map(|expression| expression.place(expression.ast.span));
-        self.error(&place.unwrap_or_else(|| self.document().end()), fault)
+        self.error(&place.unwrap_or_else(|| self.end()), fault)
     }
 
     /// Puts an error of the derivation at the place in the file that is to blame.
-    pub fn derivation_error(&self, error: MechError) -> ModelError {
+    pub(crate) fn derivation_error(&self, error: MechError) -> ModelError {
         match error {
             MechError::DegenerateLagrangian { rank, size, quasi_velocities: undetermined } => {
                 self.error(&self.energy_place(), MeaningError::Degenerate { rank, size, undetermined })
@@ -95,19 +94,19 @@ impl Model {
     }
 
     pub(crate) fn error(&self, place: &Place, kind: impl Into<ErrorKind>) -> ModelError {
-        self.document().source.error(place, kind)
+        self.source.error(place, kind)
     }
 
     /// Where it is said that an integral is to be kept; its definition if it is said elsewhere.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
-        let written = self.document().simulation.project.iter().find(|written| written.value == name);
-        let integral = || self.document().integrals.iter().find(|integral| integral.name.text == name);
+        let written = self.simulation.project.iter().find(|written| written.value == name);
+        let integral = || self.integrals.iter().find(|integral| integral.name.text == name);
         let defined = || integral().map(|integral| integral.name.place.clone());
         written.map(|name| name.place.clone()).or_else(defined).unwrap_or_else(|| self.energy_place())
     }
 
     pub(crate) fn energy_place(&self) -> Place {
-        let document = self.document();
+        let document = self;
         let energy = document.lagrangian.as_ref().map(|l| &l.place);
         let place = energy.or_else(|| document.bodies.first().map(|body| &body.place));
         place.cloned().unwrap_or_else(|| document.end())
@@ -115,33 +114,31 @@ impl Model {
 
     /// The name of operator number s, from 1; 0 is time.
     fn operator_name(&self, s: usize) -> String {
-        let declared = &self.document().quasi_velocities;
+        let declared = &self.quasi_velocities;
         match (s, declared.is_empty()) {
             (0, _) => "t".to_owned(),
             (_, false) => declared.get(s - 1).map_or_else(String::new, |q| q.name.text.clone()),
-            (_, true) => self
-                .document()
-                .coordinates
-                .get(s - 1)
-                .map_or_else(String::new, |x| format!("{}'", x.name.text)),
+            (_, true) => {
+                self.coordinates.get(s - 1).map_or_else(String::new, |x| format!("{}'", x.name.text))
+            }
         }
     }
 
     fn operator_place(&self, s: usize) -> Place {
-        let quasi_velocity = self.document().quasi_velocities.get(s.max(1) - 1);
-        quasi_velocity.map_or_else(|| self.document().end(), |q| q.name.place.clone())
+        let quasi_velocity = self.quasi_velocities.get(s.max(1) - 1);
+        quasi_velocity.map_or_else(|| self.end(), |q| q.name.place.clone())
     }
 
     pub(crate) fn algebra_error(&self, error: AlgebraError) -> ModelError {
         let names = |pair: (usize, usize)| [self.operator_name(pair.0), self.operator_name(pair.1)];
         let brackets_of = |pair: (usize, usize)| -> Place {
-            let algebra = self.document().algebra.as_ref();
+            let algebra = self.algebra.as_ref();
             let brackets = match algebra.map(|a| &a.definition) {
                 None => return self.operator_place(pair.1),
                 Some(AlgebraDefinition::Catalogue(name)) => return name.place.clone(),
                 Some(AlgebraDefinition::Brackets(brackets)) => brackets,
             };
-            let section = algebra.map_or_else(|| self.document().end(), |a| a.place.clone());
+            let section = algebra.map_or_else(|| self.end(), |a| a.place.clone());
             let [r, s] = names(pair);
             let matches = |b: &&Bracket| {
                 (b.left.text == r && b.right.text == s) || (b.left.text == s && b.right.text == r)

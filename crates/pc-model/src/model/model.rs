@@ -1,12 +1,14 @@
 //! A document with the values of its parameters, and what is asked of its motion.
 
+use std::sync::Arc;
+
 use crate::assembly::parameters::Parameters;
 use crate::document::Document;
 
 /// A model whose parameters can be set and that can be turned into a mechanical system.
 #[derive(Clone, Debug)]
 pub struct Model {
-    document: Document,
+    document: Arc<Document>,
     parameters: Parameters,
     /// Start values that are not those of the document, by their places.
     starts: Vec<(usize, f64)>,
@@ -46,7 +48,7 @@ impl Model {
         let kept = document.simulation.project.iter().map(|name| name.value.clone()).collect();
         Model {
             parameters: Parameters::new(&document),
-            document,
+            document: Arc::new(document),
             starts: Vec::new(),
             projects_start: false,
             held_starts: Vec::new(),
@@ -59,6 +61,10 @@ impl Model {
     /// The document it was made from.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    pub(crate) fn shared_document(&self) -> Arc<Document> {
+        Arc::clone(&self.document)
     }
 
     /// What the model calls itself, else the name of its file.

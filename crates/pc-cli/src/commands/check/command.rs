@@ -79,8 +79,7 @@ impl<'g> Report<'g> {
     ) -> Result<Report<'g>, CliError> {
         let system = &assembly.system;
         let (frame, structure, graph) = (system.frame(), system.structure(), system.graph());
-        let operations =
-            Operations::of(equations).map_err(|error| model.derivation_error(MechError::from(error)))?;
+        let operations = assembly.placed(Operations::of(equations).map_err(MechError::from))?;
         let names = |symbols: &[Expr<'_>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
 
         let (mut motion, start) = model.compile(assembly)?;
