@@ -35,8 +35,9 @@ pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallE
     }
 }
 
-/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A `terminal` one, not
-/// 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in the order in which they were added.
+/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
+/// `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
+/// the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
     model: *mut pc_model,
@@ -59,8 +60,9 @@ pub unsafe extern "C" fn pc_model_add_event(
     unsafe { draft(model, error, "pc_model_add_event", write) }
 }
 
-/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or velocity `x'` that
-/// is called `variable` takes the value of the expression. All resets of an event take effect together, from the state before it.
+/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
+/// velocity `x'` that is called `variable` takes the value of the expression. All resets of an
+/// event take effect together, from the state before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -91,8 +93,8 @@ pub unsafe extern "C" fn pc_system_event_name(system: *const pc_system, index: u
     name(system, index, |inventory| &inventory.event_names)
 }
 
-/// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that CVODE's
-/// CVodeSetRootDirection takes.
+/// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
+/// CVODE's CVodeSetRootDirection takes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, index: usize) -> c_int {
     of_event(system, index, |event| match event.crosses() {
@@ -121,8 +123,8 @@ fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -
     inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
 }
 
-/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs where its own
-/// passes through zero. They are not finite where the model has no value for them.
+/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs
+/// where its own passes through zero. They are not finite where the model has no value for them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *mut pc_system,
@@ -144,8 +146,8 @@ pub unsafe extern "C" fn pc_system_events(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Turns the state y before an event, number `event` from 0, into the state after it. One that resets nothing
-/// leaves it as it is.
+/// Turns the state y before an event, number `event` from 0, into the state after it. One that
+/// resets nothing leaves it as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
     system: *mut pc_system,

@@ -15,11 +15,11 @@ use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, holding, pc_system};
 
-/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
-/// pc_kernel_free.
+/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
+/// Free it with pc_kernel_free.
 ///
-/// It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
-/// return there are no locks.
+/// It has room to compute in, so each thread needs its own, and two calls at the same time are not
+/// safe; in return there are no locks.
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn pc_kernel_new(
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(kernel, "kernel") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -96,12 +96,12 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
     unsafe { entry(error, set) }
 }
 
-/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no memory. `kernel` is
-/// a pc_kernel of this thread's.
+/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no
+/// memory. `kernel` is a pc_kernel of this thread's.
 ///
-/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step helps.
-/// pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes, with the kernel as
-/// `params`.
+/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step
+/// helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes,
+/// with the kernel as `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
     // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
@@ -116,7 +116,8 @@ pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, ke
     }
 }
 
-/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
+/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
+/// it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_jacobian(
     t: f64,

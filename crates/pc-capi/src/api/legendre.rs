@@ -25,8 +25,8 @@ impl Inner {
     }
 }
 
-/// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
-/// pc_system_new does.
+/// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
+/// derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_momenta(
     system: *mut pc_system,
@@ -42,8 +42,8 @@ pub unsafe extern "C" fn pc_system_to_momenta(
     unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta) }
 }
 
-/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives, as
-/// pc_system_new does.
+/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
+/// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_quasi_velocities(
     system: *mut pc_system,

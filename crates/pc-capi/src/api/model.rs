@@ -69,8 +69,8 @@ fn of_document(document: Document) -> *mut pc_model {
     boxed(Origin::Text(Box::new(Model::new(document))))
 }
 
-/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages call it;
-/// NULL for "model".
+/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages
+/// call it; NULL for "model".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_parse(
     text: *const c_char,
@@ -82,13 +82,13 @@ pub unsafe extern "C" fn pc_model_parse(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let text = unsafe { bytes(text, length, "text") }?;
         let name = if name.is_null() { c"model".as_ptr() } else { name };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { crate::ffi::pointer::text(name, "name") }?;
         let document = Document::parse(Source::from_bytes(name, text))?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -105,12 +105,12 @@ pub unsafe extern "C" fn pc_model_from_file(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let path = unsafe { text(path, "path") }?;
         let bytes =
             std::fs::read(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         let document = Document::parse(Source::from_bytes(path, &bytes))?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -127,10 +127,10 @@ pub unsafe extern "C" fn pc_model_builtin(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { text(name, "name") }?;
         let builtin = Builtin::named(name).ok_or_else(|| CallError::NoSuchModel { name: name.to_owned() })?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(builtin.document()?), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -160,10 +160,10 @@ pub unsafe extern "C" fn pc_model_clone(
     let clone = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(copy, "copy") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
         let cloned = Box::into_raw(Box::new(pc_model { contents: Exclusive::new(contents) }));
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(copy, cloned, "copy") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -215,8 +215,8 @@ pub unsafe extern "C" fn pc_model_set(
     unsafe { change(model, error, set) }
 }
 
-/// Has states projected to the value that this integral, or "energy", has at the start: after each step of a
-/// solver, and by pc_system_project. An unknown name is found by pc_system_new.
+/// Has states projected to the value that this integral, or "energy", has at the start: after each
+/// step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_keep(
     model: *mut pc_model,
@@ -233,7 +233,8 @@ pub unsafe extern "C" fn pc_model_keep(
     unsafe { change(model, error, keep) }
 }
 
-/// Whether the start is moved to where the constraints are satisfied (else a start off them is refused). Not 0 is yes.
+/// Whether the start is moved to where the constraints are satisfied (else a start off them is
+/// refused). Not 0 is yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_project_start(
     model: *mut pc_model,
@@ -248,8 +249,8 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
-/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
-/// is yes.
+/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its
+/// constraint. Not 0 is yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_observe_reactions(
     model: *mut pc_model,
@@ -264,10 +265,10 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
     unsafe { change(model, error, observe) }
 }
 
-/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
-/// wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
-/// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_observe_reactions,
-/// pc_model_add_external_force.
+/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the
+/// text that these wrote; lines and columns of errors are counted in it. What no text says is not
+/// in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
+/// pc_model_project_start, pc_model_observe_reactions, pc_model_add_external_force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,
@@ -277,13 +278,13 @@ pub unsafe extern "C" fn pc_model_text(
     let write_text = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(text, "text") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let model = unsafe { handle(model, "model") }?;
         let written = match &model.contents.take()?.origin {
             Origin::Text(model) => model.document().source.text().to_owned(),
             Origin::Calls(draft) => draft.text(),
         };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(text, give(&written), "text") }
     };
     // SAFETY: `error` is null or a place for a pointer.

@@ -6,10 +6,11 @@ use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
+/// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
+/// energy, the outputs.
 ///
-/// An observable is not finite where the model has no value for it; one with accelerations in it, also where external
-/// forces cannot be computed.
+/// An observable is not finite where the model has no value for it; one with accelerations in it,
+/// also where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *mut pc_system,
@@ -40,8 +41,8 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     }
 }
 
-/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should stay constant, which
-/// are the first of the observables.
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should
+/// stay constant, which are the first of the observables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
     system: *mut pc_system,
@@ -86,8 +87,8 @@ pub unsafe extern "C" fn pc_system_energy(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what they add to the
-/// forces Q_s is the sum of each times the derivative of its constraint by η_s.
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
+/// they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *mut pc_system,
@@ -118,7 +119,8 @@ pub unsafe extern "C" fn pc_system_reactions(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes what should be zero of each constraint that is kept by projection, as many as pc_system_constraint_count.
+/// Writes what should be zero of each constraint that is kept by projection, as many as
+/// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(
     system: *mut pc_system,

@@ -35,16 +35,18 @@ impl pc_solver {
     }
 }
 
-/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
-/// may call any function on other handles, and must return: no exceptions, no longjmp.
+/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with
+/// PC_STOPPED. It may call any function on other handles, and must return: no exceptions, no
+/// longjmp.
 pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// An integration of the system from the state y at the time t, with the parameters as they are now; from the
-/// start of the model if y is NULL, of length 0, and then t is not looked at. `options` may be NULL. States stay on the
-/// constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
-/// values at this start. The events of the model are followed: where one occurs, the state is reset as the model
-/// says, and a terminal one ends the call with PC_EVENT.
+/// An integration of the system from the state y at the time t, with the parameters as they are
+/// now; from the start of the model if y is NULL, of length 0, and then t is not looked at.
+/// `options` may be NULL. States stay on the constraints, and keep what pc_model_keep says, by
+/// projection after each step; what is kept then are the values at this start. The events of the
+/// model are followed: where one occurs, the state is reset as the model says, and a terminal one
+/// ends the call with PC_EVENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_new(
     system: *const pc_system,
@@ -73,7 +75,7 @@ pub unsafe extern "C" fn pc_solver_new(
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -112,9 +114,10 @@ pub(crate) unsafe fn integrate(
     unsafe { entry(error, body) }
 }
 
-/// Has a solver go on with the parameters and inputs of the system as they are now, from where it stands: it begins anew there,
-/// at order 1. So inputs are changed between two calls of pc_solver_advance. The system is that of the solver, or one of the
-/// same model. PC_UNSUPPORTED with events of pc_solver_add_event.
+/// Has a solver go on with the parameters and inputs of the system as they are now, from where it
+/// stands: it begins anew there, at order 1. So inputs are changed between two calls of
+/// pc_solver_advance. The system is that of the solver, or one of the same model. PC_UNSUPPORTED
+/// with events of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_take_parameters(
     solver: *mut pc_solver,
@@ -136,9 +139,10 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
     unsafe { integrate(solver, error, set) }
 }
 
-/// Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
-/// PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
-/// After a failure pc_solver_time and pc_solver_state tell what was reached.
+/// Integrates to the time t, in the direction of the first step, and writes the state there. With
+/// PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
+/// next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
+/// reached.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -158,8 +162,8 @@ pub unsafe extern "C" fn pc_solver_advance(
     unsafe { integrate(solver, error, advance) }
 }
 
-/// Takes one internal step in the direction of `towards`, or the part of it before an event, and writes its end,
-/// which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
+/// Takes one internal step in the direction of `towards`, or the part of it before an event, and
+/// writes its end, which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -172,11 +176,11 @@ pub unsafe extern "C" fn pc_solver_step(
     let step = |integration: &mut Integration, dim: usize| {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { write(t, f64::NAN, "t") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let y = unsafe { room(y, y_length, dim, "y") }?;
         let ending = integration.step(towards)?;
         y.copy_from_slice(integration.state());
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(t, integration.time(), "t") }?;
         integration.ended(ending)
     };
@@ -184,9 +188,10 @@ pub unsafe extern "C" fn pc_solver_step(
     unsafe { integrate(solver, error, step) }
 }
 
-/// Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
-/// during the call, and with `user`. PC_STOPPED if the observer stops it. At the time of an event it is given the
-/// state after it; a terminal event is the last thing it is given, at the time of that, and PC_EVENT is returned.
+/// Integrates through the times, which go one way, and calls `observer` at each with the state,
+/// which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
+/// time of an event it is given the state after it; a terminal event is the last thing it is given,
+/// at the time of that, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,

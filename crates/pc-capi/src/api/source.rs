@@ -25,10 +25,11 @@ pub enum pc_format {
     PC_JSON = 2,
 }
 
-/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets, equations, energy
-/// and reactions, or momenta and Hamiltonian, and the operations of one right-hand side. Where multipliers hold
-/// constraints, those of independent velocities are shown. `format` is a pc_format. Parameters have the values
-/// of the model. Free the text with pc_string_free.
+/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+/// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
+/// right-hand side. Where multipliers hold constraints, those of independent velocities are shown.
+/// `format` is a pc_format. Parameters have the values of the model. Free the text with
+/// pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
     system: *const pc_system,
@@ -45,9 +46,9 @@ pub unsafe extern "C" fn pc_system_print(
             2 => Page::Json,
             value => return Err(CallError::Choice { what: "pc_format", value: value.into() }),
         };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let printed = printed(&unsafe { handle(system, "system") }?.inventory, page)?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -64,14 +65,15 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
     Ok(pc_print::page(form, page, model.title(), &assembly)?)
 }
 
-/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
-/// where NAME is `name`, spelt as an identifier: Greek letters by their names, other signs as `_`, one at a time and
-/// not at the ends, `n_` before a digit at the beginning, `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass
-/// matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
-/// system, and says at its head how it is used. External forces are parameters of it, after the others, called
-/// `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
-/// capitals) to a program that integrates from the start of the model to that time. Free both texts with
-/// pc_string_free.
+/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and
+/// of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names, other
+/// signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning, `_`
+/// behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
+/// system, and says at its head how it is used. External forces are parameters of it, after the
+/// others, called `Q_` and the name of their quasi-velocity, and stay zero until they are set. If
+/// `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+/// integrates from the start of the model to that time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,
@@ -84,12 +86,12 @@ pub unsafe extern "C" fn pc_system_emit_c(
     let emit = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(header, "header").and(clear(source, "source")) }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
         let [written_header, written_source] = emitted(inventory, name, t_end)?;
-        // SAFETY: as above; neither is null, so that both texts are handed over.
+        // SAFETY: as the preamble demands; neither is null, so that both texts are handed over.
         unsafe {
             write(header, give(&written_header), "header")?;
             write(source, give(&written_source), "source")

@@ -11,8 +11,9 @@ use crate::ffi::pointer::{clear, finite, free, handle, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, count, holding, inside, name, pc_system};
 
-/// Derives and compiles the equations of a model. `options` may be NULL. This takes from milliseconds to, for a hundred
-/// bodies, seconds; everything else is fast, except where it says that it derives.
+/// Derives and compiles the equations of a model. `options` may be NULL. This takes from
+/// milliseconds to, for a hundred bodies, seconds; everything else is fast, except where it says
+/// that it derives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_new(
     model: *const pc_model,
@@ -23,22 +24,22 @@ pub unsafe extern "C" fn pc_system_new(
     let new = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(system, "system") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let options = unsafe { take(options, "options") }?;
         let variables = options.variables()?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
         let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, new) }
 }
 
-/// A copy for another thread, with the parameters as they are now. It shares the machine code there is: that of
-/// f, and that of each derivative which the original has evaluated before (the first evaluation of each compiles
-/// it).
+/// A copy for another thread, with the parameters as they are now. It shares the machine code there
+/// is: that of f, and that of each derivative which the original has evaluated before (the first
+/// evaluation of each compiles it).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_clone(
     system: *const pc_system,
@@ -48,17 +49,18 @@ pub unsafe extern "C" fn pc_system_clone(
     let clone = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(copy, "copy") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let system = unsafe { handle(system, "system") }?;
         let cloned = system.copy()?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, clone) }
 }
 
-/// Frees a system. Null is allowed. In a function that is called by a call of this system it does nothing.
+/// Frees a system. Null is allowed. In a function that is called by a call of this system it does
+/// nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -68,7 +70,8 @@ pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     }
 }
 
-/// The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of NULL.
+/// The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of
+/// NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
     count(system, Inventory::dim)
@@ -98,7 +101,8 @@ pub unsafe extern "C" fn pc_system_observable_count(system: *const pc_system) ->
     count(system, |inventory| inventory.observables.len())
 }
 
-/// The number of observables, the first ones, that should stay constant: integrals and energy. 0 of NULL.
+/// The number of observables, the first ones, that should stay constant: integrals and energy. 0 of
+/// NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_conserved_count(system: *const pc_system) -> usize {
     count(system, |inventory| inventory.conserved)
@@ -161,9 +165,9 @@ pub unsafe extern "C" fn pc_system_start(
     let start = || {
         // SAFETY: the pointers are as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&inventory.start);
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.t_start, "t") } }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -188,8 +192,9 @@ pub unsafe extern "C" fn pc_system_parameters(
     unsafe { inside(system, error, get) }
 }
 
-/// Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
-/// keep their values. Inputs come after the parameters; those with a table are read from it whatever they are set to.
+/// Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels
+/// made before keep their values. Inputs come after the parameters; those with a table are read
+/// from it whatever they are set to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameters(
     system: *mut pc_system,
@@ -211,8 +216,8 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     unsafe { holding(system, error, set) }
 }
 
-/// Sets one parameter, by its place; those that are expressions in it follow, unless they have been set themselves. Otherwise
-/// as pc_system_set_parameters.
+/// Sets one parameter, by its place; those that are expressions in it follow, unless they have been
+/// set themselves. Otherwise as pc_system_set_parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameter(
     system: *mut pc_system,
