@@ -2,14 +2,14 @@
 
 use std::error::Error;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
 use pc_verify::VerifyError;
 
 use crate::exit_code;
-use crate::motion::checkpoint_error::SavingError;
+use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::plot::error::PlotError;
 use crate::report::text::short;
 use crate::sweep::error::SweepError;
@@ -105,7 +105,7 @@ pub enum CliError {
     Verify(Box<VerifyError>),
     /// Something wrong with checkpoints.
     #[error(transparent)]
-    Saving(#[from] SavingError),
+    Checkpoints(#[from] CheckpointFileError),
     /// Something wrong with a sweep.
     #[error(transparent)]
     Sweep(#[from] SweepError),
@@ -127,6 +127,11 @@ pub enum CliError {
 }
 
 impl CliError {
+    /// That a file cannot be written.
+    pub(crate) fn cannot_write(path: &Path, source: io::Error) -> CliError {
+        CliError::Write { path: path.display().to_string(), source }
+    }
+
     /// Exit code of a wrong command line.
     pub const USAGE: u8 = exit_code::USAGE;
 
@@ -149,7 +154,7 @@ impl CliError {
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }
             | CliError::Write { .. }
-            | CliError::Saving(_)
+            | CliError::Checkpoints(_)
             | CliError::Plot(_) => CliError::USAGE,
         }
     }

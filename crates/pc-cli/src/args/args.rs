@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use pc_model::Variables;
 use pc_model::document::MOST_SAMPLES;
 
-use crate::args::checkpoint::SavingArguments;
+use crate::args::checkpoint::CheckpointArguments;
 
 /// The model and the values of its parameters.
 #[derive(Clone, Debug, Args)]
@@ -122,7 +122,7 @@ pub struct RunArguments {
     pub plot: Option<PathBuf>,
     /// Checkpoints.
     #[command(flatten)]
-    pub saving: SavingArguments,
+    pub checkpoints: CheckpointArguments,
 }
 
 /// Arguments of `pc emit`.

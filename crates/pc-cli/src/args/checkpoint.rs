@@ -7,7 +7,7 @@ use clap::Args;
 
 /// Arguments of `pc run` for checkpoints.
 #[derive(Clone, Debug, Default, Args)]
-pub struct SavingArguments {
+pub struct CheckpointArguments {
     /// Keep a checkpoint in FILE, for --resume. The integrator is begun anew at each, which changes the motion within its
     /// tolerance
     #[arg(long, value_name = "FILE")]

@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 
 use crate::args::args;
 use crate::args::args::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
-use crate::args::checkpoint::SavingArguments;
+use crate::args::checkpoint::CheckpointArguments;
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -93,7 +93,7 @@ impl SweepArguments {
             no_verify: true,
             output: None,
             plot: None,
-            saving: SavingArguments::default(),
+            checkpoints: CheckpointArguments::default(),
         }
     }
 }

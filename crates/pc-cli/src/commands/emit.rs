@@ -61,12 +61,11 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let files = assembly.placed(equations.emit(&options))?;
 
     let directory = &arguments.output;
-    let cannot = |path: &Path, source| CliError::Write { path: path.display().to_string(), source };
-    fs::create_dir_all(directory).map_err(|source| cannot(directory, source))?;
+    fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
     for file in files {
         let path = directory.join(&file.name);
         atomic::write(&path, |out| out.write_all(file.text.as_bytes()))
-            .map_err(|source| cannot(&path, source))?;
+            .map_err(|source| CliError::cannot_write(&path, source))?;
         say(format_args!("{}\n", path.display()));
     }
     Ok(())

@@ -8,10 +8,10 @@ use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, HybridMotion, Trajectory};
 
 use crate::args::args::{Outputs, RunArguments, RunForm};
-use crate::args::checkpoint::SavingArguments;
+use crate::args::checkpoint::CheckpointArguments;
 use crate::args::input;
 use crate::error::CliError;
-use crate::motion::checkpoint::Saving;
+use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;
@@ -41,7 +41,9 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     }
     let form = Plan::form(&model, arguments);
     let verify = !arguments.no_verify;
-    let run = integrate_saved(&model, form, verify, &arguments.saving, || Plan::new(&model, arguments))?;
+    let run = integrate_with_checkpoints(&model, form, verify, &arguments.checkpoints, || {
+        Plan::new(&model, arguments)
+    })?;
 
     let written = write(&run, &destination, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
@@ -66,18 +68,18 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    integrate_saved(model, form, true, &SavingArguments::default(), plan)
+    integrate_with_checkpoints(model, form, true, &CheckpointArguments::default(), plan)
 }
 
 /// As [`integrate`], with checkpoints, and without the second derivation unless `verify` says so.
 ///
 /// # Errors
 /// As there, and what is wrong with a checkpoint to go on from.
-pub fn integrate_saved(
+pub fn integrate_with_checkpoints(
     model: &Model,
     form: RunForm,
     verify: bool,
-    saving: &SavingArguments,
+    checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
     let graph = Graph::new();
@@ -87,7 +89,7 @@ pub fn integrate_saved(
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
-    let mut saving = Saving::new(saving, model, &plan, form)?;
+    let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
 
     let mut verification = verify.then(|| Verification::new(model, &assembly, form));
     if let Some(verification) = &mut verification {
@@ -101,8 +103,8 @@ pub fn integrate_saved(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let (solved, error) = match &mut saving {
-        Some(saving) => saving.solve(&flow, &plan, observer)?,
+    let (solved, error) = match &mut checkpoints {
+        Some(checkpoints) => checkpoints.solve(&flow, &plan, observer)?,
         None => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
     };
     let wall = start.elapsed();

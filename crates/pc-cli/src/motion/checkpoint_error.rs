@@ -8,7 +8,7 @@ use pc_solve::CheckpointError;
 /// Why a run cannot go on from a file, or keep checkpoints there.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum SavingError {
+pub enum CheckpointFileError {
     /// The file cannot be read.
     #[error("--resume {}: it cannot be read", path.display())]
     Read {

@@ -62,7 +62,7 @@ impl Destination {
         let Some(&(_, encoding)) = encoding else {
             return Err(CliError::UnknownExtension { option, path: path.to_owned(), expected });
         };
-        atomic::look(path).map_err(|source| write_error(path, source))?;
+        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
         Ok(Destination { encoding, path: Some(path.to_owned()) })
     }
 
@@ -93,11 +93,7 @@ impl Destination {
     fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
         match &self.path {
             None => standard_output::print(write),
-            Some(path) => atomic::write(path, write).map_err(|source| write_error(path, source)),
+            Some(path) => atomic::write(path, write).map_err(|source| CliError::cannot_write(path, source)),
         }
     }
-}
-
-fn write_error(path: &Path, source: io::Error) -> CliError {
-    CliError::Write { path: path.display().to_string(), source }
 }

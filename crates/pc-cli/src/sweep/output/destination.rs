@@ -1,6 +1,5 @@
 //! Where the table of a sweep goes.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "parquet")]
@@ -47,7 +46,7 @@ impl Destination {
                 return Err(CliError::UnknownExtension { option: "-o", path: path.to_owned(), expected });
             }
         };
-        atomic::look(path).map_err(|source| write_error(path, source))?;
+        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
         Ok(Destination { path: path.to_owned(), encoding })
     }
 
@@ -68,10 +67,6 @@ impl Destination {
             #[cfg(feature = "parquet")]
             Encoding::Parquet => parquet::write(sheet, journal, out),
         });
-        written.map_err(|source| write_error(&self.path, source))
+        written.map_err(|source| CliError::cannot_write(&self.path, source))
     }
-}
-
-fn write_error(path: &Path, source: io::Error) -> CliError {
-    CliError::Write { path: path.display().to_string(), source }
 }
