@@ -203,6 +203,7 @@ fn bodies_are_blamed_for_singular_energies() {
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
     let error = assembly.placed(assembly.system.poincare()).unwrap_err();
+    assert_eq!(assembly.equations().unwrap_err().to_string(), error.to_string(), "placed already");
     assert_eq!(
         error.to_string(),
         "m.toml:9:1: [bodies.b]: the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 0 of 1, so \

@@ -142,8 +142,8 @@ impl<'g> ConstraintTreatment<'g> {
         })
     }
 
-    /// The symbols λ of the reactions with what they are in the frame of [`constrained`](ConstraintTreatment::constrained), functions of
-    /// time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
+    /// The symbols λ of the reactions with what they are in the frame of
+    /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
     /// integrable constraints are held by multipliers.
     ///
     /// # Errors

@@ -103,8 +103,8 @@ impl<'g> Assembler<'g, '_> {
     /// velocities, b η + b_0 = x', and from the constraints; where these leave them open, those declared are zero.
     ///
     /// # Errors
-    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those that complete the
-    /// definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those
+    /// that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
