@@ -1,13 +1,13 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
-//! In goes TOML, out comes a [`Document`](document::Document). Read what comes out first: `expression`, with the places that
-//! `text_map` finds again in the file, and `document`, section by section. Then how it is read: `syntax` gives TOML,
+//! In goes TOML, out comes a [`Document`](contents::Document). Read what comes out first: `expression`, with the places that
+//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `syntax` gives TOML,
 //! `reader` typed access to it; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
 //! must be true between them, and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
-pub(crate) mod document;
+pub(crate) mod contents;
 pub(crate) mod expression;
 pub(crate) mod inputs;
 pub(crate) mod parse;
@@ -17,7 +17,7 @@ pub(crate) mod simulation;
 pub(crate) mod syntax;
 pub(crate) mod text_map;
 
-pub use document::{
+pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
     Gravity, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity, Simulation,
     State, TableFile,

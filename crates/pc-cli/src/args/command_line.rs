@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::args::args::{CheckArguments, DeriveArguments, EmitArguments, ModelsArguments, RunArguments};
+use crate::args::options::{CheckArguments, DeriveArguments, EmitArguments, ModelsArguments, RunArguments};
 use crate::args::sweep::SweepArguments;
 
 /// The command line of `pc`.

@@ -8,7 +8,7 @@ use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
 
-use crate::args::args::{ModelArguments, Setting};
+use crate::args::options::{ModelArguments, Setting};
 use crate::error::CliError;
 
 /// The model that the command line names, its parameters set.

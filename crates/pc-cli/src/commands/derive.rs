@@ -3,8 +3,8 @@
 use pc_mech::Graph;
 use pc_print::page;
 
-use crate::args::args::DeriveArguments;
 use crate::args::input;
+use crate::args::options::DeriveArguments;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};

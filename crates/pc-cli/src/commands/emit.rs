@@ -6,8 +6,8 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::energy_remark;
 
-use crate::args::args::{EmitArguments, Lang};
 use crate::args::input;
+use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
 use crate::output::atomic;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};

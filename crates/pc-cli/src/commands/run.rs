@@ -7,9 +7,9 @@ use pc_mech::Graph;
 use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, HybridMotion, Trajectory};
 
-use crate::args::args::{Outputs, RunArguments, RunForm};
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::input;
+use crate::args::options::{Outputs, RunArguments, RunForm};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;

@@ -11,8 +11,8 @@ use pc_solve::{
     Checkpoint, CheckpointError, Ending, HybridMotion, SolveError, solve_with_events_checkpointed,
 };
 
-use crate::args::args::RunForm;
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::options::RunForm;
 use crate::error::CliError;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;

@@ -4,8 +4,8 @@ use pc_model::Model;
 use pc_model::document;
 use pc_solve::{Accumulation, Method, Options};
 
-use crate::args::args;
-use crate::args::args::{RunArguments, RunForm};
+use crate::args::options;
+use crate::args::options::{RunArguments, RunForm};
 use crate::error::CliError;
 
 /// Rows of a table if nobody says how many.
@@ -57,7 +57,7 @@ impl Plan {
             return Err(CliError::EndIsStart { t: t_end });
         }
         let method = match (arguments.method, simulation.method.as_ref().map(|method| method.value)) {
-            (Some(args::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
+            (Some(options::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
             _ => Method::Adams,
         };
         Ok(Plan {

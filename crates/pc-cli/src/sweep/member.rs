@@ -10,7 +10,7 @@ use pc_solve::{Ending, Events, HybridMotion, Options, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
-use crate::args::args::RunForm;
+use crate::args::options::RunForm;
 use crate::motion::follow::follow;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;

@@ -3,7 +3,7 @@
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::document::{Body, Gravity, Inertia, Orientation};
+use crate::document::contents::{Body, Gravity, Inertia, Orientation};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
 const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";

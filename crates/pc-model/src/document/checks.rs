@@ -5,7 +5,7 @@ use std::collections::hash_map::Entry;
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
-use crate::document::document::Document;
+use crate::document::contents::Document;
 use crate::document::expression::Name;
 
 /// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.

@@ -13,7 +13,7 @@ use pc_expr::parse::nearest;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, SECTIONS};
 use crate::diagnostics::source::Source;
-use crate::document::document::Document;
+use crate::document::contents::Document;
 use crate::document::reader::{Item, Table};
 use crate::document::{bodies, checks, inputs, sections, simulation, syntax};
 

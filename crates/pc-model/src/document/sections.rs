@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::document::{
+use crate::document::contents::{
     Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
     QuasiVelocity, State,
 };

@@ -5,7 +5,7 @@ use pc_expr::Direction;
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::document::{EquationForm, Event, Method, Simulation};
+use crate::document::contents::{EquationForm, Event, Method, Simulation};
 use crate::document::expression::{Located, NamedExpression};
 
 /// The most rows of a table: each is held in memory.
@@ -161,7 +161,7 @@ fn resets(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
 mod tests {
     use super::*;
     use crate::diagnostics::source::Source;
-    use crate::document::document::Document;
+    use crate::document::contents::Document;
 
     #[test]
     fn the_largest_table_is_that_of_the_message() {

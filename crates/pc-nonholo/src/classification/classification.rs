@@ -3,7 +3,7 @@
 use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
 use crate::classification::binding::{Binding, Redundant};
-use crate::classification::involutive::{Field, involutive_closure};
+use crate::classification::involutive::{OperatorField, involutive_closure};
 use crate::error::NonholoError;
 use crate::reduction::adapted::independent;
 
@@ -163,7 +163,7 @@ fn allowed<'g>(
     independent: &[usize],
     rows: &[Vec<Expr<'g>>],
     rests: &[Expr<'g>],
-) -> Result<Vec<Field<'g>>, NonholoError> {
+) -> Result<Vec<OperatorField<'g>>, NonholoError> {
     let l = independent.len();
     let a = Matrix::from_fn(l + rows.len(), system.quasi_velocities().len(), |u, s| match u.checked_sub(l) {
         Some(alpha) => rows[alpha][s],

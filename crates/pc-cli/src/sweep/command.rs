@@ -14,8 +14,8 @@ use pc_mech::Graph;
 use pc_model::{Category, Model};
 use pc_solve::{Ending, Ensemble};
 
-use crate::args::args::RunForm;
 use crate::args::input;
+use crate::args::options::RunForm;
 use crate::args::sweep::{Law, Random, SweepArguments, Vary};
 use crate::error::CliError;
 use crate::motion::identity;
