@@ -4,7 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use pc_mech::{Backend, Expr, Folding, Graph, Motion, System, VectorField};
-use pc_model::{Builtin, Form, Model};
+use pc_model::{Builtin, ConstraintFormulation, Model};
 use pc_tests::classical::{MODELS, SplitMix64, classical, sample};
 use pc_tests::definition::assert_derived;
 use pc_tests::reference::reference;
@@ -51,7 +51,7 @@ fn equations_with_multipliers_are_the_classical_ones() {
         let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
-        if matches!(assembly.bound.form(), Form::Held(_)) {
+        if matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_)) {
             held.push(name);
             assert_classical(name, &mut model.compile(&assembly).unwrap().0);
         }
@@ -73,7 +73,7 @@ fn without_folding_they_are_the_same() {
 /// The whole system, free quasi-velocities first.
 fn whole<'g>(model: &Model, graph: &'g Graph) -> (System<'g>, usize) {
     let assembly = model.assemble(graph).unwrap_or_else(|e| panic!("{e}"));
-    match assembly.bound.constrained(&assembly.at_start()).unwrap() {
+    match assembly.constraints.constrained(&assembly.at_start()).unwrap() {
         Some(constrained) => (constrained.system().clone(), constrained.vanishing().len()),
         None => (assembly.system, 0),
     }

@@ -111,7 +111,7 @@ fn canonical_equations_are_poincares() {
 #[test]
 fn lagranges_equations_are_poincares() {
     let without = left_out(|name, assembly| {
-        let mut motion = match assembly.bound.multipliers() {
+        let mut motion = match assembly.constraints.multipliers() {
             Some(multipliers) => multipliers.in_velocities().ok()?.compile().unwrap(),
             None => assembly.system.in_velocities().ok()?.poincare().unwrap().compile().unwrap(),
         };

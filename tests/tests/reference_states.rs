@@ -127,7 +127,7 @@ fn the_canonical_equations_reach_the_references() {
 
 /// Lagrange's equations of a model, with multipliers where it has constraints.
 fn in_velocities(assembly: &Assembly<'_>) -> Result<Motion, MechError> {
-    match assembly.bound.multipliers() {
+    match assembly.constraints.multipliers() {
         Some(multipliers) => multipliers.in_velocities()?.compile(),
         None => assembly.system.in_velocities()?.poincare()?.compile(),
     }

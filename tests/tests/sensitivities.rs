@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use pc_mech::{CompileOptions, Graph, Motion};
-use pc_model::{Builtin, Document, Form, Model};
+use pc_model::{Builtin, ConstraintFormulation, Document, Model};
 use pc_solve::{
     AdjointOptions, Failure, Functional, Method, Options, Sensitivities, VectorField, adjoint_gradient,
     solve, solve_with_sensitivities,
@@ -132,7 +132,9 @@ fn derivatives_on_a_surface() {
     let model = derived_twice(Document::from_bytes("spheroid.toml", SPHEROID.as_bytes()).unwrap());
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
-    let Form::Held(held) = assembly.bound.form() else { panic!("no multipliers") };
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
+        panic!("no multipliers")
+    };
     let compiled = CompileOptions::default().parameter_jacobian(true).jvp(true);
     let mut motion = held.multipliers.compile_for(compiled).unwrap();
     assert!(motion.has_projection());

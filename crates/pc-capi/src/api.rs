@@ -1,8 +1,9 @@
 //! The functions of pc.h, a file for each group of them.
 //!
-//! Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `rates`, `mechanics`, `kernel`, `legendre`,
-//! `bracket`, `source`, `verify`. Motions: `options`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`,
-//! `checkpoint`, `statistics`, `ensemble`. The library: `version`.
+//! In go numbers and pointers, which `ffi` checks, out come those of the crates below; what is remembered between two calls
+//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `rates`, `mechanics`,
+//! `kernel`, `legendre`, `bracket`, `source`, `verify`. Motions: `options`, `solver`, `observe`, `events`, `occurrences`,
+//! `force`, `dense`, `checkpoint`, `statistics`, `ensemble`. The library: `version`.
 
 pub(crate) mod bodies;
 pub(crate) mod bracket;

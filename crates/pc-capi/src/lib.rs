@@ -44,3 +44,4 @@ pub use ffi::error::*;
 pub use ffi::status::*;
 pub use ffi::strings::*;
 pub use ffi::user_data::*;
+pub use machinery::system::pc_system;

@@ -21,6 +21,13 @@ fn the_header_is_that_of_the_sources() {
     assert!(committed == fresh, "include/pc.h is old, write it with `cargo xtask header`: {differing:?}");
 }
 
+#[test]
+fn lines_of_the_header_end_before_column_100() {
+    let header = committed();
+    let long: Vec<_> = header.lines().filter(|line| line.chars().count() > 99).collect();
+    assert!(long.is_empty(), "{long:#?}");
+}
+
 /// Names of functions that the header declares.
 fn declared() -> BTreeSet<String> {
     let header = committed();

@@ -1,7 +1,11 @@
 //! What stands on the command line, and the model it leads to.
 //!
-//! `args` has the commands and their options, `sweep` those of a sweep, `input` makes of MODEL a model and its equations.
+//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the commands,
+//! with those of a `sweep` and those for a `checkpoint`; `command_line` is all of them, and `input` makes of MODEL a model and
+//! its equations.
 
-pub mod args;
+pub mod checkpoint;
+pub mod command_line;
 pub mod input;
+pub mod options;
 pub mod sweep;

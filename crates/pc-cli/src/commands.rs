@@ -1,4 +1,8 @@
-//! The commands, a file each: `models`, `check`, `derive`, `run`, `emit`; sweeps have a room of their own.
+//! The commands, a file each; sweeps have a room of their own.
+//!
+//! In go the arguments of a command, out comes what it was asked for, or an error. `models` lists those that come with the
+//! program, `check` says whether one holds together, `derive` prints its equations, `run` integrates it, `emit` writes its
+//! equations as source.
 
 pub mod check;
 pub mod derive;

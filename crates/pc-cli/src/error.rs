@@ -2,15 +2,16 @@
 
 use std::error::Error;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_solve::SolveError;
 use pc_verify::VerifyError;
 
-use crate::plot::plot::PlotError;
+use crate::exit_code;
+use crate::motion::checkpoint_error::CheckpointFileError;
+use crate::plot::error::PlotError;
 use crate::report::text::short;
-use crate::run::checkpoint::SavingError;
 use crate::sweep::error::SweepError;
 
 /// An error of the program.
@@ -107,7 +108,7 @@ pub enum CliError {
     Verify(Box<VerifyError>),
     /// Something wrong with checkpoints.
     #[error(transparent)]
-    Saving(#[from] SavingError),
+    Checkpoints(#[from] CheckpointFileError),
     /// Something wrong with a sweep.
     #[error(transparent)]
     Sweep(#[from] SweepError),
@@ -129,8 +130,13 @@ pub enum CliError {
 }
 
 impl CliError {
+    /// That a file cannot be written.
+    pub(crate) fn cannot_write(path: &Path, source: io::Error) -> CliError {
+        CliError::Write { path: path.display().to_string(), source }
+    }
+
     /// Exit code of a wrong command line.
-    pub const USAGE: u8 = 2;
+    pub const USAGE: u8 = exit_code::USAGE;
 
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
@@ -152,7 +158,7 @@ impl CliError {
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }
             | CliError::Write { .. }
-            | CliError::Saving(_)
+            | CliError::Checkpoints(_)
             | CliError::Plot(_) => CliError::USAGE,
         }
     }

@@ -13,13 +13,14 @@
 //! output, what it says about it to standard error.
 
 pub mod error;
+mod exit_code;
 
 pub mod args;
 pub mod commands;
+pub mod motion;
 pub mod output;
 pub mod plot;
 pub mod report;
-pub mod run;
 pub mod sweep;
 
 pub use error::CliError;

@@ -4,10 +4,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use pc_cli::CliError;
-use pc_cli::args::args::{Arguments, Command};
+use pc_cli::args::command_line::{Arguments, Command};
 use pc_cli::commands::{check, derive, emit, models, run};
 use pc_cli::report::text;
-use pc_cli::sweep::sweep;
+use pc_cli::sweep;
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::command(arguments),
         Command::Derive(arguments) => derive::command(arguments),
         Command::Run(arguments) => run::command(arguments),
-        Command::Sweep(arguments) => sweep::command(arguments),
+        Command::Sweep(arguments) => sweep::command::command(arguments),
         Command::Emit(arguments) => emit::command(arguments),
         Command::Models(arguments) => models::command(arguments),
     };

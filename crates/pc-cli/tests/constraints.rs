@@ -423,7 +423,7 @@ fn a_fast_bead_moves_as_by_its_angle() {
 #[test]
 fn the_jacobian_of_held_motions_serves_bdf() {
     use pc_mech::{CompileOptions, Graph};
-    use pc_model::{Document, Form, Model, Source};
+    use pc_model::{ConstraintFormulation, Document, Model, Source};
     use pc_solve::{Method, Options, solve};
     let text = "[coordinates]\nx = 0.6\ny = -0.8\nu = 0.7\n[quasi_velocities]\n\"u'\" = 0.0\n[constraints]\n\
                 length = \"x^2 + y^2 - 1\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2 + u'^2)/2\"\n\
@@ -431,7 +431,9 @@ fn the_jacobian_of_held_motions_serves_bdf() {
     let model = Model::new(Document::parse(Source::new("m.toml", text)).expect("a model"));
     let graph = Graph::new();
     let assembly = model.assemble(&graph).expect("a system");
-    let Form::Held(held) = assembly.bound.form() else { panic!("held by a multiplier") };
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
+        panic!("held by a multiplier")
+    };
     let solved = |jacobian: bool| {
         let options = CompileOptions::default().jacobian(jacobian);
         let mut motion = held.multipliers.compile_for(options).expect("a motion");

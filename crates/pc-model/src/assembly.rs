@@ -1,10 +1,13 @@
-//! From a document to a mechanical system.
+//! From a model to a mechanical system.
 //!
-//! In goes a [`Document`](crate::document::document::Document), out comes all a model consists of. Read `assembly` first,
-//! then its parts in the order in which they are put together: `parameters` and `tables`, `frame`, `definitions`,
-//! `brackets`, `bodies`, `constraints` with `constraint_treatment`, `body_reactions`, `events`, `start`; `trial`
-//! and `definite` look whether the start makes sense.
+//! In goes a [`Model`](crate::Model), out comes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`, what
+//! its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`, `frame`,
+//! `definitions`, `start`, `bodies` and `external_force`, `brackets`, `constraints` with `constraint_treatment`,
+//! `body_reactions` and the names of a `resultant`, `event` and `events`; `trial` and `definite` look whether the start
+//! makes sense. A `function` is put together alone, when it is asked for.
 
+pub(crate) mod assemble;
+pub(crate) mod assembler;
 pub(crate) mod assembly;
 pub(crate) mod bodies;
 pub(crate) mod body_reactions;

@@ -1,23 +1,27 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
-//! In goes TOML, out comes a [`Document`](document::Document). `syntax` reads TOML, `text_map` finds places again,
-//! `reader` gives typed access; `sections`, `bodies`, `inputs` and `simulation` are the sections, `checks` what must hold
-//! between them.
+//! In goes TOML, out comes a [`Document`](contents::Document). Read what comes out first: `expression`, with the places that
+//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `syntax` gives TOML,
+//! `reader` typed access to it; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
+//! must be true between them, and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
-pub(crate) mod document;
+pub(crate) mod contents;
+pub(crate) mod expression;
 pub(crate) mod inputs;
+pub(crate) mod parse;
 pub(crate) mod reader;
 pub(crate) mod sections;
 pub(crate) mod simulation;
 pub(crate) mod syntax;
 pub(crate) mod text_map;
 
-pub use document::{
-    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, Event, Expression, Form,
-    Gravity, Heading, Inertia, Input, InputValue, Lagrangian, Located, Method, Name, NamedExpression,
-    Orientation, QuasiVelocity, State, TableFile,
+pub use contents::{
+    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
+    Gravity, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity, Simulation,
+    State, TableFile,
 };
-pub use simulation::{MOST_SAMPLES, Simulation};
+pub use expression::{Expression, Located, Name, NamedExpression};
+pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;

@@ -2,7 +2,7 @@
 //!
 //! A [`Document`] is what stands in the text, section by section. A [`Model`] is one with the values of its parameters;
 //! [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a [`System`](pc_mech::System) in quasi-velocities with
-//! its start, the constraints, and in which way they [bind](Bound) it. Any consistent units will do.
+//! its start, the constraints, and in which way they [bind](ConstraintTreatment) it. Any consistent units will do.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -18,7 +18,7 @@
 //! let model = Model::new(Document::parse(Source::new("oscillator.toml", text))?);
 //! let graph = Graph::new();
 //! let assembly = model.assemble(&graph)?;
-//! let equations = assembly.system.poincare().map_err(|error| model.derivation_error(error))?;
+//! let equations = assembly.equations()?;
 //! assert_eq!(equations.right_hand_side()[0].to_string(), "-4*x");
 //! # Ok::<(), pc_model::ModelError>(())
 //! ```
@@ -30,16 +30,22 @@ mod flow;
 mod model;
 mod names;
 
-pub use assembly::constraint_treatment::{Bound, Form, Held, Verdict};
+pub use assembly::assembly::Assembly;
+pub use assembly::constraint_treatment::{
+    ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
+};
 pub use assembly::event::Event;
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;
-pub use diagnostics::error::{Category, Diagnostic, ErrorKind, ModelError};
-pub use diagnostics::fault::Fault;
+pub use diagnostics::category::Category;
+pub use diagnostics::error::{Diagnostic, ModelError};
+pub use diagnostics::error_kind::ErrorKind;
+pub use diagnostics::meaning::MeaningError;
 pub use diagnostics::source::Source;
-pub use document::document::Document;
-pub use flow::flow::{Flow, FlowEvents};
+pub use document::Document;
+pub use flow::events::FlowEvents;
+pub use flow::flow::Flow;
 pub use flow::variables::Variables;
 pub use model::builtin::{BUILTIN, Builtin};
-pub use model::model::{Assembly, Model, UnknownIntegral, UnknownParameter};
+pub use model::model::{Model, UnknownIntegral, UnknownParameter};
 pub use model::start::UnknownStart;

@@ -207,7 +207,8 @@ fn bodies_are_blamed_for_singular_energies() {
     let model = model(&format!("{BODY}[bodies.b]\nmass = \"m\"\nposition = [1, 2, 3]\n"));
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
-    let error = model.derivation_error(assembly.system.poincare().unwrap_err());
+    let error = assembly.placed(assembly.system.poincare()).unwrap_err();
+    assert_eq!(assembly.equations().unwrap_err().to_string(), error.to_string(), "placed already");
     assert_eq!(
         error.to_string(),
         "m.toml:9:1: [bodies.b]: the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 0 of 1, so \

@@ -6,7 +6,7 @@
 mod verified;
 
 use pc_mech::{Graph, VectorField};
-use pc_model::{Category, Document, Form, Model, ModelError, Source};
+use pc_model::{Category, ConstraintFormulation, Document, Model, ModelError, Source};
 use pc_nonholo::{Kind, Redundant};
 
 use verified::derived_twice;
@@ -139,8 +139,8 @@ fn what_follows_is_dropped() {
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
         let held: Vec<String> =
-            assembly.bound.verdicts().iter().map(|verdict| verdict.constraint.clone()).collect();
-        (held, assembly.bound.redundant().to_vec())
+            assembly.constraints.classified().iter().map(|verdict| verdict.constraint.clone()).collect();
+        (held, assembly.constraints.redundant().to_vec())
     };
     let follows = |constraint: &str, from: &[&str]| Redundant {
         constraint: constraint.to_owned(),
@@ -350,7 +350,7 @@ fn a_kind_may_be_given() {
     let kind = |text: &str| {
         let model = model(text);
         let graph = Graph::new();
-        model.assemble(&graph).map(|assembly| assembly.bound.verdicts()[0].kind)
+        model.assemble(&graph).map(|assembly| assembly.constraints.classified()[0].kind)
     };
     let given = |kind: &str| {
         format!("{SLEIGH}blade = {{ expr = \"-sin(phi)*x' + cos(phi)*y'\", kind = \"{kind}\" }}\n")
@@ -380,7 +380,7 @@ fn constraints_may_be_called_as_they_please() {
         let model = model(&text);
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
-        assert!(matches!(assembly.bound.form(), Form::Vanishing(_)), "{name}");
+        assert!(matches!(assembly.constraints.formulation(), ConstraintFormulation::Vanishing(_)), "{name}");
         let (mut motion, start) = model.compile(&assembly).unwrap();
         let mut rates = vec![0.0; 5];
         motion.rhs(0.0, &start, &mut rates).unwrap();
@@ -497,22 +497,22 @@ fn what_is_called_nonlinear_is_so() {
 /// Beside quasi-velocities that are defined, it defines none; beside others, these keep their kinds.
 #[test]
 fn nonlinear_constraints_stand_beside_others() {
-    let verdicts = |text: &str| {
+    let classified = |text: &str| {
         let graph = Graph::new();
         let assembly = model(text).assemble(&graph).unwrap();
-        assembly.bound.verdicts().iter().map(|v| (v.constraint.clone(), v.kind)).collect::<Vec<_>>()
+        assembly.constraints.classified().iter().map(|v| (v.constraint.clone(), v.kind)).collect::<Vec<_>>()
     };
     let text = "[coordinates]\nx = 0\ny = 0\nz = 0\n[quasi_velocities]\nu = { is = \"x'\", start = 1 }\n\
                 v = { is = \"y'\", start = 0 }\n[constraints]\n\
                 cone = { expr = \"x'^2 + y'^2 - 1\", kind = \"nonlinear\" }\nknife = \"z' - y*x'\"\n[lagrangian]\n\
                 kinetic = \"(x'^2 + y'^2 + z'^2)/2\"\n";
-    let found = verdicts(text);
+    let found = classified(text);
     assert_eq!(found[0], ("cone".to_owned(), Kind::Nonlinear));
     assert!(found[1].0 == "knife" && matches!(found[1].1, Kind::Nonholonomic { .. }), "{found:?}");
     // On a circle of the plane, a constant speed is one of the angle: the circle is a position still.
     let circle = "circle = \"x^2 + y^2 - 1\"\nspeed = { expr = \"x'^2 + z'^2 - 1\", kind = \"nonlinear\" }";
     let text = point("x = 1\ny = 0\nz = 0\n", "[quasi_velocities]\n\"z'\" = 1\n", circle);
-    let found = verdicts(&text.replace("y'^2)", "y'^2 + z'^2)"));
+    let found = classified(&text.replace("y'^2)", "y'^2 + z'^2)"));
     assert_eq!(found.iter().map(|(_, kind)| *kind).collect::<Vec<_>>(), [Kind::Position, Kind::Nonlinear]);
 }
 

@@ -7,7 +7,7 @@
 mod verified;
 
 use pc_mech::{Graph, VectorField};
-use pc_model::{Category, Document, Form, Model, ModelError, Source};
+use pc_model::{Category, ConstraintFormulation, Document, Model, ModelError, Source};
 
 use verified::derived_twice;
 
@@ -83,7 +83,10 @@ fn a_pendulum_moves_by_its_angular_velocity() {
     let graph = Graph::new();
     let assembly = pendulum.assemble(&graph).unwrap();
     assert_eq!(assembly.declared, 1);
-    assert!(matches!(assembly.bound.form(), Form::Held(_)), "the position is held");
+    assert!(
+        matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_)),
+        "the position is held"
+    );
     let equations = assembly.equations().unwrap();
     assert_eq!(equations.system().quasi_velocities(), [graph.symbol("w")]);
 }
@@ -124,7 +127,7 @@ fn what_follows_from_other_constraints_is_dropped() {
     let graph = Graph::new();
     let assembly = model(&text).assemble(&graph).unwrap();
     let dropped: Vec<(&str, &[String])> = assembly
-        .bound
+        .constraints
         .redundant()
         .iter()
         .map(|r| (r.constraint.as_str(), r.follows_from.as_slice()))

@@ -3,7 +3,8 @@
 use pc_expr::Direction;
 use pc_expr::parse::{Ast, AstKind, Span};
 use pc_model::document::{
-    AlgebraDefinition, ConstraintKind, Expression, Form, Inertia, Method, NamedExpression, Orientation,
+    AlgebraDefinition, ConstraintKind, EquationForm, Expression, Inertia, Method, NamedExpression,
+    Orientation,
 };
 use pc_model::{Category, Document, ErrorKind, Source};
 use proptest::prelude::*;
@@ -200,7 +201,7 @@ fn every_entry() {
     assert_eq!(simulation.t_end.unwrap().value, 1000.0);
     assert_eq!(simulation.samples.unwrap().value, 16);
     assert_eq!(simulation.method.unwrap().value, Method::Bdf);
-    assert_eq!(simulation.form.unwrap().value, Form::Canonical);
+    assert_eq!(simulation.form.unwrap().value, EquationForm::Canonical);
 }
 
 /// The names in a tree, as the file has them at their spans.

@@ -29,7 +29,7 @@ impl Watched {
         let graph = Graph::new();
         let assembly = model.assemble(&graph).unwrap();
         let (motion, start) = model.compile(&assembly).unwrap();
-        Watched { motion, start, undetermined: assembly.bound.undetermined().to_vec() }
+        Watched { motion, start, undetermined: assembly.constraints.undetermined().to_vec() }
     }
 
     /// The observables of these names at a state.

@@ -8,8 +8,8 @@
 //! # Which constraints are
 //!
 //! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on velocities some can
-//! be integrated, and some follow from others or contradict them. [`Sorted`] says which: with X'_1..X'_l a basis of the
-//! velocities allowed and X'_0 one of them,
+//! be integrated, and some follow from others or contradict them. A [`ConstraintClassification`] says which: with X'_1..X'_l
+//! a basis of the velocities allowed and X'_0 one of them,
 //!
 //! \[X'_r, X'_s\] = c'_rs^m X'_m + c'_rs^α X'_α, r, s = 0..l,
 //!
@@ -17,7 +17,7 @@
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
-//! use pc_nonholo::{Kind, Sorted};
+//! use pc_nonholo::{ConstraintClassification, Kind};
 //!
 //! let graph = Graph::new();
 //! let particle = System::builder(&graph)
@@ -29,13 +29,13 @@
 //!
 //! // ż = y ẋ binds no positions; ż = y ẋ + x ẏ is z = x y + const.
 //! let knife = Constraint::new("knife", vz - y * vx);
-//! let sorted = Sorted::new(&particle, &[knife], &at)?;
-//! assert!(matches!(sorted.kinds(), [Kind::Nonholonomic { .. }]));
+//! let classification = ConstraintClassification::new(&particle, &[knife], &at)?;
+//! assert!(matches!(classification.kinds(), [Kind::Nonholonomic { .. }]));
 //! let saddle = Constraint::new("saddle", vz - y * vx - x * vy);
 //! let again = Constraint::new("again", 2.0 * vz - 2.0 * y * vx - 2.0 * x * vy);
-//! let sorted = Sorted::new(&particle, &[saddle, again], &at)?;
-//! assert_eq!(sorted.kinds(), [Kind::Integrable]);
-//! assert_eq!(sorted.redundant()[0].follows_from, ["saddle"]);
+//! let classification = ConstraintClassification::new(&particle, &[saddle, again], &at)?;
+//! assert_eq!(classification.kinds(), [Kind::Integrable]);
+//! assert_eq!(classification.redundant()[0].follows_from, ["saddle"]);
 //! # Ok::<(), pc_nonholo::NonholoError>(())
 //! ```
 //!
@@ -177,7 +177,7 @@ mod n_trailer;
 mod reduction;
 
 pub use classification::binding::{Binding, Redundant};
-pub use classification::classification::{Kind, Sorted};
+pub use classification::classification::{ConstraintClassification, Kind};
 pub use error::NonholoError;
 pub use n_trailer::{NTrailer, Wagon};
 pub use reduction::adapted::Adapted;

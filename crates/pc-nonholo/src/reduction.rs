@@ -1,5 +1,6 @@
 //! Equations of the velocities that constraints leave.
 //!
+//! In goes a system with constraints, out come its equations in independent velocities, and the reactions.
 //! `adapted` makes constraints vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
 //! `voronets` solves them for velocities (35); `almost_poisson`, `chaplygin` and `invariant_measure` say what structure
 //! is left.

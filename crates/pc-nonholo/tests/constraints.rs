@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_mech::{Constraint, Expr, Graph, System};
-use pc_nonholo::{Adapted, Binding, Kind, Redundant, Sorted};
+use pc_nonholo::{Adapted, Binding, ConstraintClassification, Kind, Redundant};
 
 /// Chaplygin's sleigh in the velocities of its coordinates.
 fn sleigh(graph: &Graph) -> System<'_> {
@@ -50,8 +50,12 @@ fn the_frame_of_the_blade_is_found() {
     assert!((rates[1] + m * a * speed * w / (j + m * a.square())).is_zero(), "{}", rates[1]);
 }
 
-fn sort<'g>(system: &System<'g>, constraints: &[Constraint<'g>], at: &[(Expr<'g>, f64)]) -> Sorted<'g> {
-    Sorted::new(system, constraints, at).unwrap()
+fn sort<'g>(
+    system: &System<'g>,
+    constraints: &[Constraint<'g>],
+    at: &[(Expr<'g>, f64)],
+) -> ConstraintClassification<'g> {
+    ConstraintClassification::new(system, constraints, at).unwrap()
 }
 
 #[test]
@@ -84,10 +88,10 @@ fn constraints_are_sorted_by_frobenius_test() {
     assert_eq!(sorted.kinds().len(), 2);
 
     let other = Constraint::new("other", 2.0 * vz - 2.0 * y * vx - 1.0);
-    let error = Sorted::new(&system, &[sphere, knife, other], &at).unwrap_err();
+    let error = ConstraintClassification::new(&system, &[sphere, knife, other], &at).unwrap_err();
     assert_eq!(error.to_string(), "the constraint `other` contradicts `knife`");
     let impossible = Constraint::new("impossible", graph.symbol("t").sin());
-    let error = Sorted::new(&system, &[impossible], &at).unwrap_err();
+    let error = ConstraintClassification::new(&system, &[impossible], &at).unwrap_err();
     assert_eq!(error.to_string(), "the constraint `impossible` contradicts itself: no velocity satisfies it");
     assert_eq!(sort(&system, &[Constraint::new("empty", vx - vx)], &at).redundant().len(), 1);
 }
@@ -195,7 +199,8 @@ fn positions_come_first() {
         sorted.redundant().iter().map(|r| (r.constraint.as_str(), r.follows_from.as_slice())).collect();
     let position = ["position".to_owned()];
     assert_eq!(dropped, [("again", &position[..]), ("velocity", &position[..])]);
-    let error = Sorted::new(&system, &[Constraint::new("speed", vx.square() - y)], &at).unwrap_err();
+    let error = ConstraintClassification::new(&system, &[Constraint::new("speed", vx.square() - y)], &at)
+        .unwrap_err();
     assert_eq!(error.to_string(), "the constraint `speed` is not affine in the quasi-velocities");
 }
 

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_mech::{Constraint, Expr, Graph, MechError, System};
-use pc_nonholo::{Adapted, Kind, NonholoError, Sorted, Voronets};
+use pc_nonholo::{Adapted, ConstraintClassification, Kind, NonholoError, Voronets};
 
 fn particle(graph: &Graph) -> System<'_> {
     System::builder(graph)
@@ -25,14 +25,16 @@ fn the_affine_ones_keep_their_kinds() {
     let [y, vx, vy, vz] = graph.symbols(["y", "x'", "y'", "z'"]);
     let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 1.0);
     let knife = Constraint::new("knife", vz - y * vx);
-    let sorted = Sorted::new(&particle(&graph), &[speed.clone(), knife], &at(&graph)).unwrap();
+    let sorted =
+        ConstraintClassification::new(&particle(&graph), &[speed.clone(), knife], &at(&graph)).unwrap();
     assert!(matches!(sorted.kinds(), [Kind::Nonlinear, Kind::Nonholonomic { .. }]), "{:?}", sorted.kinds());
     let plane = Constraint::new("plane", vy);
-    let sorted = Sorted::new(&particle(&graph), &[plane, speed.clone()], &at(&graph)).unwrap();
+    let sorted =
+        ConstraintClassification::new(&particle(&graph), &[plane, speed.clone()], &at(&graph)).unwrap();
     assert_eq!(sorted.kinds(), [Kind::Integrable, Kind::Nonlinear]);
     assert!(!sorted.is_holonomic());
     let again = Constraint::nonlinear("again", 2.0 * vx.square() + 2.0 * vy.square() - 2.0);
-    let error = Sorted::new(&particle(&graph), &[speed, again], &at(&graph)).unwrap_err();
+    let error = ConstraintClassification::new(&particle(&graph), &[speed, again], &at(&graph)).unwrap_err();
     let expected = MechError::DependentConstraint { constraint: "again".to_owned() };
     assert_eq!(error, NonholoError::Mech(expected));
 }

@@ -1,10 +1,10 @@
 //! Equations of motion in one of their forms, with what belongs to them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
-use pc_model::{Assembly, Form as Kept};
+use pc_model::{Assembly, ConstraintFormulation, ModelError};
 use pc_nonholo::{Kind, NonholoError, Voronets};
 
-use crate::Form;
+use crate::form::Form;
 
 /// Equations of motion with what belongs to them.
 #[derive(Clone, Debug)]
@@ -27,14 +27,18 @@ impl<'g> Derived<'g> {
     /// The equations in a form, with its name.
     ///
     /// # Errors
-    /// [`NonholoError`] if there are none.
-    pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
-        let (bound, system) = (&assembly.bound, &assembly.system);
+    /// [`ModelError`] if there are none.
+    pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), ModelError> {
+        assembly.placed(Derived::of(form, assembly))
+    }
+
+    fn of(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
+        let (bound, system) = (&assembly.constraints, &assembly.system);
         let multipliers = bound.multipliers();
-        let kinds = bound.verdicts().iter().map(|verdict| verdict.kind);
+        let kinds = bound.classified().iter().map(|verdict| verdict.kind);
         let constraints = multipliers.map(Multipliers::constraints).unwrap_or_default();
         let plain = Derived {
-            equations: assembly.equations()?,
+            equations: assembly.constraints.equations(system, &assembly.at_start())?,
             vanishing: Vec::new(),
             constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
             definitions: Vec::new(),
@@ -111,7 +115,7 @@ impl<'g> Derived<'g> {
 
 /// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
 pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
-    let Kept::Held(held) = assembly.bound.form() else { return None };
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();
     let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
     (!same).then_some(ENERGY_REMARK)

@@ -6,8 +6,7 @@ use serde_json::{Map, Value, json};
 use crate::constraints::constraint_objects;
 use crate::derived::Derived;
 use crate::operations::Operations;
-use crate::operator_names;
-use crate::text::rates_of_states;
+use crate::sides::{operator_names, rates_of_states};
 
 /// The equations for programs.
 pub(crate) fn poincare(title: &str, derived: &Derived<'_>, operations: &Operations) -> Value {

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use pc_mech::{Canonical, Expr, Style, System};
 
 use crate::derived::Derived;
-use crate::momenta;
-use crate::text::{rates_of_states, state_rates};
+use crate::sides::{momenta, rates_of_states, state_rates};
 
 /// One display for each part of Poincaré's equations, with a comment above it.
 pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {

@@ -4,6 +4,10 @@
 //! [derived](Derived) in each [`Form`], the [cost](Operations) of a right-hand side, and the lines of
 //! [kinematics](kinematics()), [brackets](brackets()) and [equations](balance()).
 //!
+//! In goes an [`Assembly`](pc_model::Assembly), out comes text. Read `form` and `derived` first, the equations with what belongs
+//! to them; then `operations`, what they cost, and `constraints`, `lines` and `sides`, which every page is made of; then
+//! `text`, `latex` and `json`, the three ways to print, and `page`, which chooses.
+//!
 //! ```
 //! use pc_mech::Graph;
 //! use pc_model::Builtin;
@@ -19,79 +23,19 @@
 
 mod constraints;
 mod derived;
+mod form;
 mod json;
 mod latex;
 mod lines;
 mod operations;
+mod page;
+mod sides;
 mod text;
-
-use pc_mech::{Canonical, Expr, MechError, Style};
-use pc_model::Assembly;
-use pc_nonholo::NonholoError;
 
 pub use constraints::kind_in_words;
 pub use derived::{Derived, energy_remark};
+pub use form::Form;
 pub use lines::{columns, combination};
 pub use operations::{Operations, counted};
+pub use page::{Page, page};
 pub use text::{balance, brackets, kinematics, recognised};
-
-/// Form of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-    /// Equations for the velocities.
-    Lagrange,
-    /// Equations for independent velocities.
-    Voronets,
-}
-
-/// How equations are printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Page {
-    /// For people.
-    Text,
-    /// For a paper.
-    Latex,
-    /// For programs.
-    Json,
-}
-
-/// The equations of an assembled model, called `title`, in one of their forms.
-///
-/// # Errors
-/// [`NonholoError`] if they cannot be derived.
-pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, NonholoError> {
-    if form == Form::Canonical {
-        let (_, derived) = Derived::new(form, assembly)?;
-        let equations = assembly.free_system()?.canonical()?;
-        let operations = Operations::of_canonical(&equations).map_err(MechError::from)?;
-        let heading = format!("{title}: canonical equations");
-        return Ok(match page {
-            Page::Text => text::underlined(&heading) + &text::canonical(&derived, &equations, &operations),
-            Page::Latex => latex::canonical(&heading, &derived, &equations),
-            Page::Json => format!("{:#}\n", json::canonical(title, &derived, &equations, &operations)),
-        });
-    }
-    let (name, derived) = Derived::new(form, assembly)?;
-    let heading = format!("{title}: {name}");
-    let operations = Operations::of(&derived.equations).map_err(MechError::from)?;
-    Ok(match page {
-        Page::Text => text::underlined(&heading) + &text::poincare(&derived, &operations),
-        Page::Latex => latex::poincare(&heading, &derived),
-        Page::Json => format!("{:#}\n", json::poincare(title, &derived, &operations)),
-    })
-}
-
-/// Names of X_0..X_k: that of time, then of the quasi-velocities.
-fn operator_names(quasi_velocities: &[Expr<'_>], time: &str) -> Vec<String> {
-    std::iter::once(time.to_owned()).chain(quasi_velocities.iter().map(Expr::to_string)).collect()
-}
-
-/// y_s = ∂L/∂η_s, the two sides of each.
-fn momenta(equations: &Canonical<'_>, style: Style) -> Vec<(String, String)> {
-    let pairs = equations.momenta().iter().zip(equations.momenta_of_velocities());
-    pairs.map(|(y, value)| (y.display(style), value.display(style))).collect()
-}

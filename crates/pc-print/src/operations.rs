@@ -1,9 +1,10 @@
 //! What one evaluation of a right-hand side costs.
 
-use crate::text::rates_of_states;
 use pc_expr::{Cost, ExprError, Inputs, Program};
 use pc_mech::{Canonical, Equations, Expr, System};
 use serde_json::{Value, json};
+
+use crate::sides::rates_of_states;
 
 /// The operations of one evaluation of the right-hand side ẋ, η̇.
 #[derive(Clone, Debug, PartialEq, Eq)]

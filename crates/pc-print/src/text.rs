@@ -7,7 +7,7 @@ use crate::constraints::constraints;
 use crate::derived::Derived;
 use crate::lines::{columns, combination};
 use crate::operations::Operations;
-use crate::{momenta, operator_names};
+use crate::sides::{momenta, operator_names, rates_of_states, state_rates};
 
 /// The equations as a book prints them: constraints, kinematics, brackets, mass matrix, M η̇ = r, energy, reactions,
 /// operations.
@@ -77,21 +77,10 @@ pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
     aligned(lines.iter().map(|(rate, velocity)| (rate, velocity)))
 }
 
-/// ż of the first-order states.
-pub(crate) fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
-    system.states().iter().map(|&(_, rate)| rate).collect()
-}
-
 /// ż = `rates`, a line each.
 pub(crate) fn states(system: &System<'_>, rates: &[Expr<'_>]) -> Vec<String> {
     let lines: Vec<(String, String)> = state_rates(system, rates, Style::Book);
     aligned(lines.iter().map(|(left, right)| (left, right)))
-}
-
-/// The two sides of ż = `rates`.
-pub(crate) fn state_rates(system: &System<'_>, rates: &[Expr<'_>], style: Style) -> Vec<(String, String)> {
-    let left = |z: &Expr<'_>| system.graph().symbol(&format!("{z}'")).display(style);
-    system.states().iter().zip(rates).map(|((z, _), rate)| (left(z), rate.display(style))).collect()
 }
 
 /// M η̇ = r, a line an equation.

@@ -117,7 +117,7 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     }
     let plain_graph = Graph::new();
     let plain = model.assemble(&plain_graph)?;
-    match First::emitted(model, &plain, &second, &mut agreement) {
+    match First::emitted(&plain, &second, &mut agreement) {
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }
@@ -288,7 +288,7 @@ impl Second {
             // is looked at here, and that the motion follows them.
             let dropped = |a: &usize| {
                 let name = &derivation.text.names.constraints[*a];
-                assembly.bound.redundant().iter().any(|redundant| redundant.constraint == *name)
+                assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
             };
             let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
             let mut kept = derivation.independent(&start, &last).unwrap_or_default();
@@ -400,7 +400,7 @@ impl Second {
 
     /// Why a printed form is not derived only to be compared.
     fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
-        if form == Form::Voronets && assembly.bound.multipliers().is_none() {
+        if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
             return None; // the same as Lagrange's, and not derived
         }
         if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
-use pc_model::{Assembly, Flow, Model};
+use pc_model::{Assembly, Flow};
 
 use crate::compare::{Agreement, Here, Second};
 use crate::derivation::Derivation;
@@ -114,14 +114,11 @@ impl<'g> First<'g> {
 
     /// What is written as source.
     pub(crate) fn emitted(
-        model: &Model,
         assembly: &Assembly<'g>,
         second: &Second,
         agreement: &mut Agreement,
     ) -> Result<First<'g>, String> {
-        let equations = assembly
-            .equations()
-            .map_err(|error| model.constraint_error(error).diagnostic().message.clone())?;
+        let equations = assembly.equations().map_err(|error| error.diagnostic().message.clone())?;
         let system = equations.system();
         let motion = equations.compile_for(Backend::Interpreter).map_err(|error| error.to_string())?;
         let column = |eta: &Expr<'_>| {
@@ -140,7 +137,8 @@ impl<'g> First<'g> {
         } else {
             agreement.leave_out("the rate of energy", "that of an input is not known");
         }
-        let system = assembly.free_system().map_err(|error| error.to_string())?;
+        let system = assembly.constraints.free_system(&assembly.system, &assembly.at_start());
+        let system = system.map_err(|error| error.to_string())?;
         if !system.quasi_velocities().iter().map(column).eq(free.iter().map(|&f| Ok(f))) {
             return Err("its quasi-velocities are not those of the free system".to_owned());
         }

@@ -5,7 +5,6 @@ use nalgebra::DMatrix;
 use pc_expr::ExprError;
 use pc_mech::{Canonical, Expr, Graph};
 use pc_model::Assembly;
-use pc_nonholo::NonholoError;
 use pc_print::{Derived, Form};
 
 use crate::compare::{Here, Second};
@@ -103,21 +102,16 @@ pub(crate) enum Input {
 impl<'g> Printed<'g> {
     /// What is printed in a form; none where there is no such form of the equations.
     pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
-        let printed = match form {
+        match form {
             // The same as Lagrange's.
-            Form::Voronets if assembly.bound.multipliers().is_none() => return None,
+            Form::Voronets if assembly.constraints.multipliers().is_none() => None,
             Form::Canonical => Printed::canonical(assembly, page),
             _ => Printed::in_velocities(form, assembly, page),
-        };
-        printed.ok()
+        }
     }
 
-    fn in_velocities(
-        form: Form,
-        assembly: &Assembly<'g>,
-        page: &'g Graph,
-    ) -> Result<Printed<'g>, NonholoError> {
-        let (_, derived) = Derived::new(form, assembly)?;
+    fn in_velocities(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+        let (_, derived) = Derived::new(form, assembly).ok()?;
         let (equations, system) = (&derived.equations, derived.equations.system());
         let coordinates = system.frame().coordinates().iter();
         let rate = |(x, &value): (&Expr<'g>, &Expr<'g>)| (Side::Rate(x.to_string()), value);
@@ -126,7 +120,7 @@ impl<'g> Printed<'g> {
         direct.push((Side::Energy, equations.energy()));
         let reactions = derived.reactions.iter();
         direct.extend(reactions.map(|(name, value)| (Side::Reaction(name.to_string()), *value)));
-        Ok(Printed {
+        Some(Printed {
             form,
             graph: system.graph(),
             page,
@@ -140,8 +134,8 @@ impl<'g> Printed<'g> {
         })
     }
 
-    fn canonical(assembly: &Assembly<'g>, page: &'g Graph) -> Result<Printed<'g>, NonholoError> {
-        let equations: Canonical<'g> = assembly.free_system()?.canonical()?;
+    fn canonical(assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+        let equations: Canonical<'g> = assembly.free_system().ok()?.canonical().ok()?;
         let system = equations.system();
         let quasi_velocities: Vec<String> = system.quasi_velocities().iter().map(Expr::to_string).collect();
         let coordinates = system.frame().coordinates().iter();
@@ -153,7 +147,7 @@ impl<'g> Printed<'g> {
         direct.extend((0..).zip(equations.momenta_of_velocities()).map(|(s, &y)| (Side::Momentum(s), y)));
         let solved = quasi_velocities.iter().zip(equations.quasi_velocities());
         direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
-        Ok(Printed {
+        Some(Printed {
             form: Form::Canonical,
             graph: system.graph(),
             page,

@@ -185,8 +185,7 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
         follow(&mut flow, &model, &assembly)
     });
     let projected = (forms.all && keeps_energy).then(|| projected(model.clone()));
-    let refused = |error| Refusal::new("independent velocities", &model.constraint_error(error));
-    let equations = assembly.equations().map_err(refused);
+    let equations = assembly.equations().map_err(|error| Refusal::new("independent velocities", &error));
     let conserved = match (&equations, forms.all) {
         (Ok(equations), true) => Ok(conserved(equations)),
         (Err(refusal), true) => Err(refusal.clone()),

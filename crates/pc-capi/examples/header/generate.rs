@@ -16,7 +16,7 @@ pub(crate) fn header() -> String {
         sys_includes: ["stddef.h", "stdint.h"].map(str::to_owned).to_vec(),
         documentation_style: DocumentationStyle::Doxy,
         usize_is_size_t: true,
-        line_length: 110,
+        line_length: 99,
         line_endings: cbindgen::LineEndingStyle::LF,
         ..Config::default()
     };
@@ -59,6 +59,7 @@ const FILES: [&str; 28] = [
     "api/bodies.rs",
     "api/settings.rs",
     "api/options.rs",
+    "machinery/system.rs",
     "api/system.rs",
     "api/force.rs",
     "api/rates.rs",

@@ -4,14 +4,15 @@ use std::ffi::c_char;
 
 use crate::api::builder::draft;
 use crate::api::model::pc_model;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
 
-/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its mass centre or
-/// of a point of it that is at rest, as expressions of coordinates. Energy and forces follow from bodies; no
-/// Lagrangian is needed beside them.
+/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its
+/// mass centre or of a point of it that is at rest, as expressions of coordinates. Energy and
+/// forces follow from bodies; no Lagrangian is needed beside them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_body(
     model: *mut pc_model,
@@ -25,7 +26,7 @@ pub unsafe extern "C" fn pc_model_add_body(
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
         let (name, mass) = unsafe { (text(name, "name")?, text(mass, "mass")?) };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let position = unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] };
         draft.add(Section::Bodies, &[name, "mass"], quoted(mass));
         draft.add(Section::Bodies, &[name, "position"], list(&position));
@@ -65,7 +66,8 @@ pub unsafe extern "C" fn pc_model_set_body_torque(
     unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
 }
 
-/// Sets the angular velocity of a rigid body, in axes of the body. Excludes pc_model_set_body_rotation.
+/// Sets the angular velocity of a rigid body, in axes of the body. Excludes
+/// pc_model_set_body_rotation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_angular_velocity(
     model: *mut pc_model,
@@ -80,8 +82,8 @@ pub unsafe extern "C" fn pc_model_set_body_angular_velocity(
     unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
 }
 
-/// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx, Iyy, Izz, or 6,
-/// which go on with Ixy, Iyz, Ixz.
+/// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx,
+/// Iyy, Izz, or 6, which go on with Ixy, Iyz, Ixz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_inertia(
     model: *mut pc_model,
@@ -97,8 +99,8 @@ pub unsafe extern "C" fn pc_model_set_body_inertia(
     unsafe { draft(model, error, "pc_model_set_body_inertia", write) }
 }
 
-/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of space, row by
-/// row.
+/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of
+/// space, row by row.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_rotation(
     model: *mut pc_model,
@@ -119,8 +121,8 @@ fn part(
     draft: &mut Draft,
     body: *const c_char,
     key: &str,
-    value: impl FnOnce() -> Result<String, Fault>,
-) -> Result<(), Fault> {
+    value: impl FnOnce() -> Result<String, CallError>,
+) -> Result<(), CallError> {
     // SAFETY: null or text, as the preamble demands of the callers.
     let body = unsafe { text(body, "body") }?;
     draft.put(Section::Bodies, &[body, key], value()?);
@@ -128,7 +130,7 @@ fn part(
 }
 
 /// Three expressions as a list.
-fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, Fault> {
+fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, CallError> {
     // SAFETY: null or text, as the preamble demands of the callers.
     Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
 }

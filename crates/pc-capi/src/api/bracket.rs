@@ -5,21 +5,22 @@ use std::ffi::c_char;
 use pc_expr::Evaluator;
 use pc_mech::{Expr, Graph};
 
-use crate::api::mechanics::{compile, evaluate};
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
+use crate::machinery::mechanics::{compile, evaluate};
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
 ///
-/// so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no forces. The functions are
-/// expressions of the model, of coordinates and velocities; the momenta y_s = ∂L/∂η_s are put in. Under
-/// nonholonomic constraints it is the almost-Poisson bracket of the independent momenta. Each call derives, as
-/// pc_system_new does.
+/// so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no forces.
+/// The functions are expressions of the model, of coordinates and velocities; the momenta y_s =
+/// ∂L/∂η_s are put in. Under nonholonomic constraints it is the almost-Poisson bracket of the
+/// independent momenta. Each call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_bracket(
     system: *mut pc_system,
@@ -46,30 +47,29 @@ pub unsafe extern "C" fn pc_system_bracket(
 }
 
 /// (f, g) as a function of t and (x, η), η those of the state.
-fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, Fault> {
+fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
-    if assembly.bound.nonlinear().is_some() {
+    if assembly.constraints.nonlinear().is_some() {
         let why = "a constraint is not affine in the velocities";
-        return Err(Fault::Unsupported { what: "a bracket", why });
+        return Err(CallError::Unsupported { what: "a bracket", why });
     }
-    let refused = |error| model.constraint_error(error);
-    let canonical = model.canonical_in(&assembly, ::pc_model::Variables::Momenta)?;
-    canonical.closed_quasi_velocities().map_err(|error| model.derivation_error(error))?;
-    let bracket = match assembly.bound.constrained(&assembly.at_start()).map_err(refused)? {
-        Some(constrained) => constrained.almost_poisson_bracket().map_err(refused)?,
+    let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
+    assembly.placed(canonical.closed_quasi_velocities())?;
+    let bracket = match assembly.placed(assembly.constraints.constrained(&assembly.at_start()))? {
+        Some(constrained) => assembly.placed(constrained.almost_poisson_bracket())?,
         None => canonical.system().bracket(),
     };
     let all = assembly.system.quasi_velocities();
-    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities()).map_err(refused)?;
+    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities())?;
     let known: Vec<(Expr<'_>, Expr<'_>)> = all.iter().copied().zip(of_free).collect();
-    let in_momenta = |text: &str| -> Result<Expr<'_>, Fault> {
+    let in_momenta = |text: &str| -> Result<Expr<'_>, CallError> {
         let function = model.function(&assembly, text)?;
         Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
     };
-    let value = bracket.of(in_momenta(f)?, in_momenta(g)?).map_err(|error| model.derivation_error(error))?;
+    let value = assembly.placed(bracket.of(in_momenta(f)?, in_momenta(g)?))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = model.equations_in(&assembly)?;
-    compile(&equations, &[value], &[]).map_err(|error| model.derivation_error(error).into())
+    let equations = assembly.equations_in()?;
+    Ok(assembly.placed(compile(&equations, &[value], &[]))?)
 }

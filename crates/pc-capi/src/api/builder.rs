@@ -6,15 +6,17 @@ use pc_mech::Graph;
 
 use crate::api::model::{Contents, Origin, boxed, change, pc_model};
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, finite, numbers, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
 
-/// A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
-/// coordinates, quasi-velocities, parameters and so on is that of their calls. Expressions are those of the text
-/// model, where `x'` is the velocity of the coordinate x, and `t` the time. What is said is understood as a
-/// whole by pc_model_check and pc_system_new, whose errors name the entry and show its expression.
+/// A model without anything, to be built by the calls below, in any order between sorts of entries;
+/// the order of coordinates, quasi-velocities, parameters and so on is that of their calls.
+/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x, and `t`
+/// the time. What is said is understood as a whole by pc_model_check and pc_system_new, whose
+/// errors name the entry and show its expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_new(
     name: *const c_char,
@@ -24,17 +26,18 @@ pub unsafe extern "C" fn pc_model_new(
     let new = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, boxed(Origin::Calls(Draft::new(name))), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, new) }
 }
 
-/// Reads what has been said as a whole: PC_OK if all names are known and all expressions well formed, and the frame and
-/// the start are in order. Whether equations can be derived is found by pc_system_new.
+/// Reads what has been said as a whole: PC_OK if all names are known and all expressions well
+/// formed, and the frame and the start are in order. Whether equations can be derived is found by
+/// pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
     let check = |contents: &mut Contents| {
@@ -53,11 +56,11 @@ pub(crate) unsafe fn draft(
     model: *mut pc_model,
     error: *mut *mut pc_error,
     what: &'static str,
-    write: impl FnOnce(&mut Draft) -> Result<(), Fault>,
+    write: impl FnOnce(&mut Draft) -> Result<(), CallError>,
 ) -> pc_status {
     let change_draft = |contents: &mut Contents| match &mut contents.origin {
         Origin::Calls(draft) => write(draft),
-        Origin::Text(_) => Err(Fault::NotADraft { what }),
+        Origin::Text(_) => Err(CallError::NotADraft { what }),
     };
     // SAFETY: as promised.
     unsafe { change(model, error, change_draft) }
@@ -81,7 +84,8 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
 }
 
-/// Adds a parameter that is an expression in those before it, which it follows until it is set itself.
+/// Adds a parameter that is an expression in those before it, which it follows until it is set
+/// itself.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter_expression(
     model: *mut pc_model,
@@ -99,8 +103,9 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
     unsafe { draft(model, error, "pc_model_add_parameter_expression", write) }
 }
 
-/// Adds an input: a value that is constant until it is set, as parameters are, after all of which it comes. Forces, rates of
-/// states, events and what is watched may contain it, but nothing that velocities or momenta depend on.
+/// Adds an input: a value that is constant until it is set, as parameters are, after all of which
+/// it comes. Forces, rates of states, events and what is watched may contain it, but nothing that
+/// velocities or momenta depend on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input(
     model: *mut pc_model,
@@ -118,8 +123,9 @@ pub unsafe extern "C" fn pc_model_add_input(
     unsafe { draft(model, error, "pc_model_add_input", write) }
 }
 
-/// Adds an input that is a function of time: `length` values at rising times, between them "linear", "cubic" or "hold"; NULL
-/// for "linear". No step of a solver crosses one of the times. Its values are not set otherwise.
+/// Adds an input that is a function of time: `length` values at rising times, between them
+/// "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
+/// Its values are not set otherwise.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_table(
     model: *mut pc_model,
@@ -153,9 +159,9 @@ pub unsafe extern "C" fn pc_model_add_input_table(
     unsafe { draft(model, error, "pc_model_add_input_table", write) }
 }
 
-/// Adds an input whose table is a column of a file of numbers with commas between them, below a line of names; otherwise as
-/// pc_model_add_input_table. `time` is the name of the column of times, NULL for "t" or else the first. The path is taken from
-/// the working directory as it is now.
+/// Adds an input whose table is a column of a file of numbers with commas between them, below a
+/// line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
+/// NULL for "t" or else the first. The path is taken from the working directory as it is now.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_file(
     model: *mut pc_model,
@@ -177,11 +183,11 @@ pub unsafe extern "C" fn pc_model_add_input_file(
             )
         };
         let absolute =
-            std::path::absolute(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+            std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
         draft.add(Section::Inputs, &[name, "column"], quoted(column));
         if !time.is_null() {
-            // SAFETY: text, as above.
+            // SAFETY: text, as the preamble demands.
             draft.add(Section::Inputs, &[name, "time"], quoted(unsafe { text(time, "time") }?));
         }
         draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
@@ -195,13 +201,14 @@ pub unsafe extern "C" fn pc_model_add_input_file(
 ///
 /// # Safety
 /// `word` is null or text.
-unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, Fault> {
+unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, CallError> {
     // SAFETY: as promised.
     if word.is_null() { Ok("linear") } else { unsafe { text(word, what) } }
 }
 
-/// Adds a first-order state with its value at the start and its rate: an expression of time, coordinates, velocities and
-/// states. It is integrated with the motion and comes after the velocities in the state; no frame knows it.
+/// Adds a first-order state with its value at the start and its rate: an expression of time,
+/// coordinates, velocities and states. It is integrated with the motion and comes after the
+/// velocities in the state; no frame knows it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
     model: *mut pc_model,
@@ -221,8 +228,8 @@ pub unsafe extern "C" fn pc_model_add_state(
     unsafe { draft(model, error, "pc_model_add_state", write) }
 }
 
-/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of parameters and t: it acts on
-/// the mass centres of all bodies and counts in the energy.
+/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of
+/// parameters and t: it acts on the mass centres of all bodies and counts in the energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_gravity(
     model: *mut pc_model,
@@ -277,10 +284,10 @@ pub unsafe extern "C" fn pc_model_add_coordinate(
     unsafe { draft(model, error, "pc_model_add_coordinate", write) }
 }
 
-/// Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in the velocities
-/// x', or NULL where the kinematics are given the other way round, by pc_model_set_kinematics. Without any
-/// quasi-velocities they are the velocities themselves; `name` may then be `x'`, to give one its value at the
-/// start.
+/// Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in
+/// the velocities x', or NULL where the kinematics are given the other way round, by
+/// pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves; `name`
+/// may then be `x'`, to give one its value at the start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     model: *mut pc_model,
@@ -296,7 +303,7 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
         if definition.is_null() {
             draft.add(Section::QuasiVelocities, &[name], start);
         } else {
-            // SAFETY: text, as above.
+            // SAFETY: text, as the preamble demands.
             let definition = unsafe { text(definition, "definition") }?;
             draft.add(Section::QuasiVelocities, &[name, "is"], quoted(definition));
             draft.add(Section::QuasiVelocities, &[name, "start"], start);
@@ -307,8 +314,8 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     unsafe { draft(model, error, "pc_model_add_quasi_velocity", write) }
 }
 
-/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for every coordinate,
-/// or for none.
+/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for
+/// every coordinate, or for none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_kinematics(
     model: *mut pc_model,
@@ -327,8 +334,8 @@ pub unsafe extern "C" fn pc_model_set_kinematics(
     unsafe { draft(model, error, "pc_model_set_kinematics", write) }
 }
 
-/// Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only where the frame
-/// does not determine them.
+/// Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only
+/// where the frame does not determine them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_algebra(
     model: *mut pc_model,
@@ -345,8 +352,9 @@ pub unsafe extern "C" fn pc_model_set_algebra(
     unsafe { draft(model, error, "pc_model_set_algebra", write) }
 }
 
-/// Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as "w3"; brackets
-/// that are not set are zero. `left` may be "t", for X_0. Instead of pc_model_set_algebra.
+/// Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
+/// "w3"; brackets that are not set are zero. `left` may be "t", for X_0. Instead of
+/// pc_model_set_algebra.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_bracket(
     model: *mut pc_model,
@@ -366,8 +374,8 @@ pub unsafe extern "C" fn pc_model_set_bracket(
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not affine in the
-/// velocities is said to be so by pc_model_set_constraint_kind.
+/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not
+/// affine in the velocities is said to be so by pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,
@@ -385,7 +393,8 @@ pub unsafe extern "C" fn pc_model_add_constraint(
     unsafe { draft(model, error, "pc_model_add_constraint", write) }
 }
 
-/// Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential energy.
+/// Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential
+/// energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_lagrangian(
     model: *mut pc_model,

@@ -6,7 +6,6 @@ use pc_solve::Checkpoint;
 
 use crate::api::options::{pc_solver_options, take};
 use crate::api::solver::{integrate, pc_solver};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
 use crate::ffi::boundary::entry;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{bytes, clear, text, write};
@@ -14,13 +13,15 @@ use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
-/// in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
+/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by
+/// pc_solver_restore, in another run of the program if you like. `label` says what it is a
+/// checkpoint of; NULL for the empty text.
 ///
-/// A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
-/// it and those restored go through the same numbers to the last bit. Events of the model
-/// are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
+/// A method rests on the steps before, so that this solver, too, begins anew there, at order 1:
+/// from a checkpoint on, it and those restored go through the same numbers to the last bit. Events
+/// of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -52,9 +53,10 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
     }
 }
 
-/// An integration from a checkpoint, with the parameters of the system as they are now. It goes on as the one did that
-/// was written if system, parameters and options are the same. `options` may be NULL. PC_INVALID_CHECKPOINT unless
-/// the bytes are all that pc_solver_checkpoint wrote, unchanged. The work of the solver is counted from there.
+/// An integration from a checkpoint, with the parameters of the system as they are now. It goes on
+/// as the one did that was written if system, parameters and options are the same. `options` may be
+/// NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote, unchanged.
+/// The work of the solver is counted from there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,
@@ -76,7 +78,7 @@ pub unsafe extern "C" fn pc_solver_restore(
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -87,7 +89,8 @@ pub unsafe extern "C" fn pc_solver_restore(
     }
 }
 
-/// Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as pc_solver_restore.
+/// Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
+/// pc_solver_restore.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_checkpoint_label(
     data: *const c_void,
@@ -100,7 +103,7 @@ pub unsafe extern "C" fn pc_checkpoint_label(
         unsafe { clear(label, "label") }?;
         // SAFETY: null or `length` bytes, as the preamble demands.
         let (_, found) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(label, give(&found), "label") }
     };
     // SAFETY: `error` is null or a place for a pointer.

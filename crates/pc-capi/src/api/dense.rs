@@ -5,23 +5,25 @@ use std::ffi::c_uint;
 use pc_solve::{DenseOutput, InputError, SolveError};
 
 use crate::api::solver::{integrate, pc_solver};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{clear, handle, room, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{clear, free, handle, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 
-/// A motion as a function of time. It never changes, so that any number of threads may use it. Free it with
-/// pc_dense_free.
+/// A motion as a function of time. It never changes, so that any number of threads may use it. Free
+/// it with pc_dense_free.
 pub struct pc_dense {
     motion: DenseOutput,
     dim: usize,
 }
 
-/// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal step, from the
-/// polynomial of the method, whose degree is the order of that step. The step reaches from
-/// step_time − last_step to step_time of pc_statistics, but not beyond an event; there is none before the first, nor after
-/// a reset. y is on the constraints, its derivatives are those of the polynomial.
+/// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
+/// step, from the polynomial of the method, whose degree is the order of that step. The step
+/// reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
+/// is none before the first, nor after a reset. y is on the constraints, its derivatives are those
+/// of the polynomial.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_interpolate(
     solver: *mut pc_solver,
@@ -41,8 +43,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
     unsafe { integrate(solver, error, interpolate) }
 }
 
-/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
-/// numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps
+/// the motion from where it stood: (order + 2) × dim numbers for each internal step. `dense` is
+/// made also with PC_EVENT and PC_STOPPED, and then ends there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,
@@ -58,7 +61,7 @@ pub unsafe extern "C" fn pc_solver_run_dense(
         integration.ended(ending)
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(dense, "dense") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -90,14 +93,15 @@ unsafe fn at(
         let y = unsafe { room(y, y_length, dense.dim, "y") }?;
         let value = value(&dense.motion, t).map_err(SolveError::from)?;
         y.copy_from_slice(&value);
-        Ok::<(), Fault>(())
+        Ok::<(), CallError>(())
     };
     // SAFETY: as promised.
     unsafe { entry(error, evaluate) }
 }
 
-/// Writes y(t). At an event that is the state after it, but at the very end the limit from before. Between the ends of
-/// steps it is off the constraints by the error of a step; pc_system_project moves it there.
+/// Writes y(t). At an event that is the state after it, but at the very end the limit from before.
+/// Between the ends of steps it is off the constraints by the error of a step; pc_system_project
+/// moves it there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,

@@ -12,14 +12,15 @@ use pc_solve::{
 };
 
 use crate::api::options::{pc_solver_options, take};
-use crate::api::system::pc_system;
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{finite, handle, numbers};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::{Engine, engine};
 use crate::machinery::event_set::Followed;
-use crate::machinery::field::Field;
+use crate::machinery::motion_field::MotionField;
+use crate::machinery::system::pc_system;
 
 /// What has come of a member of an ensemble. It may grow at the end.
 #[repr(C)]
@@ -30,9 +31,11 @@ pub struct pc_member {
     pub status: pc_status,
     /// Why it failed, else NULL.
     pub message: *const c_char,
-    /// The output times that it reached, as many as `rows`; the time of a terminal event is the last one.
+    /// The output times that it reached, as many as `rows`; the time of a terminal event is the last
+    /// one.
     pub times: *const f64,
-    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there are none.
+    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there
+    /// are none.
     pub states: *const f64,
     /// How many these are, also if it failed.
     pub rows: usize,
@@ -40,14 +43,15 @@ pub struct pc_member {
     pub dim: usize,
 }
 
-/// Is given each member in order, on the thread of the call; what it points to is valid during the call. Returns 0
-/// to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as pc_observer.
+/// Is given each member in order, on the thread of the call; what it points to is valid during the
+/// call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
+/// pc_observer.
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
 
 /// What all members have in common, and where each has its own.
 struct Plan<'a> {
-    prototype: Mutex<(Field, FlowEvents)>,
+    prototype: Mutex<(MotionField, FlowEvents)>,
     t: f64,
     /// Of the model.
     start: &'a [f64],
@@ -71,13 +75,13 @@ impl Outcome {
         Outcome { status: pc_status::PC_OK, message: None, times: Vec::new(), states: Vec::new() }
     }
 
-    fn of(fault: &Fault) -> Outcome {
+    fn of(fault: &CallError) -> Outcome {
         let mut outcome = Outcome::new();
         outcome.fail(fault);
         outcome
     }
 
-    fn fail(&mut self, fault: &Fault) {
+    fn fail(&mut self, fault: &CallError) {
         let (status, message) = fault.told();
         (self.status, self.message) = (status, Some(message));
     }
@@ -134,7 +138,7 @@ impl Plan<'_> {
         outcome
     }
 
-    fn engine(&self, member: usize) -> Result<Engine, Fault> {
+    fn engine(&self, member: usize) -> Result<Engine, CallError> {
         let row = |all: &'_ [f64], length: usize| all[member * length..(member + 1) * length].to_vec();
         // Nothing is changed while it is locked.
         let (mut field, mut events) = self.prototype.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -152,15 +156,17 @@ impl Plan<'_> {
     }
 }
 
-/// Integrates many members through the times, each from its own state, with its own parameters, as a solver of its
-/// own would: the numbers are the same for any number of threads. The events of the model are followed.
+/// Integrates many members through the times, each from its own state, with its own parameters, as
+/// a solver of its own would: the numbers are the same for any number of threads. The events of the
+/// model are followed.
 ///
-/// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
-/// not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
-/// are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core;
-/// they have ended when this returns. A member that fails is told as any other, with what it reached, and the others go on.
-/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops it. The system may be
-/// used meanwhile.
+/// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the
+/// model, and then t is not looked at. `parameters` has members × pc_system_parameter_count
+/// numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may be
+/// NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
+/// returns. A member that fails is told as any other, with what it reached, and the others go on.
+/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops
+/// it. The system may be used meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,
@@ -191,7 +197,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
             if data.is_null() && found == 0 {
                 return Ok(None);
             }
-            let too_many = Fault::Length { what, found, expected: usize::MAX };
+            let too_many = CallError::Length { what, found, expected: usize::MAX };
             let expected = members.checked_mul(width).ok_or(too_many)?;
             // SAFETY: `found` numbers, as the preamble demands.
             unsafe { numbers(data, found, expected, what) }.map(Some)
@@ -202,7 +208,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(start.len()) }?;
-        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+        let observer = observer.ok_or(CallError::Null { what: "observer" })?;
 
         let t = if states.is_none() { t_start } else { t };
         if let Some(&end) = times.last() {
@@ -220,12 +226,12 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let work = |member: u64, stop: &Stop<'_>| plan.follow(member as usize, stop);
         let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
             let outcome =
-                outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&Fault::Panic { message }));
+                outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&CallError::Panic { message }));
             // SAFETY: a function of that type, as the preamble demands.
             unsafe { outcome.tell(member as usize, start.len(), observer, user) }
         };
         match ensemble.map(0..members as u64, work, consume)? {
-            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Stopped => Err(CallError::Stopped),
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }
     };

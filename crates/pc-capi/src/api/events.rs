@@ -7,11 +7,12 @@ use pc_expr::{Direction, Event, Events};
 use crate::api::builder::draft;
 use crate::api::model::pc_model;
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, count, inside, name, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{numbers, room, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
+use crate::machinery::system::{Inner, Inventory, count, inside, name, pc_system};
 
 /// In which direction the function of an event passes through zero, as the integration goes.
 #[repr(C)]
@@ -25,17 +26,18 @@ pub enum pc_direction {
 }
 
 /// The direction of that number, and its name in the text.
-pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), Fault> {
+pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallError> {
     match value {
         -1 => Ok((Direction::Falling, "falling")),
         0 => Ok((Direction::Both, "both")),
         1 => Ok((Direction::Rising, "rising")),
-        value => Err(Fault::Choice { what: "pc_direction", value: value.into() }),
+        value => Err(CallError::Choice { what: "pc_direction", value: value.into() }),
     }
 }
 
-/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A `terminal` one, not
-/// 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in the order in which they were added.
+/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
+/// `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
+/// the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
     model: *mut pc_model,
@@ -58,8 +60,9 @@ pub unsafe extern "C" fn pc_model_add_event(
     unsafe { draft(model, error, "pc_model_add_event", write) }
 }
 
-/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or velocity `x'` that
-/// is called `variable` takes the value of the expression. All resets of an event take effect together, from the state before it.
+/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
+/// velocity `x'` that is called `variable` takes the value of the expression. All resets of an
+/// event take effect together, from the state before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -90,8 +93,8 @@ pub unsafe extern "C" fn pc_system_event_name(system: *const pc_system, index: u
     name(system, index, |inventory| &inventory.event_names)
 }
 
-/// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that CVODE's
-/// CVodeSetRootDirection takes.
+/// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
+/// CVODE's CVodeSetRootDirection takes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, index: usize) -> c_int {
     of_event(system, index, |event| match event.crosses() {
@@ -120,8 +123,8 @@ fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -
     inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
 }
 
-/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs where its own
-/// passes through zero. They are not finite where the model has no value for them.
+/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs
+/// where its own passes through zero. They are not finite where the model has no value for them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *mut pc_system,
@@ -143,8 +146,8 @@ pub unsafe extern "C" fn pc_system_events(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Turns the state y before an event, number `event` from 0, into the state after it. One that resets nothing
-/// leaves it as it is.
+/// Turns the state y before an event, number `event` from 0, into the state after it. One that
+/// resets nothing leaves it as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
     system: *mut pc_system,
@@ -157,7 +160,7 @@ pub unsafe extern "C" fn pc_system_event_reset(
     let reset = |inventory: &Inventory, inner: &mut Inner| {
         let count = inventory.events.len();
         let Some(known) = inventory.events.get(event) else {
-            return Err(Fault::Index { what: "the events", index: event, count });
+            return Err(CallError::Index { what: "the events", index: event, count });
         };
         // SAFETY: as the preamble demands.
         let mut state = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();

@@ -1,24 +1,23 @@
 //! Forces that a function of the program computes: controllers, contact, measured loads.
 
 use std::ffi::{c_char, c_int, c_void};
-use std::sync::Arc;
-
-use pc_mech::{ExternalForce, Failure};
 
 use crate::api::model::{Contents, change, pc_model};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::nth;
 use crate::ffi::user_data::{User, pc_destroy};
+use crate::machinery::controller::Controller;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
-/// pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a
-/// positive number where the forces are not defined, so that a smaller step may help; a negative one to give
-/// up. What is left unwritten is not a number, and treated as a positive answer. It must return: no exceptions,
-/// no longjmp.
+/// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
+/// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it has
+/// momenta. Returns 0; a positive number where the forces are not defined, so that a smaller step
+/// may help; a negative one to give up. What is left unwritten is not a number, and treated as a
+/// positive answer. It must return: no exceptions, no longjmp.
 pub type pc_force_function = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -30,8 +29,8 @@ pub type pc_force_function = Option<
     ) -> c_int,
 >;
 
-/// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to `dq[i + j*e]`
-/// for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
+/// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to
+/// `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
 pub type pc_force_jacobian = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -43,82 +42,10 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, usize, *mut c_void) -> c_int;
-
-/// The functions of the forces, if they have been set; copies share them.
-#[derive(Clone, Default)]
-pub(crate) struct Controller(Option<Arc<Callback>>);
-
-struct Callback {
-    function: Function,
-    jacobian: Option<Function>,
-    user: Shared,
-}
-
-/// Their argument, freed with the last copy.
-struct Shared(User);
-
-// SAFETY: pc_system_set_force demands that its functions take `user` on any thread, on several at the same time.
-unsafe impl Send for Shared {}
-// SAFETY: as above.
-unsafe impl Sync for Shared {}
-
-/// Why there are no forces.
-#[derive(Clone, Copy, Debug, thiserror::Error)]
-enum NoForce {
-    #[error("no function was set for it; pc_system_set_force does")]
-    Unset,
-    #[error("its function returned {0}")]
-    Function(c_int),
-    #[error("the function of its derivatives returned {0}")]
-    Jacobian(c_int),
-}
-
-impl NoForce {
-    /// What the answer of a function means.
-    fn read(code: c_int, fault: fn(c_int) -> NoForce) -> Result<(), Failure> {
-        match code {
-            0 => Ok(()),
-            1.. => Err(Failure::recoverable(fault(code))),
-            _ => Err(Failure::fatal(fault(code))),
-        }
-    }
-}
-
-impl Callback {
-    /// The answer of one of its functions, which writes `values`.
-    fn call(&self, function: Function, t: f64, y: &[f64], values: &mut [f64]) -> c_int {
-        // SAFETY: a function of that type, as pc_system_set_force demands; the arrays are as long as said.
-        unsafe { function(t, y.as_ptr(), y.len(), values.as_mut_ptr(), values.len(), self.user.0.data) }
-    }
-}
-
-impl ExternalForce for Controller {
-    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
-        let callback = self.0.as_ref().ok_or_else(|| Failure::fatal(NoForce::Unset))?;
-        NoForce::read(callback.call(callback.function, t, y, q), NoForce::Function)
-    }
-
-    fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
-        match self.0.as_ref().and_then(|callback| Some((callback, callback.jacobian?))) {
-            Some((callback, jacobian)) => NoForce::read(callback.call(jacobian, t, y, dq), NoForce::Jacobian),
-            None => Quotients(self).jacobian(t, y, dq),
-        }
-    }
-}
-
-/// A force whose derivatives are difference quotients.
-struct Quotients<'a>(&'a mut Controller);
-
-impl ExternalForce for Quotients<'_> {
-    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
-        self.0.force(t, y, q)
-    }
-}
-
-/// Declares that a force which a function of yours computes acts on a quasi-velocity; on a coordinate if the
-/// model declares no quasi-velocities. It adds to what else acts there. The function belongs to the system, not
-/// to the model: pc_system_set_force. An unknown name is found by pc_model_check and pc_system_new.
+/// Declares that a force which a function of yours computes acts on a quasi-velocity; on a
+/// coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
+/// function belongs to the system, not to the model: pc_system_set_force. An unknown name is found
+/// by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -149,17 +76,18 @@ pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: u
     system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))
 }
 
-/// Sets the function that computes the external forces, all at once: the Q_s of the declared quasi-velocities.
-/// Until then nothing that needs them can be evaluated. `jacobian` may be NULL: the derivatives of the forces,
-/// and only these, are then difference quotients.
+/// Sets the function that computes the external forces, all at once: the Q_s of the declared
+/// quasi-velocities. Until then nothing that needs them can be evaluated. `jacobian` may be NULL:
+/// the derivatives of the forces, and only these, are then difference quotients.
 ///
-/// Copies, kernels and solvers made from the system afterwards share the functions and `user`; those made before
-/// keep what they had. The functions are called by whichever thread evaluates, so by several at the same time if
-/// several use copies. They may call any function on other handles, and of the same system pc_system_..._name and
-/// sizes.
+/// Copies, kernels and solvers made from the system afterwards share the functions and `user`;
+/// those made before keep what they had. The functions are called by whichever thread evaluates, so
+/// by several at the same time if several use copies. They may call any function on other handles,
+/// and of the same system pc_system_..._name and sizes.
 ///
-/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
-/// that shares it is freed or given another function. It must not use a handle that is being freed.
+/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when
+/// the last handle that shares it is freed or given another function. It must not use a handle that
+/// is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_force(
     system: *mut pc_system,
@@ -173,10 +101,10 @@ pub unsafe extern "C" fn pc_system_set_force(
     let mut unused = Controller::default();
     let Some(function) = function else {
         // SAFETY: `error` is null or a place for a pointer.
-        return unsafe { entry(error, || Err(Fault::Null { what: "function" })) };
+        return unsafe { entry(error, || Err(CallError::Null { what: "function" })) };
     };
     let set = |_: &Inventory, inner: &mut Inner| {
-        let controller = Controller(Some(Arc::new(Callback { function, jacobian, user: Shared(user) })));
+        let controller = Controller::new(function, jacobian, user);
         let outcome = inner.field.set_force(controller);
         let fault = outcome.is_err().then_some(NO_FORCES);
         unused = outcome.unwrap_or_else(|refused| refused);
@@ -189,7 +117,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     status
 }
 
-const NO_FORCES: Fault = Fault::Unsupported {
+const NO_FORCES: CallError = CallError::Unsupported {
     what: "an external force",
     why: "the model declares none; pc_model_add_external_force does",
 };

@@ -6,29 +6,30 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::api::system::{Inner, holding, pc_system};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{are_usable, clear, fresh, handle, numbers, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{are_usable, clear, free, fresh, handle, numbers, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::field::Field;
 use crate::machinery::lock_free_rhs::Direct;
+use crate::machinery::motion_field::MotionField;
+use crate::machinery::system::{Inner, holding, pc_system};
 
-/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
-/// pc_kernel_free.
+/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
+/// Free it with pc_kernel_free.
 ///
-/// It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
-/// return there are no locks.
+/// It has room to compute in, so each thread needs its own, and two calls at the same time are not
+/// safe; in return there are no locks.
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
     /// For `direct` to compute in.
     room: Vec<f64>,
-    motion: Field,
+    motion: MotionField,
 }
 
 impl pc_kernel {
-    fn new(mut motion: Field, dim: usize) -> pc_kernel {
+    fn new(mut motion: MotionField, dim: usize) -> pc_kernel {
         let direct = Direct::of(&mut motion);
         let room = vec![0.0; direct.as_ref().map_or(0, Direct::room)];
         pc_kernel { dim, direct, room, motion }
@@ -50,7 +51,7 @@ pub unsafe extern "C" fn pc_kernel_new(
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(kernel, "kernel") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -78,12 +79,12 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 ) -> pc_status {
     let set = || {
         // SAFETY: null or a live kernel that no other thread uses, as its documentation demands.
-        let kernel = unsafe { kernel.as_mut() }.ok_or(Fault::Null { what: "kernel" })?;
+        let kernel = unsafe { kernel.as_mut() }.ok_or(CallError::Null { what: "kernel" })?;
         let parameters = kernel.motion.parameters_mut();
         // SAFETY: null or `length` numbers, as the preamble demands.
         let values = unsafe { numbers(values, length, parameters.len(), "values") }?;
         if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-            return Err(Fault::NotFinite { what: "a parameter", value });
+            return Err(CallError::NotFinite { what: "a parameter", value });
         }
         parameters.copy_from_slice(values);
         if let Some(direct) = &kernel.direct {
@@ -95,12 +96,12 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
     unsafe { entry(error, set) }
 }
 
-/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no memory. `kernel` is
-/// a pc_kernel of this thread's.
+/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no
+/// memory. `kernel` is a pc_kernel of this thread's.
 ///
-/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step helps.
-/// pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes, with the kernel as
-/// `params`.
+/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step
+/// helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes,
+/// with the kernel as `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
     // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
@@ -115,7 +116,8 @@ pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, ke
     }
 }
 
-/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
+/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
+/// it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_jacobian(
     t: f64,
@@ -136,7 +138,7 @@ unsafe fn evaluate(
     target: *mut f64,
     kernel: *mut c_void,
     len: impl FnOnce(usize) -> usize,
-    function: impl FnOnce(&mut Field, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
+    function: impl FnOnce(&mut MotionField, &[f64], &mut [f64]) -> Result<(), pc_expr::Failure>,
 ) -> c_int {
     // SAFETY: as promised.
     let Some(kernel) = (unsafe { kernel.cast::<pc_kernel>().as_mut() }) else { return -1 };

@@ -3,28 +3,30 @@
 use pc_mech::{Graph, LegendreTransform, MechError};
 
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
     /// The transform of the state, derived when first asked for.
-    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, Fault> {
+    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
         if self.legendre.is_none() {
             let model = &inventory.model;
             let graph = Graph::new();
             let assembly = model.assemble(&graph)?;
-            let mut transform = model.legendre_transform(&assembly, inventory.variables)?;
+            let mut transform = assembly.legendre_transform(inventory.variables)?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }
-        const MISSING: Fault = Fault::Unsupported { what: "the transform", why: "it was not derived" };
+        const MISSING: CallError =
+            CallError::Unsupported { what: "the transform", why: "it was not derived" };
         self.legendre.as_mut().ok_or(MISSING)
     }
 }
 
-/// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
-/// pc_system_new does.
+/// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
+/// derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_momenta(
     system: *mut pc_system,
@@ -40,8 +42,8 @@ pub unsafe extern "C" fn pc_system_to_momenta(
     unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta) }
 }
 
-/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives, as
-/// pc_system_new does.
+/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
+/// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_quasi_velocities(
     system: *mut pc_system,

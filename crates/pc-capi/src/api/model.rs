@@ -5,17 +5,18 @@ use std::sync::OnceLock;
 
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{bytes, clear, finite, handle, text, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{bytes, clear, finite, free, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, give, nth};
 use crate::machinery::draft::Draft;
-use crate::machinery::exclusive::Held;
+use crate::machinery::exclusive::Exclusive;
 
 /// A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
 pub struct pc_model {
-    pub(crate) contents: Held<Contents>,
+    pub(crate) contents: Exclusive<Contents>,
 }
 
 #[derive(Clone)]
@@ -39,7 +40,7 @@ pub(crate) enum Origin {
 
 impl Contents {
     /// The model, its settings applied.
-    pub(crate) fn model(&self) -> Result<Model, Fault> {
+    pub(crate) fn model(&self) -> Result<Model, CallError> {
         let mut model = match &self.origin {
             Origin::Text(model) => Model::clone(model),
             Origin::Calls(draft) => Model::new(draft.document()?),
@@ -70,15 +71,15 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         observes_reactions: false,
         differentiates: false,
     };
-    Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }))
+    Box::into_raw(Box::new(pc_model { contents: Exclusive::new(contents) }))
 }
 
 fn of_document(document: Document) -> *mut pc_model {
     boxed(Origin::Text(Box::new(Model::new(document))))
 }
 
-/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages call it;
-/// NULL for "model".
+/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages
+/// call it; NULL for "model".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_parse(
     text: *const c_char,
@@ -90,13 +91,13 @@ pub unsafe extern "C" fn pc_model_parse(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let text = unsafe { bytes(text, length, "text") }?;
         let name = if name.is_null() { c"model".as_ptr() } else { name };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { crate::ffi::pointer::text(name, "name") }?;
         let document = Document::parse(Source::from_bytes(name, text))?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -113,11 +114,12 @@ pub unsafe extern "C" fn pc_model_from_file(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let path = unsafe { text(path, "path") }?;
-        let bytes = std::fs::read(path).map_err(|source| Fault::Read { path: path.to_owned(), source })?;
+        let bytes =
+            std::fs::read(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         let document = Document::parse(Source::from_bytes(path, &bytes))?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -134,10 +136,10 @@ pub unsafe extern "C" fn pc_model_builtin(
     let read = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(model, "model") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        let builtin = Builtin::named(name).ok_or_else(|| Fault::NoSuchModel { name: name.to_owned() })?;
-        // SAFETY: as above.
+        let builtin = Builtin::named(name).ok_or_else(|| CallError::NoSuchModel { name: name.to_owned() })?;
+        // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(builtin.document()?), "model") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -167,10 +169,10 @@ pub unsafe extern "C" fn pc_model_clone(
     let clone = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(copy, "copy") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
-        let cloned = Box::into_raw(Box::new(pc_model { contents: Held::new(contents) }));
-        // SAFETY: as above.
+        let cloned = Box::into_raw(Box::new(pc_model { contents: Exclusive::new(contents) }));
+        // SAFETY: as the preamble demands.
         unsafe { write(copy, cloned, "copy") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -194,7 +196,7 @@ pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
 pub(crate) unsafe fn change(
     model: *mut pc_model,
     error: *mut *mut pc_error,
-    change: impl FnOnce(&mut Contents) -> Result<(), Fault>,
+    change: impl FnOnce(&mut Contents) -> Result<(), CallError>,
 ) -> pc_status {
     // SAFETY: as promised.
     unsafe { entry(error, || change(&mut *handle(model, "model")?.contents.take()?)) }
@@ -222,8 +224,8 @@ pub unsafe extern "C" fn pc_model_set(
     unsafe { change(model, error, set) }
 }
 
-/// Has states projected to the value that this integral, or "energy", has at the start: after each step of a
-/// solver, and by pc_system_project. An unknown name is found by pc_system_new.
+/// Has states projected to the value that this integral, or "energy", has at the start: after each
+/// step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_keep(
     model: *mut pc_model,
@@ -240,7 +242,8 @@ pub unsafe extern "C" fn pc_model_keep(
     unsafe { change(model, error, keep) }
 }
 
-/// Whether the start is moved to where the constraints are satisfied (else a start off them is refused). Not 0 is yes.
+/// Whether the start is moved to where the constraints are satisfied (else a start off them is
+/// refused). Not 0 is yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_project_start(
     model: *mut pc_model,
@@ -318,13 +321,13 @@ pub unsafe extern "C" fn pc_model_text(
     let write_text = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(text, "text") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let model = unsafe { handle(model, "model") }?;
         let written = match &model.contents.take()?.origin {
             Origin::Text(model) => model.document().source.text().to_owned(),
             Origin::Calls(draft) => draft.text(),
         };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(text, give(&written), "text") }
     };
     // SAFETY: `error` is null or a place for a pointer.

@@ -1,14 +1,16 @@
 //! What is watched along a motion.
 
 use crate::api::rates::{State, Target, slices};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
+/// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
+/// energy, the outputs.
 ///
-/// An observable is not finite where the model has no value for it; one with accelerations in it, also where external
-/// forces cannot be computed.
+/// An observable is not finite where the model has no value for it; one with accelerations in it,
+/// also where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *mut pc_system,
@@ -32,15 +34,15 @@ pub unsafe extern "C" fn pc_system_observe(
 }
 
 /// That there are values.
-fn all_finite(what: &'static str, values: &[f64]) -> Result<(), Fault> {
+fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(Fault::NoValue { what, value }),
+        Some(&value) => Err(CallError::NoValue { what, value }),
         None => Ok(()),
     }
 }
 
-/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should stay constant, which
-/// are the first of the observables.
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should
+/// stay constant, which are the first of the observables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
     system: *mut pc_system,
@@ -85,8 +87,8 @@ pub unsafe extern "C" fn pc_system_energy(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what they add to the
-/// forces Q_s is the sum of each times the derivative of its constraint by η_s.
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
+/// they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *mut pc_system,
@@ -101,7 +103,7 @@ pub unsafe extern "C" fn pc_system_reactions(
         let reactions = &inventory.reactions;
         if reactions.is_empty() {
             let why = "there are none, or pc_model_observe_reactions was not asked";
-            return Err(Fault::Unsupported { what: "the reactions", why });
+            return Err(CallError::Unsupported { what: "the reactions", why });
         }
         let target = Target { data: values, length, expected: reactions.len(), what: "values" };
         // SAFETY: as the preamble demands.
@@ -117,7 +119,8 @@ pub unsafe extern "C" fn pc_system_reactions(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes what should be zero of each constraint that is kept by projection, as many as pc_system_constraint_count.
+/// Writes what should be zero of each constraint that is kept by projection, as many as
+/// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(
     system: *mut pc_system,

@@ -7,7 +7,8 @@ use pc_expr::Event;
 
 use crate::api::events::direction;
 use crate::api::solver::{integrate, pc_solver};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{apart, handle, room, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, nth};
@@ -15,10 +16,10 @@ use crate::ffi::user_data::{User, pc_destroy};
 use crate::machinery::engine::{Integration, Observer};
 use crate::machinery::event_set::Own;
 
-/// Is given each event where it occurs, by its number among the events of the solver, with the states before and
-/// after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
-/// that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED, or with PC_EVENT where a
-/// terminal event does so too. Otherwise as pc_observer.
+/// Is given each event where it occurs, by its number among the events of the solver, with the
+/// states before and after it, which are valid during the call. Of simultaneous events each has the
+/// state that it found and the one that it left. Returns 0 to go on; anything else ends the call
+/// with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
         event: usize,
@@ -30,9 +31,10 @@ pub type pc_event_observer = Option<
     ) -> c_int,
 >;
 
-/// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends the
-/// integration with PC_INTEGRATION, as a value does that is not finite or not written. It should depend on
-/// nothing but its arguments and be smooth. It must return: no exceptions, no longjmp.
+/// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends
+/// the integration with PC_INTEGRATION, as a value does that is not finite or not written. It
+/// should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
+/// longjmp.
 pub type pc_event_function = Option<
     unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
 >;
@@ -41,9 +43,9 @@ pub type pc_event_function = Option<
 pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// Has an observer told of each event from now on, instead of the one before; of none if it is NULL. `user` has to live
-/// until there is another one, or the solver is freed. It is called
-/// within the calls that integrate, on their thread.
+/// Has an observer told of each event from now on, instead of the one before; of none if it is
+/// NULL. `user` has to live until there is another one, or the solver is freed. It is called within
+/// the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
     solver: *mut pc_solver,
@@ -59,10 +61,10 @@ pub unsafe extern "C" fn pc_solver_observe_events(
     unsafe { integrate(solver, error, observe) }
 }
 
-/// Follows an event of the program's own, after those of the model and those added before: `function` passes
-/// through zero in a direction, a pc_direction. There `reset`, unless NULL, changes the state, which is then
-/// projected to the constraints; a `terminal` event, not 0, ends the call with PC_EVENT. Comes before the first
-/// step. `name` is for messages.
+/// Follows an event of the program's own, after those of the model and those added before:
+/// `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
+/// changes the state, which is then projected to the constraints; a `terminal` event, not 0, ends
+/// the call with PC_EVENT. Comes before the first step. `name` is for messages.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
 /// pc_solver_free. It must not use the solver.
@@ -83,7 +85,7 @@ pub unsafe extern "C" fn pc_solver_add_event(
         // SAFETY: null or text, as the preamble demands.
         let name = unsafe { text(name, "name") }?;
         let (direction, _) = self::direction(direction)?;
-        let function = function.ok_or(Fault::Null { what: "function" })?;
+        let function = function.ok_or(CallError::Null { what: "function" })?;
         let event = Event::new(name).direction(direction).terminal(terminal != 0).resetting(reset.is_some());
         integration.add(event, Own { name: name.to_owned(), function, reset, user })?;
         // SAFETY: a live handle: it has given the integration.
@@ -131,12 +133,13 @@ pub unsafe extern "C" fn pc_solver_event_occurrences(
     unsafe { integrate(solver, error, read) }
 }
 
-fn no_such(event: usize, count: usize) -> Fault {
-    Fault::Index { what: "the events", index: event, count }
+fn no_such(event: usize, count: usize) -> CallError {
+    CallError::Index { what: "the events", index: event, count }
 }
 
-/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not occurred. Only
-/// the last occurrence is kept; an observer sees all. `before` and `after` may be NULL, of length 0.
+/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not
+/// occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may be
+/// NULL, of length 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_last_occurrence(
     solver: *const pc_solver,
@@ -165,7 +168,7 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
             // SAFETY: a live handle: it has given the integration.
             let name = nth(&names(unsafe { handle(solver, "solver") }?), event);
             // SAFETY: the name of an event that there is.
-            return Err(Fault::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
+            return Err(CallError::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
         };
         before.copy_from_slice(&last.state_before[..before.len()]);
         after.copy_from_slice(&last.state_after[..after.len()]);
@@ -176,7 +179,8 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
     unsafe { integrate(solver, error, read) }
 }
 
-/// Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND if none did.
+/// Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND
+/// if none did.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_terminal_event(
     solver: *const pc_solver,
@@ -184,7 +188,7 @@ pub unsafe extern "C" fn pc_solver_terminal_event(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let read = |integration: &mut Integration, _: usize| {
-        let number = integration.record.terminal.ok_or(Fault::NotEnded)?;
+        let number = integration.record.terminal.ok_or(CallError::NotEnded)?;
         // SAFETY: null or a place for a number, as the preamble demands.
         unsafe { write(event, number, "event") }
     };

@@ -5,14 +5,14 @@ use std::ffi::c_int;
 use ::pc_model::Variables;
 use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
-use crate::ffi::error::Fault;
+use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{aligned, numbers};
 
 /// Which equations of motion; values of pc_system_options.form.
 #[repr(C)]
 pub enum pc_form {
-    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish, all of them
-    /// with multipliers otherwise.
+    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish,
+    /// all of them with multipliers otherwise.
     PC_POINCARE = 0,
     /// Chetaev's canonical equations, of momenta.
     PC_CANONICAL = 1,
@@ -38,11 +38,11 @@ impl Default for pc_system_options {
 
 impl pc_system_options {
     /// The variables of the state.
-    pub(crate) fn variables(&self) -> Result<Variables, Fault> {
+    pub(crate) fn variables(&self) -> Result<Variables, CallError> {
         match self.form {
             0 => Ok(Variables::QuasiVelocities),
             1 => Ok(Variables::Momenta),
-            value => Err(Fault::Choice { what: "pc_form", value: value.into() }),
+            value => Err(CallError::Choice { what: "pc_form", value: value.into() }),
         }
     }
 }
@@ -67,7 +67,8 @@ pub enum pc_iteration {
     PC_FIXED_POINT = 2,
 }
 
-/// How the linear systems of Newton's iteration are solved; values of pc_solver_options.linear_solver.
+/// How the linear systems of Newton's iteration are solved; values of
+/// pc_solver_options.linear_solver.
 #[repr(C)]
 pub enum pc_linear_solver {
     /// Chosen by the size and the zero pattern of the Jacobian.
@@ -104,7 +105,8 @@ pub struct pc_solver_options {
     pub absolute_tolerances_length: usize,
     /// Most steps from one output to the next; 500000 by default.
     pub max_steps: u64,
-    /// Length of the first step, positive in both directions of time; 0, the default, for an estimate.
+    /// Length of the first step, positive in both directions of time; 0, the default, for an
+    /// estimate.
     pub initial_step: f64,
     /// Least length of a step; 0, the default, for none.
     pub min_step: f64,
@@ -112,13 +114,13 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinite, the default, for none.
     pub stop_time: f64,
-    /// Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by default. Between two such
-    /// places an even number of zeros may be missed.
+    /// Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by
+    /// default. Between two such places an even number of zeros may be missed.
     pub samples_per_step: u32,
     /// 0: room for a choice to come.
     pub reserved: u32,
-    /// Events that follow each other ever faster are an error once what is left of the first of their distances is this part,
-    /// from 0, for never, to less than 1; 1e-5 by default.
+    /// Events that follow each other ever faster are an error once what is left of the first of their
+    /// distances is this part, from 0, for never, to less than 1; 1e-5 by default.
     pub accumulation: f64,
 }
 
@@ -176,12 +178,13 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
     }
 }
 
-/// The options at `place`, those that the caller's header does not know at their defaults; all of them if it is null.
+/// The options at `place`, those that the caller's header does not know at their defaults; all of
+/// them if it is null.
 ///
 /// # Safety
 /// `T` is plain data that any bytes of the caller's are valid for, and begins with a size; `place` is null or has as many bytes as
 /// that size says.
-pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, Fault> {
+pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, CallError> {
     let mut options = T::default();
     if place.is_null() {
         return Ok(options);
@@ -191,7 +194,7 @@ pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str
     let found = unsafe { place.cast::<usize>().read() };
     let (least, most) = (size_of::<usize>(), size_of::<T>());
     if !(least..=most).contains(&found) || found % align_of::<T>() != 0 {
-        return Err(Fault::StructSize { what, found, least, most });
+        return Err(CallError::StructSize { what, found, least, most });
     }
     let target = std::ptr::from_mut(&mut options).cast::<u8>();
     // SAFETY: both have `found` bytes, and any are valid.
@@ -204,8 +207,8 @@ impl pc_solver_options {
     ///
     /// # Safety
     /// The tolerances are null or as many numbers as said.
-    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, Fault> {
-        let choice = |what, value: c_int| Fault::Choice { what, value: value.into() };
+    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, CallError> {
+        let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };
         let mut options = Options::new(match self.method {
             0 => Method::Adams,
             1 => Method::Bdf,

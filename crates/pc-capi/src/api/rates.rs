@@ -4,11 +4,12 @@ use std::slice;
 
 use pc_mech::VectorField;
 
-use crate::api::system::{Inner, Inventory, holding, inside, pc_system};
 use crate::ffi::boundary::succeeded;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::ffi::status::pc_status;
+use crate::machinery::system::{Inner, Inventory, holding, inside, pc_system};
 
 /// A state from C.
 #[derive(Clone, Copy)]
@@ -35,7 +36,7 @@ pub(crate) unsafe fn slices<'a>(
     state: State,
     dim: usize,
     target: Target,
-) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+) -> Result<(&'a [f64], &'a mut [f64]), CallError> {
     let Target { data, length, expected, .. } = target;
     if state.length == dim && length == expected && are_usable((state.y, dim), (data, expected)) {
         // SAFETY: not null, aligned, and as promised; they share no memory.
@@ -51,7 +52,11 @@ pub(crate) unsafe fn slices<'a>(
 /// # Safety
 /// As for [`slices`].
 #[cold]
-unsafe fn misfits<'a>(state: State, dim: usize, target: Target) -> Result<(&'a [f64], &'a mut [f64]), Fault> {
+unsafe fn misfits<'a>(
+    state: State,
+    dim: usize,
+    target: Target,
+) -> Result<(&'a [f64], &'a mut [f64]), CallError> {
     let Target { data, length, expected, what } = target;
     if state.length == dim && length == expected {
         apart((state.y, dim, "y"), (data, expected, what))?;
@@ -62,10 +67,11 @@ unsafe fn misfits<'a>(state: State, dim: usize, target: Target) -> Result<(&'a [
 
 /// Writes the rate f(t, y) of the state to ydot.
 ///
-/// After the first call it takes no lock where f is one piece of machine code: where no function of the program computes
-/// forces, M is not factorised in numbers, and no velocities are solved for. Any number of threads may then call it at the
-/// same time and get its rates, those of the parameters before or after where another one sets them. It is PC_BUSY, with
-/// anything in ydot, only where that happens during its evaluation, and where it fails while the handle is in use.
+/// After the first call it takes no lock where f is one piece of machine code: where no function of
+/// the program computes forces, M is not factorised in numbers, and no velocities are solved for.
+/// Any number of threads may then call it at the same time and get its rates, those of the
+/// parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
+/// only where that happens during its evaluation, and where it fails while the handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
     system: *mut pc_system,
@@ -95,7 +101,8 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false where there is more to f, or it fails, or the parameters change meanwhile.
+/// Writes ydot by machine code alone; false where there is more to f, or it fails, or the
+/// parameters change meanwhile.
 ///
 /// # Safety
 /// The arrays are null or as long as they say.
@@ -137,10 +144,10 @@ pub unsafe extern "C" fn pc_system_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j, ascending,
-/// are the numbers of row_indices from place column_starts(j) up to but without place column_starts(j + 1).
-/// Gives pointers to dim + 1 and `entries` numbers that belong to the system and its copies. Each of the three
-/// places may be NULL.
+/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j,
+/// ascending, are the numbers of row_indices from place column_starts(j) up to but without place
+/// column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the system
+/// and its copies. Each of the three places may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jacobian_pattern(
     system: *const pc_system,
@@ -171,8 +178,8 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
     unsafe { crate::ffi::boundary::entry(error, get) }
 }
 
-const NO_PATTERN: Fault =
-    Fault::Unsupported { what: "the zero pattern of the Jacobian", why: "it has no Jacobian" };
+const NO_PATTERN: CallError =
+    CallError::Unsupported { what: "the zero pattern of the Jacobian", why: "it has no Jacobian" };
 
 /// Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
 #[unsafe(no_mangle)]
@@ -233,9 +240,9 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the integrals of
-/// pc_model_keep to their values at the start of the model, or where pc_system_keep_from said. Where there is nothing to
-/// be kept it stays.
+/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the
+/// integrals of pc_model_keep to their values at the start of the model, or where
+/// pc_system_keep_from said. Where there is nothing to be kept it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
     system: *mut pc_system,
@@ -258,8 +265,8 @@ pub unsafe extern "C" fn pc_system_project(
     unsafe { inside(system, error, project) }
 }
 
-/// Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to the constraints, also
-/// after the parameters are set. Solvers keep those at their own start.
+/// Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to
+/// the constraints, also after the parameters are set. Solvers keep those at their own start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_keep_from(
     system: *mut pc_system,

@@ -3,11 +3,12 @@
 use ::pc_model::Flow;
 
 use crate::api::solver::{integrate, pc_solver};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{numbers, room};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the derivative of the start of the model by parameter number `parameter`, from 0: its start values may be expressions
 /// in parameters. It derives the equations twice. PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input
@@ -25,7 +26,7 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
         let column = unsafe { room(column, column_length, inventory.dim(), "column") }?;
         let values = inner.field.parameters();
         if parameter >= values.len() {
-            return Err(Fault::Index { what: "parameter", index: parameter, count: values.len() });
+            return Err(CallError::Index { what: "parameter", index: parameter, count: values.len() });
         }
         let mut model = inventory.model.clone();
         // Those that follow others have followed when their turn comes.
@@ -84,7 +85,7 @@ pub unsafe extern "C" fn pc_solver_sensitivity(
         let column = unsafe { room(column, column_length, dim, "column") }?;
         let (matrix, count) = integration.sensitivities()?;
         if number >= count {
-            return Err(Fault::Index { what: "sensitivity", index: number, count });
+            return Err(CallError::Index { what: "sensitivity", index: number, count });
         }
         column.copy_from_slice(&matrix[number * dim..(number + 1) * dim]);
         Ok(())

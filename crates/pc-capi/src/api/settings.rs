@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use crate::api::builder::draft;
 use crate::api::model::{Contents, Origin, change, pc_model};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{finite, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
@@ -31,8 +32,8 @@ pub unsafe extern "C" fn pc_model_set_reference(
     unsafe { put(model, error, "pc_model_set_reference", (Section::Heading, "reference"), reference) }
 }
 
-/// Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where there are no
-/// quasi-velocities, to another number.
+/// Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where
+/// there are no quasi-velocities, to another number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_start(
     model: *mut pc_model,
@@ -71,8 +72,8 @@ pub unsafe extern "C" fn pc_model_set_start_expression(
     unsafe { draft(model, error, "pc_model_set_start_expression", write) }
 }
 
-/// Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or "nonlinear" of one that is
-/// not affine in the velocities and obeys Chetaev's condition.
+/// Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or
+/// "nonlinear" of one that is not affine in the velocities and obeys Chetaev's condition.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_constraint_kind(
     model: *mut pc_model,
@@ -101,8 +102,8 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the next five; a
-/// solver is told by its own options.
+/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the
+/// next five; a solver is told by its own options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,
@@ -141,8 +142,8 @@ pub unsafe extern "C" fn pc_model_set_tolerances(
     unsafe { set_number(model, error, "pc_model_set_tolerances", &values) }
 }
 
-/// Sets the largest length of a step, positive, with which the program `pc` runs the model: an event whose function has
-/// passed through zero and back within a step is not seen.
+/// Sets the largest length of a step, positive, with which the program `pc` runs the model: an
+/// event whose function has passed through zero and back within a step is not seen.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_max_step(
     model: *mut pc_model,
@@ -153,8 +154,9 @@ pub unsafe extern "C" fn pc_model_set_max_step(
     unsafe { set_number(model, error, "pc_model_set_max_step", &[("max_step", length)]) }
 }
 
-/// Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step` places of each step, from 1, and
-/// events whose distances shrink geometrically to less than `accumulation` of the first are taken for accumulated.
+/// Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step`
+/// places of each step, from 1, and events whose distances shrink geometrically to less than
+/// `accumulation` of the first are taken for accumulated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_event_search(
     model: *mut pc_model,
@@ -224,7 +226,7 @@ unsafe fn set_number(
     what: &'static str,
     values: &[(&'static str, f64)],
 ) -> pc_status {
-    let write = |draft: &mut Draft| -> Result<(), Fault> {
+    let write = |draft: &mut Draft| -> Result<(), CallError> {
         for &(key, value) in values {
             finite(value, key)?;
         }

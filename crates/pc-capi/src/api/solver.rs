@@ -8,19 +8,20 @@ use pc_expr::Events;
 use pc_solve::Checkpoint;
 
 use crate::api::options::{pc_solver_options, take};
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::boundary::{entry, free};
-use crate::ffi::error::{Fault, pc_error};
-use crate::ffi::pointer::{clear, handle, numbers, room, write};
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{clear, free, handle, numbers, room, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::c_string;
 use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
-use crate::machinery::exclusive::Held;
+use crate::machinery::exclusive::Exclusive;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// An integration, which stands at a time with a state. Free it with pc_solver_free.
 pub struct pc_solver {
-    pub(crate) inner: Held<Integration>,
+    pub(crate) inner: Exclusive<Integration>,
     pub(crate) dim: usize,
     /// Of the events, which may be read while an observer runs.
     pub(crate) event_names: Mutex<Vec<CString>>,
@@ -29,21 +30,23 @@ pub struct pc_solver {
 impl pc_solver {
     pub(crate) fn boxed(integration: Integration, events: &Followed, dim: usize) -> *mut pc_solver {
         let names = events.events().iter().map(|event| c_string(event.name())).collect();
-        let inner = Held::new(integration);
+        let inner = Exclusive::new(integration);
         Box::into_raw(Box::new(pc_solver { inner, dim, event_names: Mutex::new(names) }))
     }
 }
 
-/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
-/// may call any function on other handles, and must return: no exceptions, no longjmp.
+/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with
+/// PC_STOPPED. It may call any function on other handles, and must return: no exceptions, no
+/// longjmp.
 pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// An integration of the system from the state y at the time t, with the parameters as they are now; from the
-/// start of the model if y is NULL, of length 0, and then t is not looked at. `options` may be NULL. States stay on the
-/// constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
-/// values at this start. The events of the model are followed: where one occurs, the state is reset as the model
-/// says, and a terminal one ends the call with PC_EVENT.
+/// An integration of the system from the state y at the time t, with the parameters as they are
+/// now; from the start of the model if y is NULL, of length 0, and then t is not looked at.
+/// `options` may be NULL. States stay on the constraints, and keep what pc_model_keep says, by
+/// projection after each step; what is kept then are the values at this start. The events of the
+/// model are followed: where one occurs, the state is reset as the model says, and a terminal one
+/// ends the call with PC_EVENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_new(
     system: *const pc_system,
@@ -72,7 +75,7 @@ pub unsafe extern "C" fn pc_solver_new(
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
     // SAFETY: `error` is null or a place for a pointer.
@@ -100,7 +103,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
-    body: impl FnOnce(&mut Integration, usize) -> Result<(), Fault>,
+    body: impl FnOnce(&mut Integration, usize) -> Result<(), CallError>,
 ) -> pc_status {
     let body = || {
         // SAFETY: as promised.
@@ -111,9 +114,10 @@ pub(crate) unsafe fn integrate(
     unsafe { entry(error, body) }
 }
 
-/// Has a solver go on with the parameters and inputs of the system as they are now, from where it stands: it begins anew there,
-/// at order 1. So inputs are changed between two calls of pc_solver_advance. The system is that of the solver, or one of the
-/// same model. PC_UNSUPPORTED with events of pc_solver_add_event.
+/// Has a solver go on with the parameters and inputs of the system as they are now, from where it
+/// stands: it begins anew there, at order 1. So inputs are changed between two calls of
+/// pc_solver_advance. The system is that of the solver, or one of the same model. PC_UNSUPPORTED
+/// with events of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_take_parameters(
     solver: *mut pc_solver,
@@ -135,9 +139,10 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
     unsafe { integrate(solver, error, set) }
 }
 
-/// Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
-/// PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
-/// After a failure pc_solver_time and pc_solver_state tell what was reached.
+/// Integrates to the time t, in the direction of the first step, and writes the state there. With
+/// PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
+/// next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
+/// reached.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -157,8 +162,8 @@ pub unsafe extern "C" fn pc_solver_advance(
     unsafe { integrate(solver, error, advance) }
 }
 
-/// Takes one internal step in the direction of `towards`, or the part of it before an event, and writes its end,
-/// which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
+/// Takes one internal step in the direction of `towards`, or the part of it before an event, and
+/// writes its end, which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -171,11 +176,11 @@ pub unsafe extern "C" fn pc_solver_step(
     let step = |integration: &mut Integration, dim: usize| {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { write(t, f64::NAN, "t") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let y = unsafe { room(y, y_length, dim, "y") }?;
         let ending = integration.step(towards)?;
         y.copy_from_slice(integration.state());
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(t, integration.time(), "t") }?;
         integration.ended(ending)
     };
@@ -183,9 +188,10 @@ pub unsafe extern "C" fn pc_solver_step(
     unsafe { integrate(solver, error, step) }
 }
 
-/// Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
-/// during the call, and with `user`. PC_STOPPED if the observer stops it. At the time of an event it is given the
-/// state after it; a terminal event is the last thing it is given, at the time of that, and PC_EVENT is returned.
+/// Integrates through the times, which go one way, and calls `observer` at each with the state,
+/// which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
+/// time of an event it is given the state after it; a terminal event is the last thing it is given,
+/// at the time of that, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,
@@ -198,7 +204,7 @@ pub unsafe extern "C" fn pc_solver_run(
     let run = |integration: &mut Integration, _: usize| {
         // SAFETY: null or `times_length` numbers, as the preamble demands.
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
-        let observer = observer.ok_or(Fault::Null { what: "observer" })?;
+        let observer = observer.ok_or(CallError::Null { what: "observer" })?;
         let output = |t: f64, y: &[f64]| {
             // SAFETY: the observer is a function of that type, as the preamble demands.
             match unsafe { observer(t, y.as_ptr(), y.len(), user) } {

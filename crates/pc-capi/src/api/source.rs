@@ -6,12 +6,13 @@ use ::pc_model::Variables;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::{Form, Page};
 
-use crate::api::system::{Inventory, pc_system};
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
+use crate::machinery::system::{Inventory, pc_system};
 
 /// How equations are printed.
 #[repr(C)]
@@ -24,10 +25,11 @@ pub enum pc_format {
     PC_JSON = 2,
 }
 
-/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets, equations, energy
-/// and reactions, or momenta and Hamiltonian, and the operations of one right-hand side. Where multipliers hold
-/// constraints, those of independent velocities are shown. `format` is a pc_format. Parameters have the values
-/// of the model. Free the text with pc_string_free.
+/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+/// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
+/// right-hand side. Where multipliers hold constraints, those of independent velocities are shown.
+/// `format` is a pc_format. Parameters have the values of the model. Free the text with
+/// pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
     system: *const pc_system,
@@ -42,36 +44,36 @@ pub unsafe extern "C" fn pc_system_print(
             0 => Page::Text,
             1 => Page::Latex,
             2 => Page::Json,
-            value => return Err(Fault::Choice { what: "pc_format", value: value.into() }),
+            value => return Err(CallError::Choice { what: "pc_format", value: value.into() }),
         };
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let printed = printed(&unsafe { handle(system, "system") }?.inventory, page)?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, print) }
 }
 
-fn printed(inventory: &Inventory, page: Page) -> Result<String, Fault> {
+fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
     let form = match inventory.variables {
         Variables::QuasiVelocities => Form::Poincare,
         Variables::Momenta => Form::Canonical,
     };
-    let printed = pc_print::page(form, page, model.title(), &assembly);
-    Ok(printed.map_err(|error| model.constraint_error(error))?)
+    Ok(pc_print::page(form, page, model.title(), &assembly)?)
 }
 
-/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
-/// where NAME is `name`, spelt as an identifier: Greek letters by their names, other signs as `_`, one at a time and
-/// not at the ends, `n_` before a digit at the beginning, `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass
-/// matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
-/// system, and says at its head how it is used. External forces are parameters of it, after the others, called
-/// `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
-/// capitals) to a program that integrates from the start of the model to that time. Free both texts with
-/// pc_string_free.
+/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and
+/// of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names, other
+/// signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning, `_`
+/// behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
+/// system, and says at its head how it is used. External forces are parameters of it, after the
+/// others, called `Q_` and the name of their quasi-velocity, and stay zero until they are set. If
+/// `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+/// integrates from the start of the model to that time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,
@@ -84,12 +86,12 @@ pub unsafe extern "C" fn pc_system_emit_c(
     let emit = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(header, "header").and(clear(source, "source")) }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let name = unsafe { text(name, "name") }?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
         let [written_header, written_source] = emitted(inventory, name, t_end)?;
-        // SAFETY: as above; neither is null, so that both texts are handed over.
+        // SAFETY: as the preamble demands; neither is null, so that both texts are handed over.
         unsafe {
             write(header, give(&written_header), "header")?;
             write(source, give(&written_source), "source")
@@ -99,10 +101,10 @@ pub unsafe extern "C" fn pc_system_emit_c(
     unsafe { entry(error, emit) }
 }
 
-fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], Fault> {
+fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let (model, graph) = (&inventory.model, Graph::new());
     let assembly = model.assemble(&graph)?;
-    let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;
+    let equations = assembly.equations()?;
     let mut options = EmitOptions::new(Language::C, name);
     if let Some(title) = &model.document().model.name {
         options = options.title(title.value.clone());
@@ -118,7 +120,7 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
         let state = equations.system().state();
         options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
     }
-    let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
+    let files = assembly.placed(equations.emit(&options))?;
     let mut texts = files.into_iter().map(|file| file.text);
     Ok([texts.next().unwrap_or_default(), texts.next().unwrap_or_default()])
 }

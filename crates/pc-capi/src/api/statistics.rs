@@ -5,7 +5,8 @@ use pc_solve::Statistics;
 use crate::api::options::give;
 use crate::api::solver::pc_solver;
 use crate::ffi::boundary::entry;
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 
@@ -74,7 +75,7 @@ pub unsafe extern "C" fn pc_solver_statistics(
         // SAFETY: null or a live handle, as the preamble demands.
         let counts = unsafe { handle(solver, "solver") }?.inner.take()?.statistics();
         if statistics.is_null() {
-            return Err(Fault::Null { what: "statistics" });
+            return Err(CallError::Null { what: "statistics" });
         }
         // SAFETY: room for `size` bytes, as the preamble demands.
         unsafe { give(statistics, counts.into(), size) };

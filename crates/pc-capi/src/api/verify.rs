@@ -4,18 +4,21 @@ use std::ffi::c_char;
 
 use pc_verify::{Options, VerifyError, verify};
 
-use crate::api::system::{Inner, Inventory, inside, pc_system};
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
+use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
-/// random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,
-/// reactions, the energy and its rate, integrals and outputs. 0 states are 100. `text` says how closely they agree and what was
-/// not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are taken for 0.
-/// PC_DISAGREEMENT, with the quantity and both its values, if one of the two is wrong, which is a defect of the library;
-/// PC_UNSUPPORTED if the second cannot be made of this model. It takes as long as pc_system_new.
+/// Derives the model a second time, by a route that shares only its text with the first, and
+/// compares both at `states` random states on the constraints, for the parameters as they are now:
+/// velocities, accelerations or rates of momenta, reactions, the energy and its rate, integrals and
+/// outputs. 0 states are 100. `text` says how closely they agree and what was not compared, in
+/// lines; it may be NULL, and is freed with pc_string_free. External forces are taken for 0.
+/// PC_DISAGREEMENT, with the quantity and both its values, if one of the two is wrong, which is a
+/// defect of the library; PC_UNSUPPORTED if the second cannot be made of this model. It takes as
+/// long as pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_verify(
     system: *const pc_system,
@@ -29,14 +32,14 @@ pub unsafe extern "C" fn pc_system_verify(
             unsafe { clear(text, "text") }?;
         }
         let report = report(inventory, inner.field.parameters(), states)?;
-        // SAFETY: as above.
+        // SAFETY: as the preamble demands.
         if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compare) }
 }
 
-fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, Fault> {
+fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, CallError> {
     let mut model = inventory.model.clone();
     let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
     for (name, &value) in names.iter().zip(parameters) {
@@ -47,8 +50,8 @@ fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<St
     let usual = Options::default();
     let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };
     let agreement = verify(&model, &options).map_err(|error| match error {
-        VerifyError::Model(error) => Fault::Model(error),
-        other => Fault::Verify(other),
+        VerifyError::Model(error) => CallError::Model(error),
+        other => CallError::Verify(other),
     })?;
     let more = agreement.not_compared.iter().map(|what| format!("not compared: {what}\n"));
     Ok(format!("{agreement}\n{}", more.collect::<String>()))

@@ -4,23 +4,27 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
-use crate::ffi::error::{Fault, pc_error};
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
 
 /// Runs `body`, catching panics, and writes its fault to `*error`, or null.
 ///
 /// # Safety
 /// `error` is null or a place for a pointer.
-pub(crate) unsafe fn entry(error: *mut *mut pc_error, body: impl FnOnce() -> Result<(), Fault>) -> pc_status {
+pub(crate) unsafe fn entry(
+    error: *mut *mut pc_error,
+    body: impl FnOnce() -> Result<(), CallError>,
+) -> pc_status {
     // Unwind safe: what the body may have left half done is held, and not used again after a panic.
     let outcome = catch_unwind(AssertUnwindSafe(|| match body() {
         Ok(()) => (pc_status::PC_OK, ptr::null_mut()),
-        Err(fault @ (Fault::Stopped | Fault::Terminal)) => (fault.status(), ptr::null_mut()),
+        Err(fault @ (CallError::Stopped | CallError::Terminal)) => (fault.status(), ptr::null_mut()),
         Err(fault) if error.is_null() => (fault.status(), ptr::null_mut()),
         Err(fault) => (fault.status(), Box::into_raw(Box::new(fault.into_error()))),
     }));
     let (status, written) = outcome.unwrap_or_else(|panic| {
-        let fault = Fault::Panic { message: message_of(panic) };
+        let fault = CallError::Panic { message: message_of(panic) };
         (fault.status(), Box::into_raw(Box::new(fault.into_error())))
     });
     if !error.is_null() {
@@ -58,30 +62,16 @@ fn message_of(panic: Box<dyn Any + Send>) -> String {
     message
 }
 
-/// Frees a box that was given to C.
-///
-/// # Safety
-/// Null, or made by `Box::into_raw` and used by nobody any more.
-pub(crate) unsafe fn free<T>(boxed: *mut T) {
-    if !boxed.is_null() {
-        // Unwind safe: nobody sees the box again.
-        let _ = catch_unwind(AssertUnwindSafe(|| {
-            // SAFETY: not null, and then as promised.
-            drop(unsafe { Box::from_raw(boxed) });
-        }));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::ffi::CStr;
 
     use super::*;
     use crate::ffi::error::{pc_error_free, pc_error_message};
-    use crate::machinery::exclusive::Held;
+    use crate::machinery::exclusive::Exclusive;
 
     /// Status and message of a call of `body`.
-    fn called(body: impl FnOnce() -> Result<(), Fault>) -> (pc_status, String) {
+    fn called(body: impl FnOnce() -> Result<(), CallError>) -> (pc_status, String) {
         let mut error = ptr::null_mut();
         // SAFETY: a place for a pointer; the error is freed once.
         unsafe {
@@ -104,7 +94,7 @@ mod tests {
 
     #[test]
     fn what_a_panic_left_half_done_is_not_used_again() {
-        let value = Held::new(1);
+        let value = Exclusive::new(1);
         let half_done = called(|| {
             let _held = value.take()?;
             panic!("half done")

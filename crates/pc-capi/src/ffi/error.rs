@@ -1,19 +1,15 @@
 //! What went wrong, for C.
 
-use std::error::Error;
 use std::ffi::{CString, c_char, c_int};
 
-use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
-use pc_expr::Failure;
-use pc_mech::MechError;
-use pc_solve::{CheckpointError, Code, EnsembleError, SolveError};
-use pc_verify::VerifyError;
+use pc_solve::Code;
 
+use crate::ffi::call_error::CallError;
+use crate::ffi::pointer::free;
 use crate::ffi::status::pc_status;
-use crate::ffi::strings::c_string;
 
-/// Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
-/// pc_error_free.
+/// Why a call failed: status, message and, for a model, the place in its text. Never changes; free
+/// it with pc_error_free.
 pub struct pc_error {
     status: pc_status,
     message: CString,
@@ -31,152 +27,10 @@ struct Place {
     length: usize,
 }
 
-/// The ways in which a call can fail.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Fault {
-    #[error("{what} is a null pointer")]
-    Null { what: &'static str },
-    #[error("{what}: room for {found} numbers, but there are {expected}")]
-    Length { what: &'static str, found: usize, expected: usize },
-    #[error("{what}: {found} numbers are more than any memory has, which is {most}; is it −1?")]
-    TooLong { what: &'static str, found: usize, most: usize },
-    #[error("{what} does not stand at a multiple of {alignment} bytes, as its type does")]
-    Misaligned { what: &'static str, alignment: usize },
-    #[error("{what} is not UTF-8 text: byte number {offset} (from 0) does not fit")]
-    NotText { what: &'static str, offset: usize },
-    #[error("{what} is {value}, but must be finite")]
-    NotFinite { what: &'static str, value: f64 },
-    #[error("{first} and {second} share memory")]
-    Overlap { first: &'static str, second: &'static str },
-    #[error("{what} has no value here: it is {value}")]
-    NoValue { what: &'static str, value: f64 },
-    #[error("{value} is not a value of {what}")]
-    Choice { what: &'static str, value: i64 },
-    #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
-    StructSize { what: &'static str, found: usize, least: usize, most: usize },
-    #[error("{what}: there is no number {index}, there are {count}")]
-    Index { what: &'static str, index: usize, count: usize },
-    #[error("{what} needs a model begun with pc_model_new; this one was read from a text")]
-    NotADraft { what: &'static str },
-    #[error("there is no model called `{name}`; pc_builtin_name lists those there are")]
-    NoSuchModel { name: String },
-    #[error("cannot read `{path}`: {source}")]
-    Read { path: String, source: std::io::Error },
-    #[error("{what} is not known of this system: {why}")]
-    Unsupported { what: &'static str, why: &'static str },
-    #[error("the handle is in use by another call")]
-    Busy,
-    #[error("an earlier call failed inside; this handle can only be freed")]
-    Broken,
-    #[error("a fault of the library: {message}")]
-    Panic { message: String },
-    #[error("the observer stopped the integration")]
-    Stopped,
-    #[error("a terminal event ended the integration")]
-    Terminal,
-    #[error("{what} comes before the first step, and there has been one")]
-    Begun { what: &'static str },
-    #[error("there is no event called `{name}`; pc_model_add_event adds one")]
-    NoSuchEvent { name: String },
-    #[error("the event {name} has not occurred")]
-    NotOccurred { name: String },
-    #[error("no terminal event ended the last call")]
-    NotEnded,
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    #[error("{0}")]
-    Ensemble(#[from] EnsembleError),
-    #[error(transparent)]
-    Verify(VerifyError),
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    #[error(transparent)]
-    UnknownParameter(#[from] UnknownParameter),
-    #[error(transparent)]
-    UnknownIntegral(#[from] UnknownIntegral),
-    #[error(transparent)]
-    UnknownStart(#[from] UnknownStart),
-    #[error(transparent)]
-    NotForced(#[from] NotForced),
-    #[error("{0}")]
-    Evaluation(#[from] Failure),
-    #[error(transparent)]
-    Mechanics(#[from] MechError),
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-}
-
-impl Fault {
-    pub(crate) fn status(&self) -> pc_status {
-        match self {
-            Fault::Null { .. }
-            | Fault::Length { .. }
-            | Fault::TooLong { .. }
-            | Fault::Misaligned { .. }
-            | Fault::NotText { .. }
-            | Fault::NotFinite { .. }
-            | Fault::Overlap { .. }
-            | Fault::Choice { .. }
-            | Fault::StructSize { .. }
-            | Fault::Index { .. }
-            | Fault::NotADraft { .. }
-            | Fault::Begun { .. }
-            | Fault::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
-            Fault::Model(error) => match error.category() {
-                Category::Text => pc_status::PC_INVALID_MODEL,
-                Category::Unsupported => pc_status::PC_UNSUPPORTED,
-                Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
-            },
-            Fault::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
-            Fault::Unsupported { .. } | Fault::Verify(_) => pc_status::PC_UNSUPPORTED,
-            Fault::NoSuchModel { .. }
-            | Fault::UnknownParameter(_)
-            | Fault::UnknownIntegral(_)
-            | Fault::UnknownStart(_)
-            | Fault::NotForced(_)
-            | Fault::NoSuchEvent { .. }
-            | Fault::NotOccurred { .. }
-            | Fault::NotEnded => pc_status::PC_NOT_FOUND,
-            Fault::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
-                pc_status::PC_NOT_FOUND
-            }
-            Fault::Read { .. } => pc_status::PC_IO,
-            Fault::Evaluation(_) | Fault::Mechanics(_) | Fault::NoValue { .. } => pc_status::PC_EVALUATION,
-            Fault::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
-            Fault::Stopped => pc_status::PC_STOPPED,
-            Fault::Terminal => pc_status::PC_EVENT,
-            Fault::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
-            Fault::Busy => pc_status::PC_BUSY,
-            // Of the solver: its set-up, which fails for want of memory, as threads do.
-            Fault::Broken | Fault::Panic { .. } | Fault::Ensemble(_) | Fault::Solve(_) => {
-                pc_status::PC_INTERNAL
-            }
-        }
-    }
-
-    /// What is said, with the cause where the sentence does not hold it.
-    fn message(&self) -> String {
-        let mut message = self.to_string();
-        let mut cause = match self {
-            Fault::Solve(error) => error.source(),
-            Fault::Ensemble(error) => error.source(),
-            _ => None,
-        };
-        while let Some(error) = cause {
-            message += &format!(": {error}");
-            cause = error.source();
-        }
-        message
-    }
-
-    /// Status and message.
-    pub(crate) fn told(&self) -> (pc_status, CString) {
-        (self.status(), c_string(&self.message()))
-    }
-
+impl CallError {
     pub(crate) fn into_error(self) -> pc_error {
         let place = match &self {
-            Fault::Model(error) => {
+            CallError::Model(error) => {
                 let (span, position) = (error.span(), error.position());
                 let (line, column) = (position.line, position.column);
                 Place { line, column, offset: span.start, length: span.len() }
@@ -184,13 +38,13 @@ impl Fault {
             _ => Place::default(),
         };
         let code = match &self {
-            Fault::Solve(error) => error.code().map_or(0, Code::number),
+            CallError::Solve(error) => error.code().map_or(0, Code::number),
             _ => 0,
         };
         let (status, message) = self.told();
         let recoverable = match &self {
-            Fault::Evaluation(failure) => failure.is_recoverable(),
-            Fault::NoValue { .. } => true,
+            CallError::Evaluation(failure) => failure.is_recoverable(),
+            CallError::NoValue { .. } => true,
             _ => false,
         };
         pc_error { status, message, place, integrator_code: code, recoverable }
@@ -204,8 +58,8 @@ pub unsafe extern "C" fn pc_error_status(error: *const pc_error) -> pc_status {
     unsafe { error.as_ref() }.map_or(pc_status::PC_OK, |error| error.status)
 }
 
-/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line at fault and
-/// what would be right, over several lines of text. The empty text of null.
+/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line
+/// at fault and what would be right, over several lines of text. The empty text of null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_message(error: *const pc_error) -> *const c_char {
     // SAFETY: null or a live error, as the preamble demands.
@@ -218,7 +72,8 @@ pub unsafe extern "C" fn pc_error_line(error: *const pc_error) -> usize {
     place(error).line
 }
 
-/// The column at which the text at fault begins, in characters from 1; 0 if there is none, or of null.
+/// The column at which the text at fault begins, in characters from 1; 0 if there is none, or of
+/// null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_column(error: *const pc_error) -> usize {
     place(error).column
@@ -243,8 +98,8 @@ pub unsafe extern "C" fn pc_error_integrator_code(error: *const pc_error) -> c_i
     unsafe { error.as_ref() }.map_or(0, |error| error.integrator_code)
 }
 
-/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should try a smaller step;
-/// else 0, as of null.
+/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should
+/// try a smaller step; else 0, as of null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_int {
     // SAFETY: null or a live error, as the preamble demands.
@@ -255,7 +110,7 @@ pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_in
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_free(error: *mut pc_error) {
     // SAFETY: null or an error of ours that nobody uses any more.
-    unsafe { crate::ffi::boundary::free(error) };
+    unsafe { free(error) };
 }
 
 fn place(error: *const pc_error) -> Place {

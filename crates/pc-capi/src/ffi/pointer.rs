@@ -1,17 +1,18 @@
 //! Pointers from C as references and slices, checked as far as they can be.
 
 use std::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use crate::ffi::error::Fault;
+use crate::ffi::call_error::CallError;
 
 /// The object of a handle.
 ///
 /// # Safety
 /// Null, or a live handle of that type.
-pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Result<&'a T, Fault> {
+pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Result<&'a T, CallError> {
     // SAFETY: as promised.
-    unsafe { handle.as_ref() }.ok_or_else(|| Fault::Null { what })
+    unsafe { handle.as_ref() }.ok_or_else(|| CallError::Null { what })
 }
 
 /// `expected` numbers at `data`, of which the caller says there are `found`.
@@ -23,7 +24,7 @@ pub(crate) unsafe fn numbers<'a>(
     found: usize,
     expected: usize,
     what: &'static str,
-) -> Result<&'a [f64], Fault> {
+) -> Result<&'a [f64], CallError> {
     check(data, found, expected, what)?;
     if expected == 0 {
         return Ok(&[]);
@@ -41,7 +42,7 @@ pub(crate) unsafe fn room<'a>(
     found: usize,
     expected: usize,
     what: &'static str,
-) -> Result<&'a mut [f64], Fault> {
+) -> Result<&'a mut [f64], CallError> {
     check(data, found, expected, what)?;
     if expected == 0 {
         return Ok(&mut []);
@@ -64,42 +65,42 @@ pub(crate) unsafe fn fresh<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     unsafe { slice::from_raw_parts_mut(data, len) }
 }
 
-fn check(data: *const f64, found: usize, expected: usize, what: &'static str) -> Result<(), Fault> {
+fn check(data: *const f64, found: usize, expected: usize, what: &'static str) -> Result<(), CallError> {
     if found != expected {
-        return Err(Fault::Length { what, found, expected });
+        return Err(CallError::Length { what, found, expected });
     }
     possible(data, expected, what)
 }
 
 /// Whether there can be so many at that place at all.
-fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), Fault> {
+fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), CallError> {
     if len == 0 {
         return Ok(());
     }
     if data.is_null() {
-        return Err(Fault::Null { what });
+        return Err(CallError::Null { what });
     }
     let most = isize::MAX as usize / size_of::<T>();
     if len > most {
-        return Err(Fault::TooLong { what, found: len, most });
+        return Err(CallError::TooLong { what, found: len, most });
     }
     aligned(data, what)
 }
 
 /// Refuses what does not stand where its type does.
-pub(crate) fn aligned<T>(data: *const T, what: &'static str) -> Result<(), Fault> {
-    if data.is_aligned() { Ok(()) } else { Err(Fault::Misaligned { what, alignment: align_of::<T>() }) }
+pub(crate) fn aligned<T>(data: *const T, what: &'static str) -> Result<(), CallError> {
+    if data.is_aligned() { Ok(()) } else { Err(CallError::Misaligned { what, alignment: align_of::<T>() }) }
 }
 
 /// Refuses arrays of input and output that share memory, before either is made a slice.
 pub(crate) fn apart(
     first: (*const f64, usize, &'static str),
     second: (*const f64, usize, &'static str),
-) -> Result<(), Fault> {
+) -> Result<(), CallError> {
     if are_apart((first.0, first.1), (second.0, second.1)) {
         Ok(())
     } else {
-        Err(Fault::Overlap { first: first.2, second: second.2 })
+        Err(CallError::Overlap { first: first.2, second: second.2 })
     }
 }
 
@@ -125,13 +126,13 @@ fn are_apart(first: (*const f64, usize), second: (*const f64, usize)) -> bool {
 ///
 /// # Safety
 /// Null, or zero-terminated text that nobody changes during the call.
-pub(crate) unsafe fn text<'a>(text: *const c_char, what: &'static str) -> Result<&'a str, Fault> {
+pub(crate) unsafe fn text<'a>(text: *const c_char, what: &'static str) -> Result<&'a str, CallError> {
     if text.is_null() {
-        return Err(Fault::Null { what });
+        return Err(CallError::Null { what });
     }
     // SAFETY: not null, and then as promised.
     let text = unsafe { CStr::from_ptr(text) };
-    text.to_str().map_err(|error| Fault::NotText { what, offset: error.valid_up_to() })
+    text.to_str().map_err(|error| CallError::NotText { what, offset: error.valid_up_to() })
 }
 
 /// `len` bytes.
@@ -142,7 +143,7 @@ pub(crate) unsafe fn bytes<'a>(
     data: *const c_char,
     len: usize,
     what: &'static str,
-) -> Result<&'a [u8], Fault> {
+) -> Result<&'a [u8], CallError> {
     possible(data, len, what)?;
     if len == 0 {
         return Ok(&[]);
@@ -155,9 +156,9 @@ pub(crate) unsafe fn bytes<'a>(
 ///
 /// # Safety
 /// Null, or a place for a `T`.
-pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Result<(), Fault> {
+pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Result<(), CallError> {
     if place.is_null() {
-        return Err(Fault::Null { what });
+        return Err(CallError::Null { what });
     }
     // SAFETY: not null, and then as promised.
     unsafe { place.write(value) };
@@ -168,14 +169,14 @@ pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Re
 ///
 /// # Safety
 /// Null, or a place for a pointer.
-pub(crate) unsafe fn clear<T>(place: *mut *mut T, what: &'static str) -> Result<(), Fault> {
+pub(crate) unsafe fn clear<T>(place: *mut *mut T, what: &'static str) -> Result<(), CallError> {
     // SAFETY: as promised.
     unsafe { write(place, std::ptr::null_mut(), what) }
 }
 
 /// The number, if it is finite.
-pub(crate) fn finite(value: f64, what: &'static str) -> Result<f64, Fault> {
-    if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { what, value }) }
+pub(crate) fn finite(value: f64, what: &'static str) -> Result<f64, CallError> {
+    if value.is_finite() { Ok(value) } else { Err(CallError::NotFinite { what, value }) }
 }
 
 /// The texts of an array of C strings.
@@ -186,7 +187,7 @@ pub(crate) unsafe fn texts<'a>(
     list: *const *const c_char,
     length: usize,
     what: &'static str,
-) -> Result<Vec<&'a str>, Fault> {
+) -> Result<Vec<&'a str>, CallError> {
     possible(list, length, what)?;
     if length == 0 {
         return Ok(Vec::new());
@@ -195,4 +196,18 @@ pub(crate) unsafe fn texts<'a>(
     let list = unsafe { slice::from_raw_parts(list, length) };
     // SAFETY: as promised.
     list.iter().map(|&entry| unsafe { text(entry, what) }).collect()
+}
+
+/// Frees a box that was given to C.
+///
+/// # Safety
+/// Null, or made by `Box::into_raw` and used by nobody any more.
+pub(crate) unsafe fn free<T>(boxed: *mut T) {
+    if !boxed.is_null() {
+        // Unwind safe: nobody sees the box again.
+        let _ = catch_unwind(AssertUnwindSafe(|| {
+            // SAFETY: not null, and then as promised.
+            drop(unsafe { Box::from_raw(boxed) });
+        }));
+    }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use ::pc_model::{Document, ModelError, Source, UnknownParameter, UnknownStart};
 
-use crate::ffi::error::Fault;
+use crate::ffi::call_error::CallError;
 
 /// Entries in the order in which they came, each in a section of the text.
 #[derive(Clone, Debug)]
@@ -130,9 +130,9 @@ impl Draft {
     }
 
     /// Adds a reset to an event that has been added.
-    pub(crate) fn add_reset(&mut self, event: &str, variable: &str, value: String) -> Result<(), Fault> {
+    pub(crate) fn add_reset(&mut self, event: &str, variable: &str, value: String) -> Result<(), CallError> {
         if !self.names(Section::Events).iter().any(|known| known == event) {
-            return Err(Fault::NoSuchEvent { name: event.to_owned() });
+            return Err(CallError::NoSuchEvent { name: event.to_owned() });
         }
         self.add(Section::Events, &[event, "reset", variable], value);
         Ok(())

@@ -9,16 +9,16 @@ use pc_solve::{
     Statistics, VectorField,
 };
 
-use crate::ffi::error::Fault;
+use crate::ffi::call_error::CallError;
 use crate::machinery::event_set::{Followed, Own};
-use crate::machinery::field::Field;
+use crate::machinery::motion_field::MotionField;
 
 /// The integration by CVODE, with its events.
-pub(crate) type Engine = Box<pc_solve::Integration<Cvode<Field>, Followed>>;
+pub(crate) type Engine = Box<pc_solve::Integration<Cvode<MotionField>, Followed>>;
 
 /// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
 pub(crate) fn engine(
-    mut field: Field,
+    mut field: MotionField,
     from: &Checkpoint,
     options: &Options,
     events: Followed,
@@ -89,7 +89,7 @@ pub(crate) struct Integration {
 
 impl Integration {
     pub(crate) fn new(
-        field: Field,
+        field: MotionField,
         from: &Checkpoint,
         options: Options,
         events: Followed,
@@ -101,9 +101,9 @@ impl Integration {
     }
 
     /// Follows one more event. Where that is refused, nothing has changed.
-    pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), Fault> {
+    pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
-            return Err(Fault::Begun { what: "an event" });
+            return Err(CallError::Begun { what: "an event" });
         }
         let events = self.events.with(event, own);
         self.begin(&Checkpoint::start(self.time(), self.state()), events)?;
@@ -113,9 +113,9 @@ impl Integration {
     }
 
     /// Integrates one more column of sensitivities. Where that is refused, nothing has changed.
-    pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
-            return Err(Fault::Begun { what: "a sensitivity" });
+            return Err(CallError::Begun { what: "a sensitivity" });
         }
         let more = self.sensitivities.clone().by_parameter_from(parameter, start);
         let before = std::mem::replace(&mut self.sensitivities, more);
@@ -142,23 +142,23 @@ impl Integration {
     }
 
     /// What the motion can be taken up from. It begins anew there itself.
-    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, Fault> {
+    pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, CallError> {
         let checkpoint = self.stand("a checkpoint")?;
         self.begin(&checkpoint, self.events.clone())?;
         Ok(checkpoint)
     }
 
     /// Begins anew where it stands with these values of the parameters.
-    pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), CallError> {
         let what = "a change of parameters";
         let stand = self.stand(what)?;
         if !self.sensitivities.is_empty() {
-            return Err(Fault::Unsupported { what, why: "there are sensitivities by them" });
+            return Err(CallError::Unsupported { what, why: "there are sensitivities by them" });
         }
         let (mut field, mut events) = (self.engine.field().clone(), self.events.clone());
         let (found, expected) = (values.len(), field.parameters().len());
         if found != expected {
-            return Err(Fault::Length { what: "the parameters", found, expected });
+            return Err(CallError::Length { what: "the parameters", found, expected });
         }
         field.parameters_mut().copy_from_slice(values);
         events.set_parameters(values);
@@ -168,9 +168,9 @@ impl Integration {
         Ok(())
     }
 
-    fn stand(&self, what: &'static str) -> Result<Checkpoint, Fault> {
+    fn stand(&self, what: &'static str) -> Result<Checkpoint, CallError> {
         if self.events.has_own() {
-            return Err(Fault::Unsupported { what, why: "there are events of the program's own" });
+            return Err(CallError::Unsupported { what, why: "there are events of the program's own" });
         }
         Ok(self.engine.checkpoint())
     }
@@ -211,13 +211,13 @@ impl Integration {
     }
 
     /// What the end of a call means to its caller.
-    pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), Fault> {
+    pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), CallError> {
         match ending {
             Ending::Completed => Ok(()),
-            Ending::Stopped => Err(Fault::Stopped),
+            Ending::Stopped => Err(CallError::Stopped),
             Ending::Event { event } => {
                 self.record.terminal = Some(event);
-                Err(Fault::Terminal)
+                Err(CallError::Terminal)
             }
         }
     }

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::ffi::error::Fault;
+use crate::ffi::call_error::CallError;
 
 const FREE: u8 = 0;
 const IN_USE: u8 = 1;
@@ -15,29 +15,29 @@ const BROKEN: u8 = 2;
 ///
 /// As a mutex that nobody waits for; to give it back takes no atomic exchange, which is felt in an evaluation of
 /// some nanoseconds.
-pub(crate) struct Held<T> {
+pub(crate) struct Exclusive<T> {
     state: AtomicU8,
     value: UnsafeCell<T>,
 }
 
 // SAFETY: the value goes from thread to thread, and only one has it at a time.
-unsafe impl<T: Send> Sync for Held<T> {}
+unsafe impl<T: Send> Sync for Exclusive<T> {}
 
 /// The value, until this is dropped.
-pub(crate) struct Use<'a, T>(&'a Held<T>, PhantomData<&'a mut T>);
+pub(crate) struct Use<'a, T>(&'a Exclusive<T>, PhantomData<&'a mut T>);
 
-impl<T> Held<T> {
-    pub(crate) fn new(value: T) -> Held<T> {
-        Held { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
+impl<T> Exclusive<T> {
+    pub(crate) fn new(value: T) -> Exclusive<T> {
+        Exclusive { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
     }
 
     /// The value, if nobody else uses it.
     #[inline]
-    pub(crate) fn take(&self) -> Result<Use<'_, T>, Fault> {
+    pub(crate) fn take(&self) -> Result<Use<'_, T>, CallError> {
         match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {
             Ok(_) => Ok(Use(self, PhantomData)),
-            Err(BROKEN) => Err(Fault::Broken),
-            Err(_) => Err(Fault::Busy),
+            Err(BROKEN) => Err(CallError::Broken),
+            Err(_) => Err(CallError::Busy),
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering, fence};
 
 use pc_mech::MachineCode;
 
-use crate::machinery::field::Field;
+use crate::machinery::motion_field::MotionField;
 
 /// The machine code of f, and the parameters it is for.
 ///
@@ -28,7 +28,7 @@ const ON_STACK: usize = 256;
 impl Direct {
     /// With the parameters as they are; none where the field is more than machine code. The code is compiled if it was
     /// not, and lives as long as the field.
-    pub(crate) fn of(field: &mut Field) -> Option<Direct> {
+    pub(crate) fn of(field: &mut MotionField) -> Option<Direct> {
         let code = field.machine_code()?;
         let beside = if code.outputs_len() == code.rates_len() { 0 } else { code.outputs_len() };
         let numbers = |len: usize| (0..len).map(|_| AtomicU64::new(0)).collect();
@@ -44,7 +44,7 @@ impl Direct {
     }
 
     /// Takes over the parameters of the field; one call at a time.
-    pub(crate) fn publish(&self, field: &mut Field) {
+    pub(crate) fn publish(&self, field: &mut MotionField) {
         let fixed: Vec<f64> = field.fixed_pivots().unwrap_or_default().to_vec();
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version + 1, Ordering::Relaxed);

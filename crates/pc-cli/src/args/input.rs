@@ -8,7 +8,7 @@ use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
 
-use crate::args::args::{ModelArguments, Setting};
+use crate::args::options::{ModelArguments, Setting};
 use crate::error::CliError;
 
 /// The model that the command line names, its parameters set.
@@ -72,6 +72,6 @@ pub(crate) fn no_such_model(name: &str) -> CliError {
 /// [`ModelError`] at the place in the file that is to blame.
 pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equations<'g>), ModelError> {
     let assembly = model.assemble(graph)?;
-    let equations = assembly.equations().map_err(|error| model.constraint_error(error))?;
+    let equations = assembly.equations()?;
     Ok((assembly, equations))
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
-use crate::args::args;
-use crate::args::args::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
-use crate::run::checkpoint::SavingArguments;
+use crate::args::checkpoint::CheckpointArguments;
+use crate::args::options;
+use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -44,28 +44,28 @@ pub struct SweepArguments {
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// End time; else that of the file
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = args::finite)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
     /// Write N rows of each member, evenly spaced, start and end included, instead of the last one and the drifts
-    #[arg(long, value_name = "N", value_parser = args::samples)]
+    #[arg(long, value_name = "N", value_parser = options::samples)]
     pub rows: Option<usize>,
     /// Relative tolerance; else that of the file, else 1e-9
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = args::positive)]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = options::positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance; else that of the file, else 1e-12
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = args::positive)]
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = options::positive)]
     pub atol: Option<f64>,
     /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
-    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = args::positive)]
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = options::positive)]
     pub max_step: Option<f64>,
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
-    #[arg(long, value_name = "METHOD", value_parser = args::method)]
+    #[arg(long, value_name = "METHOD", value_parser = options::method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
-    #[arg(long, value_name = "FORM", value_parser = args::run_form)]
+    #[arg(long, value_name = "FORM", value_parser = options::run_form)]
     pub form: Option<RunForm>,
     /// Bring each motion back to the value of an integral, or of energy, after each step (repeatable)
     #[arg(long, value_name = "NAME")]
@@ -94,7 +94,7 @@ impl SweepArguments {
             no_verify: true,
             output: None,
             plot: None,
-            saving: SavingArguments::default(),
+            checkpoints: CheckpointArguments::default(),
         }
     }
 }
@@ -137,7 +137,7 @@ fn vary(text: &str) -> Result<Vary, String> {
     let (name, range) = text.split_once('=').ok_or_else(usage)?;
     let parts: Vec<&str> = range.split(':').map(str::trim).collect();
     let &[from, to, count] = &parts[..] else { return Err(usage()) };
-    let (from, to) = (args::finite(from)?, args::finite(to)?);
+    let (from, to) = (options::finite(from)?, options::finite(to)?);
     let count = count.parse().ok().filter(|&count: &u64| count > 0);
     let count = count.ok_or("the number of values is a whole number from 1")?;
     if !(to - from).is_finite() {
@@ -160,7 +160,7 @@ fn random(text: &str) -> Result<Random, String> {
     let (kind, numbers) =
         law.trim().strip_suffix(')').and_then(|law| law.split_once('(')).ok_or_else(usage)?;
     let (a, b) = numbers.split_once(',').ok_or_else(usage)?;
-    let (a, b) = (args::finite(a.trim())?, args::finite(b.trim())?);
+    let (a, b) = (options::finite(a.trim())?, options::finite(b.trim())?);
     let law = match kind.trim() {
         "normal" if b >= 0.0 => Law::Normal(a, b),
         "lognormal" if b >= 0.0 => Law::LogNormal(a, b),

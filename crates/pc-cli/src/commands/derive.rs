@@ -3,11 +3,11 @@
 use pc_mech::Graph;
 use pc_print::page;
 
-use crate::args::args::DeriveArguments;
 use crate::args::input;
+use crate::args::options::DeriveArguments;
 use crate::error::CliError;
+use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
-use crate::report::text::print;
 
 /// Prints the equations of a model.
 ///
@@ -19,7 +19,6 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
-    let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly);
-    let page = page.map_err(|error| model.constraint_error(error))?;
+    let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly)?;
     print(|out| write!(out, "{page}"))
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Graph, Language};
 use pc_print::energy_remark;
 
-use crate::args::args::{EmitArguments, Lang};
 use crate::args::input;
+use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
 use crate::output::atomic;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
@@ -58,15 +58,14 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
         let system = equations.system();
         options = options.start(assembly.t_start, &assembly.start_of(&system.state()), t_end.value);
     }
-    let files = equations.emit(&options).map_err(|error| model.derivation_error(error))?;
+    let files = assembly.placed(equations.emit(&options))?;
 
     let directory = &arguments.output;
-    let cannot = |path: &Path, source| CliError::Write { path: path.display().to_string(), source };
-    fs::create_dir_all(directory).map_err(|source| cannot(directory, source))?;
+    fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
     for file in files {
         let path = directory.join(&file.name);
         atomic::write(&path, |out| out.write_all(file.text.as_bytes()))
-            .map_err(|source| cannot(&path, source))?;
+            .map_err(|source| CliError::cannot_write(&path, source))?;
         say(format_args!("{}\n", path.display()));
     }
     Ok(())

@@ -6,10 +6,10 @@ use pc_algebra::{CATALOGUE, LieAlgebra};
 use pc_model::{BUILTIN, Builtin};
 use pc_print::{columns, combination};
 
-use crate::args::args::ModelsArguments;
 use crate::args::input::no_such_model;
+use crate::args::options::ModelsArguments;
 use crate::error::CliError;
-use crate::report::text::print;
+use crate::output::standard_output::print;
 
 /// Prints the list of the built-in models, the text of one, or the algebras that have a name.
 ///

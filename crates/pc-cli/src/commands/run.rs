@@ -1,88 +1,29 @@
 //! `pc run`: integrate, write, sum up.
 
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pc_mech::Graph;
 use pc_model::{Flow, Model};
-use pc_solve::{self as solver, Events, Solution, SolveError, Statistics, Trajectory};
+use pc_solve::{self as solver, Events, Solution, Trajectory};
 
-use crate::args::args::{Outputs, RunArguments, RunForm};
+use crate::args::checkpoint::CheckpointArguments;
 use crate::args::input;
+use crate::args::options::{Outputs, RunArguments, RunForm};
 use crate::error::CliError;
-use crate::output::output::Destination;
-use crate::plot::plot::Picture;
+use crate::motion::checkpoint::Checkpoints;
+use crate::motion::follow::follow;
+use crate::motion::interrupt;
+use crate::motion::plan::Plan;
+use crate::motion::progress::Progress;
+use crate::motion::run::{Ending, Run};
+use crate::motion::sensitivities::Derivatives;
+use crate::motion::table::Table;
+use crate::output::destination::Destination;
+use crate::plot::picture::Picture;
 use crate::report::notes::{dropped, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
-use crate::run::checkpoint::{Saving, SavingArguments};
-use crate::run::follow::follow;
-use crate::run::interrupt;
-use crate::run::plan::Plan;
-use crate::run::progress::Progress;
-use crate::run::sensitivities::Derivatives;
-use crate::run::table::Table;
-
-/// A motion as far as it was computed, and how that went.
-#[derive(Debug)]
-pub struct Run {
-    /// What the model calls itself.
-    pub title: String,
-    /// The parameters with their values.
-    pub parameters: Vec<(String, f64)>,
-    /// How it was to be computed.
-    pub plan: Plan,
-    /// Names of the components of the state that was integrated.
-    pub state: Vec<String>,
-    /// What was reached.
-    pub table: Table,
-    /// The constraints that are held, with the largest residual of each at the output times.
-    pub constraints: Vec<(String, f64)>,
-    /// The constraints that were dropped, each with the reason.
-    pub dropped: Vec<(String, String)>,
-    /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
-    pub keeps_energy: bool,
-    /// The names of the events that the model has.
-    pub events: Vec<String>,
-    /// What occurred, in order: the numbers of events, and when.
-    pub occurrences: Vec<(usize, f64)>,
-    /// How it ended.
-    pub ending: Ending,
-    /// What a second derivation says; none where it was not asked.
-    pub verification: Option<Verification>,
-    /// The work done.
-    pub statistics: Statistics,
-    /// The time it took.
-    pub wall: Duration,
-}
-
-/// How a run ended.
-#[derive(Debug)]
-pub enum Ending {
-    /// At its end.
-    Completed,
-    /// By a terminal event.
-    Event {
-        /// Its name.
-        name: String,
-    },
-    /// By Ctrl-C.
-    Interrupted,
-    /// The integration could not go on.
-    Failed(Box<SolveError>),
-}
-
-impl Ending {
-    /// In a word.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Ending::Completed => "completed",
-            Ending::Event { .. } => "event",
-            Ending::Interrupted => "interrupted",
-            Ending::Failed(_) => "failed",
-        }
-    }
-}
 
 /// Does what `pc run` is asked to.
 ///
@@ -102,7 +43,9 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     }
     let form = Plan::form(&model, arguments);
     let verify = !arguments.no_verify;
-    let run = integrate_saved(&model, form, verify, &arguments.saving, || Plan::new(&model, arguments))?;
+    let run = integrate_with_checkpoints(&model, form, verify, &arguments.checkpoints, || {
+        Plan::new(&model, arguments)
+    })?;
 
     let written = write(&run, &destination, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
@@ -127,18 +70,18 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    integrate_saved(model, form, true, &SavingArguments::default(), plan)
+    integrate_with_checkpoints(model, form, true, &CheckpointArguments::default(), plan)
 }
 
 /// As [`integrate`], with checkpoints, and without the second derivation unless `verify` says so.
 ///
 /// # Errors
 /// As there, and what is wrong with a checkpoint to go on from.
-pub fn integrate_saved(
+pub fn integrate_with_checkpoints(
     model: &Model,
     form: RunForm,
     verify: bool,
-    saving: &SavingArguments,
+    checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
     let graph = Graph::new();
@@ -148,7 +91,7 @@ pub fn integrate_saved(
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
-    let mut saving = Saving::new(saving, model, &plan, form)?;
+    let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
     let mut derivatives = match plan.sensitivities.as_slice() {
         [] => None,
         parameters => Some(Derivatives::new(model, form, parameters)?),
@@ -166,8 +109,8 @@ pub fn integrate_saved(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let (solved, error) = match (&mut saving, &mut derivatives) {
-        (Some(saving), _) => saving.solve(&flow, &plan, observer)?,
+    let (solved, error) = match (&mut checkpoints, &mut derivatives) {
+        (Some(checkpoints), _) => checkpoints.solve(&flow, &plan, observer)?,
         (None, Some(derivatives)) => {
             derivatives.follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer)
         }

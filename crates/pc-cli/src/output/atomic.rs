@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use tempfile::Builder;
 
+/// A file that is written, with what is not on disk yet.
+pub(crate) type FileWriter<'f> = BufWriter<&'f mut File>;
+
 /// Whether a file can be at `path`: its directory is there, and it is not a directory itself.
 pub(crate) fn look(path: &Path) -> io::Result<()> {
     if path.is_dir() {
@@ -29,7 +32,7 @@ pub(crate) fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
 /// As [`write()`], for what is not written from its beginning to its end.
 pub(crate) fn write_file(
     path: &Path,
-    write: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
 ) -> io::Result<()> {
     let path = followed(path);
     let mut builder = Builder::new();

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::run::table::Table;
+use crate::motion::table::Table;
 
 /// A header, then a line for each row, numbers with 17 significant digits: those that give the same number back.
 pub(super) fn write(table: &Table, out: &mut dyn Write) -> io::Result<()> {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
-use crate::commands::run::Run;
+use crate::motion::run::Run;
 use crate::report::summary;
 
 /// Numbers are as short as gives the same number back; what is not finite is null.

@@ -6,7 +6,7 @@ use npyz::WriterBuilder;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use crate::commands::run::Run;
+use crate::motion::run::Run;
 
 /// One array of `f64` for each column, and `events/NAME` with its times for each event; the archive bears no date, so that
 /// the same run gives the same bytes.

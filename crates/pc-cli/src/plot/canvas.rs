@@ -8,7 +8,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
 
-use crate::plot::plot::{Panel, Picture, PlotError, Scale};
+use crate::plot::error::PlotError;
+use crate::plot::picture::{Panel, Picture, Scale};
 
 /// Size in points: of the picture, and of a panel's height.
 const WIDTH: u32 = 960;
@@ -42,7 +43,25 @@ const COLOURS: [RGBColor; 8] = [
     RGBColor(120, 120, 120),
 ];
 
-pub(super) fn svg(picture: &Picture) -> Result<String, PlotError> {
+impl Picture {
+    /// As vector graphics.
+    ///
+    /// # Errors
+    /// [`PlotError`].
+    pub fn svg(&self) -> Result<String, PlotError> {
+        svg(self)
+    }
+
+    /// As a bitmap.
+    ///
+    /// # Errors
+    /// [`PlotError`].
+    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
+        png(self)
+    }
+}
+
+fn svg(picture: &Picture) -> Result<String, PlotError> {
     register()?;
     let (width, height) = size(picture);
     let mut svg = String::new();
@@ -51,7 +70,7 @@ pub(super) fn svg(picture: &Picture) -> Result<String, PlotError> {
     Ok(svg.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1))
 }
 
-pub(super) fn png(picture: &Picture) -> Result<Vec<u8>, PlotError> {
+fn png(picture: &Picture) -> Result<Vec<u8>, PlotError> {
     register()?;
     let (width, height) = size(picture);
     let (width, height) = (width * PNG_SCALE, height * PNG_SCALE);

@@ -1,7 +1,7 @@
 //! What is said of constraints beside the equations.
 
 use pc_mech::{Constraint, Expr, System};
-use pc_model::{Assembly, Form};
+use pc_model::{Assembly, ConstraintFormulation};
 
 use crate::report::text::{say, short, wrapped};
 
@@ -11,7 +11,7 @@ pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
         [] => "says nothing".to_owned(),
         names => format!("follows from {}", names.join(", ")),
     };
-    let redundant = assembly.bound.redundant().iter();
+    let redundant = assembly.constraints.redundant().iter();
     redundant.map(|redundant| (redundant.constraint.clone(), reason(&redundant.follows_from))).collect()
 }
 
@@ -25,8 +25,8 @@ pub fn say_dropped(assembly: &Assembly<'_>) {
 /// What is to be known of equations in the `free` velocities chosen from those that constraints bind, or in all where
 /// they bind none of them to others; nothing where there is no choice.
 pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
-    let Form::Held(_) = assembly.bound.form() else { return None };
-    if let Some(held) = assembly.bound.nonlinear() {
+    let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
+    if let Some(held) = assembly.constraints.nonlinear() {
         let names: Vec<&str> = held.constraints().iter().map(Constraint::name).collect();
         let are = if names.len() == 1 { "is an integral" } else { "are integrals" };
         return Some(format!(
@@ -93,7 +93,7 @@ pub const NEGATIVE_ENERGY: &str = "the kinetic energy is negative for some veloc
 
 /// Says which forces of reactions on bodies are not among the outputs, on standard error.
 pub fn say_undetermined(assembly: &Assembly<'_>) {
-    let left_out = assembly.bound.undetermined();
+    let left_out = assembly.constraints.undetermined();
     if !left_out.is_empty() {
         let are = if left_out.len() == 1 { "is" } else { "are" };
         say(format_args!(

@@ -3,7 +3,7 @@
 use pc_print::columns;
 use serde_json::{Map, Value, json};
 
-use crate::commands::run::{Ending, Run};
+use crate::motion::run::{Ending, Run};
 use crate::report::text::{assignments, labelled, short, small};
 
 const LABEL: usize = 9;

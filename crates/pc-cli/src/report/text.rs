@@ -1,32 +1,13 @@
-//! Numbers and lines for people, and writing that does not mind a closed pipe.
+//! Numbers and lines for people.
 
 use std::fmt;
 use std::io::{self, Write};
 
 use pc_print::columns;
 
-use crate::error::CliError;
-
 /// Writes to standard error; where nobody listens, nothing happens.
 pub fn say(message: fmt::Arguments<'_>) {
     let _ = io::stderr().lock().write_fmt(message);
-}
-
-/// Writes to standard output; a reader that has gone away (`pc run … | head`) is no error.
-///
-/// # Errors
-/// [`CliError::Write`] for anything else.
-pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
-    let mut out = io::BufWriter::new(io::stdout().lock());
-    match write(&mut out).and_then(|()| out.flush()) {
-        Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
-            Err(CliError::Write { path: "standard output".to_owned(), source })
-        }
-        _ => {
-            drop(out.into_parts()); // what could not be written is not tried again
-            Ok(())
-        }
-    }
 }
 
 /// A number in at most `digits` significant digits, without needless zeros.

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use pc_solve::EnsembleError;
 
+use crate::exit_code;
+
 /// Why a sweep was not begun or not completed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -97,7 +99,7 @@ impl SweepError {
             | SweepError::Foreign { .. }
             | SweepError::OtherSweep { .. }
             | SweepError::Journal { .. }
-            | SweepError::Ensemble(_) => crate::CliError::USAGE,
+            | SweepError::Ensemble(_) => exit_code::USAGE,
         }
     }
 }

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 
 use super::error::SweepError;
 use super::record::{Record, Status};
-use crate::run::identity;
-use crate::run::identity::Identity;
+use crate::motion::identity;
+use crate::motion::identity::Identity;
 
 const MAGIC: &[u8] = b"pc sweep journal\n";
 

@@ -10,11 +10,11 @@ use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
-use crate::args::args::RunForm;
-use crate::run::follow::follow;
-use crate::run::interrupt;
-use crate::run::plan::Plan;
-use crate::run::table::Table;
+use crate::args::options::RunForm;
+use crate::motion::follow::follow;
+use crate::motion::interrupt;
+use crate::motion::plan::Plan;
+use crate::motion::table::Table;
 
 /// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
 /// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.
@@ -53,7 +53,7 @@ impl Prototype {
         }
         let graph = Graph::new();
         let assembly = model.assemble(&graph).ok()?;
-        if !assembly.bound.redundant().is_empty() {
+        if !assembly.constraints.redundant().is_empty() {
             return None;
         }
         let flow = Flow::new(model, &assembly, form.into()).ok()?;

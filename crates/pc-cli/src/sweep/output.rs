@@ -1,83 +1,11 @@
 //! The table of a sweep as a file, made from its journal in memory that does not grow with the number of members.
+//!
+//! In go a journal and the sheet of its rows, out comes a file. `csv`, `json`, `npz` and `parquet` are the formats,
+//! `destination` chooses one.
 
 mod csv;
+pub(crate) mod destination;
 mod json;
 mod npz;
 #[cfg(feature = "parquet")]
 mod parquet;
-
-use std::fs::File;
-use std::io::{self, BufWriter};
-use std::path::{Path, PathBuf};
-
-use super::journal::Journal;
-use super::sheet::Sheet;
-use crate::error::CliError;
-use crate::output::atomic;
-
-type Out<'f> = BufWriter<&'f mut File>;
-
-/// Where the table goes.
-#[derive(Debug)]
-pub(crate) struct Destination {
-    path: PathBuf,
-    encoding: Encoding,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Encoding {
-    Csv,
-    Json,
-    Npz,
-    #[cfg(feature = "parquet")]
-    Parquet,
-}
-
-impl Destination {
-    /// # Errors
-    /// [`CliError::UnknownExtension`]; [`CliError::Write`] where no file can be.
-    pub(crate) fn new(path: &Path) -> Result<Destination, CliError> {
-        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        let encoding = match extension.as_deref() {
-            Some("csv") => Encoding::Csv,
-            Some("json") => Encoding::Json,
-            Some("npz") => Encoding::Npz,
-            #[cfg(feature = "parquet")]
-            Some("parquet") => Encoding::Parquet,
-            _ => {
-                let expected = if cfg!(feature = "parquet") {
-                    ".csv, .json, .npz or .parquet"
-                } else {
-                    ".csv, .json or .npz (.parquet where pc is built with its feature `parquet`)"
-                };
-                return Err(CliError::UnknownExtension { option: "-o", path: path.to_owned(), expected });
-            }
-        };
-        atomic::look(path).map_err(|source| write_error(path, source))?;
-        Ok(Destination { path: path.to_owned(), encoding })
-    }
-
-    /// The file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Writes the table.
-    ///
-    /// # Errors
-    /// [`CliError::Write`]; an existing file is then as it was.
-    pub(crate) fn write(&self, title: &str, sheet: &Sheet, journal: &Journal) -> Result<(), CliError> {
-        let written = atomic::write_file(&self.path, |out| match self.encoding {
-            Encoding::Csv => csv::write(sheet, journal, out),
-            Encoding::Json => json::write(title, sheet, journal, out),
-            Encoding::Npz => npz::write(sheet, journal, out),
-            #[cfg(feature = "parquet")]
-            Encoding::Parquet => parquet::write(sheet, journal, out),
-        });
-        written.map_err(|source| write_error(&self.path, source))
-    }
-}
-
-fn write_error(path: &Path, source: io::Error) -> CliError {
-    CliError::Write { path: path.display().to_string(), source }
-}

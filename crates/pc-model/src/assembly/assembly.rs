@@ -1,297 +1,104 @@
-//! From a document to a mechanical system.
+//! The mechanical system of a model, its constraints and its start.
 
-use pc_mech::{Expr, Graph, MechError, System};
+use std::sync::Arc;
 
-use crate::assembly::bodies::Body;
+use pc_mech::{Equations, Expr, System};
+use pc_nonholo::NonholoError;
+
+use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
+use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document::NamedExpression;
-use crate::model::model::{Assembly, Model};
-use crate::names::scope::{Scope, Stage};
+use crate::document::Document;
 
-/// The mechanical system of a model, its expressions in `graph`, and its start state.
-///
-/// # Errors
-/// [`ModelError`] at the place in the file that is to blame.
-pub(crate) fn assemble<'g>(model: &Model, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
-    Assembler { model, graph, scope: Scope::new(graph, model.document()) }.assemble()
+/// The system of a model, with the state its motion starts from.
+pub struct Assembly<'g> {
+    /// The system, without its constraints. Its quasi-velocities are those declared and those that constraints define.
+    pub system: System<'g>,
+    /// Its constraints.
+    pub constraints: ConstraintTreatment<'g>,
+    /// Start time.
+    pub t_start: f64,
+    /// Start state: coordinates, quasi-velocities, first-order states.
+    pub start: Vec<f64>,
+    /// The start state as written, where it was to be moved to the constraints.
+    pub written_start: Option<Vec<f64>>,
+    /// Number of quasi-velocities that are declared, the first ones; the velocities where none is.
+    pub declared: usize,
+    /// What happens where, in the order in which simultaneous events are dealt with.
+    pub events: Vec<Event<'g>>,
+    /// The text, in which errors have their places.
+    pub(crate) document: Arc<Document>,
 }
 
-/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
-///
-/// # Errors
-/// [`ModelError`] where one is not a number.
-pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
-    let parameters: Vec<(Expr<'_>, f64)> =
-        model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
-    let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
-    let given = assembler.given_start(&parameters)?;
-    Ok([given.values, given.states].concat())
-}
-
-pub(super) struct Assembler<'g, 'm> {
-    pub(super) model: &'m Model,
-    pub(super) graph: &'g Graph,
-    pub(super) scope: Scope<'g, 'm>,
-}
-
-impl<'g> Assembler<'g, '_> {
-    fn assemble(&mut self) -> Result<Assembly<'g>, ModelError> {
-        let document = self.model.document();
-        let parameters: Vec<(Expr<'g>, f64)> =
-            self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
-        let given = self.given_start(&parameters)?;
-        let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
-        let mut constraints = self.constraints()?;
-        let mut at = parameters.clone();
-        at.push((self.graph.symbol("t"), t_start));
-        at.extend(self.scope.coordinates().into_iter().zip(given.values.iter().copied()));
-        let (frame, completing) = self.frame(&mut constraints, &at)?;
-        let mut eta =
-            if self.is_lagrangian_form() { self.scope.velocities() } else { self.scope.quasi_velocities() };
-        let declared = eta.len();
-        eta.extend(&completing);
-        let mut start = self.start_state(&frame, &eta, &constraints, &at, &given)?;
-        start.extend(given.states);
-
-        let velocities = frame.velocities(&eta);
-        let x_dot: Vec<(Expr<'g>, Expr<'g>)> = self
-            .scope
-            .velocities()
-            .into_iter()
-            .zip(velocities)
-            .filter(|(symbol, value)| symbol != value)
-            .collect();
-        let lagrangian = self.lagrangian(&x_dot)?;
-        let bodies = self.bodies(&eta, &x_dot)?;
-        let gravity = self.gravity()?;
-        let dissipation = self.dissipation(&x_dot)?;
-        let rates = self.state_rates(&x_dot)?;
-        let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
-        let integrals = self.observed(&document.integrals, &x_dot)?;
-        let mut outputs = self.observed(&document.outputs, &x_dot)?;
-        if self.model.observes_reactions() {
-            let names = document.constraints.iter().map(|constraint| format!("λ_{}", constraint.name.text));
-            outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
-        }
-
-        let crossings = self.crossings(&x_dot)?;
-
-        let states = self.scope.states();
-        let state = [frame.coordinates(), &eta, &states].concat();
-        let mut values = parameters.clone();
-        values.push((frame.time(), t_start));
-        values.extend(state.iter().copied().zip(start.iter().copied()));
-        self.check_finite(&values, &x_dot, &state)?;
-
-        let mut builder = System::builder(self.graph)
-            .coordinates(document.coordinates.iter().map(|c| &c.name.text))
-            .quasi_velocities(eta.iter().map(Expr::to_string))
-            .near(values.iter().copied())
-            .lagrangian(|_, _, _| lagrangian)
-            .dissipation(|_, _, _| dissipation)
-            .forces(|_, _, _| forces)
-            .force_on_coordinates(|_, _, _| on_coordinates);
-        for body in bodies {
-            builder = match body {
-                Body::Particle(particle) => builder.particle(|_, _, _| particle),
-                Body::Rigid(body) => builder.rigid_body(|_, _, _| *body),
-            };
-        }
-        for (symbol, rate) in states.into_iter().zip(rates) {
-            builder = builder.state(symbol, |_, _, _| rate);
-        }
-        if let Some(acceleration) = gravity {
-            builder = builder.gravity(|_| acceleration);
-        }
-        let given = self.model.parameter_values();
-        for (place, (symbol, value)) in parameters.into_iter().enumerate() {
-            builder = match given.is_table(place) {
-                true => builder.signal(symbol, value),
-                false => builder.parameter(symbol, value),
-            };
-        }
-        for (name, value) in integrals {
-            builder = builder.integral(name, |_, _, _| value);
-        }
-        for (name, value) in outputs {
-            builder = builder.output(name, |_, _, _| value);
-        }
-        if let Some(structure) = self.structure(&eta)? {
-            builder = builder.structure(structure);
-        }
-        builder = builder.external_force(self.model.external_forces());
-        let system = builder.frame(frame).build().map_err(|error| self.model.derivation_error(error))?;
-        self.check_inputs(&system)?;
-        let written_start = self.model.projects_start().then(|| start.clone());
-        let prescribed = if completing.is_empty() { 0 } else { declared };
-        let bound = self.bound(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
-        let events =
-            self.events(crossings, &x_dot, &bound, system.frame().coordinates().len() + eta.len())?;
-        self.scope.look_at_unused()?;
-        Ok(Assembly { system, bound, t_start, start, written_start, declared, events })
+impl<'g> Assembly<'g> {
+    /// Values of time, coordinates and quasi-velocities at the start.
+    pub fn at_start(&self) -> Vec<(Expr<'g>, f64)> {
+        let frame = self.system.frame();
+        let state = self.system.state().into_iter();
+        state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
-    /// That no momentum depends on an input: it would change with it, at a rate that is not known.
-    fn check_inputs(&self, system: &System<'g>) -> Result<(), ModelError> {
-        let momenta = system.momenta();
-        let mut inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
-        let moves = |input: &&String| momenta.iter().any(|p| p.depends_on(self.graph.symbol(input)));
-        match inputs.find(moves) {
-            Some(input) => {
-                let error = MechError::SignalInMomentum { input: input.clone() };
-                Err(self.model.derivation_error(error))
+    /// What came of a derivation from this system, an error put at the place in the file that is to blame.
+    ///
+    /// # Errors
+    /// [`ModelError`] for the error there is.
+    pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
+        derived.map_err(|error| self.document.constraint_error(error.into()))
+    }
+
+    /// The equations of motion in independent quasi-velocities.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be derived.
+    pub fn equations(&self) -> Result<Equations<'g>, ModelError> {
+        self.placed(self.constraints.equations(&self.system, &self.at_start()))
+    }
+
+    /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
+    ///
+    /// # Errors
+    /// [`ModelError`] if it cannot be derived.
+    pub fn free_system(&self) -> Result<System<'g>, ModelError> {
+        self.placed(self.constraints.free_system(&self.system, &self.at_start()))
+    }
+
+    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` ones, those of a
+    /// [free system](Assembly::free_system) or all.
+    ///
+    /// # Errors
+    /// [`ModelError`] if these do not determine the others.
+    pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, ModelError> {
+        self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
+    }
+
+    /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold constraints, else that
+    /// of the free ones: dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where the constraints hold, and these are
+    /// homogeneous in the velocities, so that their reactions do no work.
+    pub fn keeps_energy(&self) -> bool {
+        let (system, graph) = (&self.system, self.system.graph());
+        match self.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) => {
+                let mut constraints = held.multipliers.constraints().iter();
+                system.energy_rate().is_zero() && constraints.all(|c| c.is_workless(system))
             }
-            None => Ok(()),
-        }
-    }
-
-    /// Whether η_s = ẋ_s because no quasi-velocity is declared.
-    pub(super) fn is_lagrangian_form(&self) -> bool {
-        self.model.document().quasi_velocities.is_empty()
-    }
-
-    pub(super) fn not_a_coordinate(&self, name: &crate::document::document::Name) -> ModelError {
-        let coordinates = self.model.document().coordinates.iter().map(|c| c.name.text.clone()).collect();
-        self.model.error(&name.place, Fault::NotACoordinate { name: name.text.clone(), coordinates })
-    }
-
-    /// T − V of `[lagrangian]`, the whole energy but for that of the bodies.
-    fn lagrangian(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
-        let Some(energy) = &self.model.document().lagrangian else { return Ok(Expr::ZERO) };
-        let mut lagrangian = Expr::ZERO;
-        for (expression, sign) in [(&energy.kinetic, 1), (&energy.potential, -1), (&energy.lagrangian, 1)] {
-            if let Some(expression) = expression {
-                lagrangian += self.dynamic(expression, x_dot)? * sign;
+            ConstraintFormulation::Free => system.energy_rate().is_zero(),
+            ConstraintFormulation::Vanishing(constrained) => {
+                let zeros: Vec<_> = constrained.vanishing().iter().map(|&eta| (eta, Expr::ZERO)).collect();
+                graph.substitute(&[system.energy_rate()], &zeros)[0].is_zero()
             }
         }
-        Ok(lagrangian)
     }
 
-    fn dissipation(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
-        let energy = self.model.document().lagrangian.as_ref();
-        match energy.and_then(|energy| energy.dissipation.as_ref()) {
-            Some(dissipation) => self.dynamic(dissipation, x_dot),
-            None => Ok(Expr::ZERO),
-        }
+    /// The quasi-velocities of the system at the start.
+    pub fn start_velocities(&self) -> Vec<f64> {
+        self.start_of(self.system.quasi_velocities())
     }
 
-    /// ż of the first-order states.
-    fn state_rates(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
-        let states = self.model.document().states.iter();
-        let rates: Result<Vec<Expr<'g>>, ModelError> =
-            states.map(|state| self.scope.resolve(&state.rate, Stage::Rate)).collect();
-        Ok(self.graph.substitute(&rates?, x_dot))
-    }
-
-    /// An expression of the dynamics with ẋ = b η + b_0 put in.
-    pub(super) fn dynamic(
-        &mut self,
-        expression: &crate::document::document::Expression,
-        x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Expr<'g>, ModelError> {
-        let value = self.scope.resolve(expression, Stage::Dynamics)?;
-        Ok(self.graph.substitute(&[value], x_dot)[0])
-    }
-
-    /// The entries of `[forces]`: Q_s on quasi-velocities, and F_i on coordinates.
-    fn forces(
-        &mut self,
-        operators: usize,
-        x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<(Vec<Expr<'g>>, Vec<Expr<'g>>), ModelError> {
-        let document = self.model.document();
-        let mut on_coordinates = vec![Expr::ZERO; document.coordinates.len()];
-        let mut forces = match self.is_lagrangian_form() {
-            true => on_coordinates.clone(),
-            false => vec![Expr::ZERO; operators],
-        };
-        for force in &document.forces {
-            let name = &force.name;
-            let on_eta = document.quasi_velocities.iter().position(|q| q.name.text == name.text);
-            let on_x = document.coordinates.iter().position(|c| c.name.text == name.text);
-            let value = self.dynamic(&force.expression, x_dot)?;
-            match (on_eta, on_x) {
-                (Some(s), _) => forces[s] += value,
-                (None, Some(i)) => on_coordinates[i] += value,
-                (None, None) => {
-                    let quasi_velocities = document.quasi_velocities.iter().map(|q| q.name.text.clone());
-                    let coordinates = document.coordinates.iter().map(|c| c.name.text.clone());
-                    let known = quasi_velocities.chain(coordinates).collect();
-                    return Err(self
-                        .model
-                        .error(&name.place, Fault::NothingToPush { name: name.text.clone(), known }));
-                }
-            }
-        }
-        Ok((forces, on_coordinates))
-    }
-
-    fn observed(
-        &mut self,
-        list: &[NamedExpression],
-        x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Vec<(String, Expr<'g>)>, ModelError> {
-        let mut observed = Vec::new();
-        for item in list {
-            let value = self.scope.resolve(&item.expression, Stage::Observation)?;
-            observed.push((item.name.text.clone(), self.with_velocities(value, x_dot)));
-        }
-        Ok(observed)
-    }
-
-    /// Puts ẋ = b η + b_0 in, and its derivative along the motion for the accelerations x''.
-    fn with_velocities(&self, value: Expr<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
-        let graph = self.graph;
-        let eta = self.scope.quasi_velocities();
-        let mut rates: Vec<(Expr<'g>, Expr<'g>)> = x_dot
-            .iter()
-            .filter_map(|(velocity, rate)| {
-                let name = velocity.symbol_name()?;
-                Some((graph.symbol(name.strip_suffix('\'')?), *rate))
-            })
-            .collect();
-        rates.extend(eta.iter().map(|eta| (*eta, graph.symbol(&format!("{eta}'")))));
-        rates.push((graph.symbol("t"), Expr::ONE));
-        let velocities: Vec<Expr<'g>> = x_dot.iter().map(|&(_, rate)| rate).collect();
-        let accelerations = graph.directional(&velocities, &rates);
-        let mut replacements = x_dot.to_vec();
-        for (&(velocity, _), acceleration) in x_dot.iter().zip(accelerations) {
-            replacements.push((graph.symbol(&format!("{velocity}'")), acceleration));
-        }
-        graph.substitute(&[value], &replacements)[0]
-    }
-
-    /// Looks for the first part of the model, as written, that is not a number at the start.
-    fn check_finite(
-        &self,
-        values: &[(Expr<'g>, f64)],
-        x_dot: &[(Expr<'g>, Expr<'g>)],
-        state: &[Expr<'g>],
-    ) -> Result<(), ModelError> {
-        let velocities =
-            self.graph.evaluate(&x_dot.iter().map(|&(_, value)| value).collect::<Vec<_>>(), values);
-        let velocities = velocities.unwrap_or_default();
-        let velocities = x_dot.iter().map(|&(symbol, _)| symbol).zip(velocities);
-        let written = self.scope.taken(&velocities.chain(values.iter().copied()).collect::<Vec<_>>());
-        let all: Vec<Expr<'g>> = written.iter().map(|written| written.value).collect();
-        let all = self.graph.substitute(&all, x_dot);
-        // What contains accelerations has no value yet: it is checked when the motion is computed.
-        let is_unknown = |symbol: &Expr<'g>| !values.iter().any(|(known, _)| known == symbol);
-        let unknown = self.graph.symbols_of(&all).into_iter().filter(is_unknown);
-        let at: Vec<(Expr<'g>, f64)> =
-            unknown.map(|symbol| (symbol, f64::NAN)).chain(values.iter().copied()).collect();
-        let Ok(found) = self.graph.evaluate(&all, &at) else { return Ok(()) }; // every symbol has a value
-        for ((written, &value), found) in written.iter().zip(&all).zip(found) {
-            if found.is_finite() {
-                continue;
-            }
-            let Ok(value) = self.graph.evaluate(&[value], values) else { continue };
-            let shown = values.iter().filter(|(symbol, _)| state.contains(symbol));
-            let state = shown.map(|(symbol, value)| (symbol.to_string(), *value)).collect();
-            let fault = Fault::NotFinite { text: written.text.clone(), value: value[0], state };
-            return Err(self.model.error(&written.place, fault));
-        }
-        Ok(())
+    /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
+    pub fn start_of(&self, components: &[Expr<'g>]) -> Vec<f64> {
+        let at = self.at_start();
+        let value =
+            |x: &Expr<'g>| at.iter().find(|(known, _)| known == x).map_or(f64::NAN, |&(_, value)| value);
+        components.iter().map(value).collect()
     }
 }

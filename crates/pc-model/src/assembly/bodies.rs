@@ -3,15 +3,14 @@
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::{Expression, Orientation};
-use crate::names::scope::Stage;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::{self, Expression, Orientation};
+use crate::names::stage::Stage;
 
 /// A body as the mechanics knows it.
-pub(super) enum Body<'g> {
+pub(super) enum SystemBody<'g> {
     /// One without orientation.
     Particle(Particle<'g>),
     /// One that turns.
@@ -24,7 +23,7 @@ impl<'g> Assembler<'g, '_> {
         &mut self,
         eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Vec<Body<'g>>, ModelError> {
+    ) -> Result<Vec<SystemBody<'g>>, ModelError> {
         self.model.document().bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
     }
 
@@ -39,13 +38,13 @@ impl<'g> Assembler<'g, '_> {
         body: &document::Body,
         eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Body<'g>, ModelError> {
+    ) -> Result<SystemBody<'g>, ModelError> {
         let mass = self.scope.resolve(&body.mass, Stage::Inertia)?;
         let position = self.resolved(&body.position, Stage::Position)?;
         let force = body.force.as_ref().map(|force| self.all_dynamic(force, x_dot)).transpose()?;
         let Some(orientation) = &body.orientation else {
             let particle = Particle::new(mass, position).named(&body.name.text);
-            return Ok(Body::Particle(match force {
+            return Ok(SystemBody::Particle(match force {
                 Some(force) => particle.force(force),
                 None => particle,
             }));
@@ -73,7 +72,7 @@ impl<'g> Assembler<'g, '_> {
         if let Some(torque) = &body.torque {
             rigid = rigid.torque(self.all_dynamic(torque, x_dot)?);
         }
-        Ok(Body::Rigid(Box::new(rigid)))
+        Ok(SystemBody::Rigid(Box::new(rigid)))
     }
 
     /// Functions of what may stand at that stage.
@@ -111,7 +110,7 @@ impl<'g> Assembler<'g, '_> {
         let omega = self.all_dynamic(components, x_dot)?;
         for (component, value) in components.iter().zip(omega) {
             if affine(self.graph, value, eta).is_none() {
-                let fault = |text| Fault::NotAffine { text, variables: "velocities" };
+                let fault = |text| MeaningError::NotAffine { text, variables: "velocities" };
                 return Err(self.scope.error(component, component.ast.span, fault));
             }
         }

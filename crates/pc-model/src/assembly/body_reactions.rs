@@ -3,10 +3,10 @@
 use pc_mech::{Constraint, Expr, Multipliers, System};
 use pc_nonholo::Redundant;
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::assembly::resultant::{force_names, torque_names};
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 
 /// What the reactions do to bodies, each component with its name.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl<'g> Assembler<'g, '_> {
     /// outputs where all reactions are to be observed; and what of them is not determined, in words.
     ///
     /// # Errors
-    /// [`Fault::ForceNotDetermined`] if such a one is named.
+    /// [`MeaningError::ForceNotDetermined`] if such a one is named.
     pub(crate) fn with_resultants(
         &self,
         system: System<'g>,
@@ -85,9 +85,10 @@ impl<'g> Assembler<'g, '_> {
         let unknown = |symbol: &Expr<'g>| found.known.iter().all(|(known, _)| known != symbol);
         match self.scope.resultants.iter().find(|(symbol, _)| unknown(symbol)) {
             None => Ok(()),
-            Some((symbol, place)) => {
-                Err(self.model.error(place, Fault::ForceNotDetermined { name: symbol.to_string() }))
-            }
+            Some((symbol, place)) => Err(self
+                .model
+                .document()
+                .error(place, MeaningError::ForceNotDetermined { name: symbol.to_string() })),
         }
     }
 }

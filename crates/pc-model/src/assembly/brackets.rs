@@ -3,11 +3,11 @@
 use pc_algebra::affine;
 use pc_mech::{AlgebraError, Expr, LieAlgebra, StructureCoefficients};
 
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document::{AlgebraDefinition, Bracket};
-use crate::names::scope::Stage;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::{AlgebraDefinition, Bracket};
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// The structure coefficients given in `[algebra]`.
@@ -19,15 +19,20 @@ impl<'g> Assembler<'g, '_> {
         match &algebra.definition {
             AlgebraDefinition::Catalogue(name) => {
                 let algebra = LieAlgebra::named(&name.value).map_err(|error| match error {
-                    AlgebraError::UnknownAlgebra { name: wrong, known } => {
-                        self.model.error(&name.place, Fault::UnknownAlgebra { name: wrong, known })
-                    }
-                    other => self.model.error(&name.place, Fault::Derivation { message: other.to_string() }),
+                    AlgebraError::UnknownAlgebra { name: wrong, known } => self
+                        .model
+                        .document()
+                        .error(&name.place, MeaningError::UnknownAlgebra { name: wrong, known }),
+                    other => self
+                        .model
+                        .document()
+                        .error(&name.place, MeaningError::Derivation { message: other.to_string() }),
                 })?;
                 if algebra.dim() != eta.len() {
                     let (dimension, operators) = (algebra.dim(), eta.len());
-                    let fault = Fault::AlgebraDimension { name: name.value.clone(), dimension, operators };
-                    return Err(self.model.error(&name.place, fault));
+                    let fault =
+                        MeaningError::AlgebraDimension { name: name.value.clone(), dimension, operators };
+                    return Err(self.model.document().error(&name.place, fault));
                 }
                 Ok(Some(algebra.structure_coefficients()))
             }
@@ -41,7 +46,7 @@ impl<'g> Assembler<'g, '_> {
         eta: &[Expr<'g>],
     ) -> Result<StructureCoefficients<'g>, ModelError> {
         let k = eta.len();
-        let index = |name: &crate::document::document::Name| -> Result<usize, ModelError> {
+        let index = |name: &crate::document::Name| -> Result<usize, ModelError> {
             let declared = &self.model.document().quasi_velocities;
             match declared.iter().position(|q| q.name.text == name.text) {
                 Some(s) => Ok(s + 1),
@@ -49,8 +54,8 @@ impl<'g> Assembler<'g, '_> {
                 None => {
                     let known =
                         declared.iter().map(|q| q.name.text.clone()).chain(["t".to_owned()]).collect();
-                    let fault = Fault::UnknownName { name: name.text.clone(), known };
-                    Err(self.model.error(&name.place, fault))
+                    let fault = MeaningError::UnknownName { name: name.text.clone(), known };
+                    Err(self.model.document().error(&name.place, fault))
                 }
             }
         };
@@ -61,14 +66,17 @@ impl<'g> Assembler<'g, '_> {
             let still = |c: &Expr<'g>| self.coordinates().iter().all(|&x| !c.depends_on(x));
             let linear = affine(self.graph, value, eta).filter(|(_, rest)| rest.is_zero());
             let Some(constants) = linear.map(|(c, _)| c).filter(|c| c.iter().all(still)) else {
-                let fault = |text| Fault::BracketNotLinear { text };
+                let fault = |text| MeaningError::BracketNotLinear { text };
                 return Err(self.scope.error(&bracket.value, bracket.value.ast.span, fault));
             };
             let is_opposite =
                 |known: &[Expr<'g>]| known.iter().zip(&constants).all(|(&a, &b)| (a + b).is_zero());
             if table.iter().any(|(other, known)| *other == (pair.1, pair.0) && !is_opposite(known)) {
                 let (left, right) = (bracket.left.text.clone(), bracket.right.text.clone());
-                return Err(self.model.error(&bracket.left.place, Fault::BracketsNotSkew { left, right }));
+                return Err(self
+                    .model
+                    .document()
+                    .error(&bracket.left.place, MeaningError::BracketsNotSkew { left, right }));
             }
             table.push((pair, constants));
         }

@@ -5,7 +5,7 @@ use pc_nonholo::{Adapted, Constrained, Kind, NonholoError, Redundant};
 
 /// What a constraint does.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
+pub struct ClassifiedConstraint {
     /// Its name.
     pub constraint: String,
     /// Its kind.
@@ -14,10 +14,10 @@ pub struct Verdict {
 
 /// The constraints of a model.
 #[derive(Clone, Debug)]
-pub struct Bound<'g> {
-    form: Form<'g>,
+pub struct ConstraintTreatment<'g> {
+    formulation: ConstraintFormulation<'g>,
     multipliers: Option<Multipliers<'g>>,
-    verdicts: Vec<Verdict>,
+    classified: Vec<ClassifiedConstraint>,
     combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
@@ -25,58 +25,70 @@ pub struct Bound<'g> {
 
 /// How the constraints are kept.
 #[derive(Clone, Debug)]
-pub enum Form<'g> {
+pub enum ConstraintFormulation<'g> {
     /// There are none.
     Free,
     /// All say that quasi-velocities of the system vanish: equations (30) of the others.
     Vanishing(Box<Constrained<'g>>),
     /// Any others: multipliers.
-    Held(Box<Held<'g>>),
+    Multipliers(Box<MultiplierFormulation<'g>>),
 }
 
 /// Constraints kept by multipliers.
 #[derive(Clone, Debug)]
-pub struct Held<'g> {
+pub struct MultiplierFormulation<'g> {
     /// The equations of all quasi-velocities.
     pub multipliers: Multipliers<'g>,
     /// Whether all constraints are integrable.
     pub holonomic: bool,
 }
 
-impl<'g> Bound<'g> {
-    pub(crate) fn free() -> Bound<'g> {
-        Bound::nothing(Vec::new())
+impl<'g> ConstraintTreatment<'g> {
+    pub(crate) fn free() -> ConstraintTreatment<'g> {
+        ConstraintTreatment::nothing(Vec::new())
     }
 
     /// Constraints that say nothing.
-    pub(crate) fn nothing(redundant: Vec<Redundant>) -> Bound<'g> {
-        Bound {
-            form: Form::Free,
+    pub(crate) fn nothing(redundant: Vec<Redundant>) -> ConstraintTreatment<'g> {
+        ConstraintTreatment {
+            formulation: ConstraintFormulation::Free,
             multipliers: None,
-            verdicts: Vec::new(),
+            classified: Vec::new(),
             combinations: 0,
             redundant,
             undetermined: Vec::new(),
         }
     }
 
-    /// Constraints that bind, kept in some form.
+    /// Constraints that bind, kept in some formulation.
     pub(crate) fn new(
-        form: Form<'g>,
+        formulation: ConstraintFormulation<'g>,
         multipliers: Multipliers<'g>,
-        verdicts: Vec<Verdict>,
+        classified: Vec<ClassifiedConstraint>,
         redundant: Vec<Redundant>,
-    ) -> Bound<'g> {
+    ) -> ConstraintTreatment<'g> {
         let multipliers = Some(multipliers);
-        Bound { form, multipliers, verdicts, combinations: 0, redundant, undetermined: Vec::new() }
+        ConstraintTreatment {
+            formulation,
+            multipliers,
+            classified,
+            combinations: 0,
+            redundant,
+            undetermined: Vec::new(),
+        }
     }
 
-    pub(crate) fn with_integrable_combinations(self, combinations: usize) -> Bound<'g> {
-        Bound { combinations, ..self }
+    pub(crate) fn with_integrable_combinations(self, combinations: usize) -> ConstraintTreatment<'g> {
+        ConstraintTreatment { combinations, ..self }
     }
 
-    pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> Bound<'g> {
-        Bound { undetermined, ..self }
+    /// The same, kept in another formulation.
+    pub(crate) fn in_formulation(self, formulation: ConstraintFormulation<'g>) -> ConstraintTreatment<'g> {
+        ConstraintTreatment { formulation, ..self }
+    }
+
+    pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> ConstraintTreatment<'g> {
+        ConstraintTreatment { undetermined, ..self }
     }
 
     /// The equations with multipliers, unless nothing binds.
@@ -85,17 +97,17 @@ impl<'g> Bound<'g> {
     }
 
     /// How the constraints are kept.
-    pub fn form(&self) -> &Form<'g> {
-        &self.form
+    pub fn formulation(&self) -> &ConstraintFormulation<'g> {
+        &self.formulation
     }
 
     /// What each constraint that binds does.
-    pub fn verdicts(&self) -> &[Verdict] {
-        &self.verdicts
+    pub fn classified(&self) -> &[ClassifiedConstraint] {
+        &self.classified
     }
 
     /// How many combinations of the nonholonomic constraints are integrable though none of them is: see
-    /// [`Sorted::integrable_combinations`](pc_nonholo::Sorted::integrable_combinations).
+    /// [`ConstraintClassification::integrable_combinations`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
@@ -118,16 +130,20 @@ impl<'g> Bound<'g> {
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
     pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
-        Ok(match &self.form {
-            Form::Free => None,
-            Form::Vanishing(constrained) => Some(Constrained::clone(constrained)),
-            Form::Held(held) if held.holonomic || held.multipliers.is_nonlinear() => None,
-            Form::Held(held) => Some(Adapted::new(&held.multipliers, at)?.constrained()?),
+        Ok(match &self.formulation {
+            ConstraintFormulation::Free => None,
+            ConstraintFormulation::Vanishing(constrained) => Some(Constrained::clone(constrained)),
+            ConstraintFormulation::Multipliers(held) if held.holonomic || held.multipliers.is_nonlinear() => {
+                None
+            }
+            ConstraintFormulation::Multipliers(held) => {
+                Some(Adapted::new(&held.multipliers, at)?.constrained()?)
+            }
         })
     }
 
-    /// The symbols λ of the reactions with what they are in the frame of [`constrained`](Bound::constrained), functions of
-    /// time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
+    /// The symbols λ of the reactions with what they are in the frame of
+    /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
     /// integrable constraints are held by multipliers.
     ///
     /// # Errors
@@ -168,7 +184,7 @@ impl<'g> Bound<'g> {
             Some(constrained) => constrained.equations().clone(),
             None => self.independent(system, at)?.poincare()?,
         };
-        let Form::Held(held) = &self.form else { return Ok(equations) };
+        let ConstraintFormulation::Multipliers(held) = &self.formulation else { return Ok(equations) };
         let (multipliers, observing) = (&held.multipliers, equations.system());
         let mut observed = observing.integrals().iter().chain(observing.outputs());
         if !observed.any(|(_, f)| multipliers.reactions().iter().any(|&reaction| f.depends_on(reaction))) {
@@ -184,7 +200,7 @@ impl<'g> Bound<'g> {
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
     ///
     /// # Errors
-    /// As for [`equations`](Bound::equations).
+    /// As for [`equations`](ConstraintTreatment::equations).
     pub fn free_system(
         &self,
         system: &System<'g>,
@@ -202,9 +218,13 @@ impl<'g> Bound<'g> {
         free: &[Expr<'g>],
     ) -> Result<Vec<Expr<'g>>, NonholoError> {
         let dependent: Vec<usize> = (0..all.len()).filter(|&s| !free.contains(&all[s])).collect();
-        let solved = match &self.form {
-            Form::Held(held) if !dependent.is_empty() => held.multipliers.solved_for(&dependent)?,
-            Form::Free | Form::Vanishing(_) | Form::Held(_) => {
+        let solved = match &self.formulation {
+            ConstraintFormulation::Multipliers(held) if !dependent.is_empty() => {
+                held.multipliers.solved_for(&dependent)?
+            }
+            ConstraintFormulation::Free
+            | ConstraintFormulation::Vanishing(_)
+            | ConstraintFormulation::Multipliers(_) => {
                 dependent.iter().map(|&s| (all[s], Expr::ZERO)).collect()
             }
         };
@@ -213,12 +233,12 @@ impl<'g> Bound<'g> {
     }
 
     fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {
-        match &self.form {
-            Form::Held(held) if held.multipliers.is_nonlinear() => {
+        match &self.formulation {
+            ConstraintFormulation::Multipliers(held) if held.multipliers.is_nonlinear() => {
                 Ok(held.multipliers.with_reactions_put_in()?)
             }
-            Form::Held(held) => Ok(held.multipliers.in_independent_velocities(at)?),
-            Form::Free | Form::Vanishing(_) => Ok(system.clone()),
+            ConstraintFormulation::Multipliers(held) => Ok(held.multipliers.in_independent_velocities(at)?),
+            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => Ok(system.clone()),
         }
     }
 }

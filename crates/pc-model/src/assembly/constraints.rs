@@ -1,16 +1,18 @@
-//! The constraints of a model: sorted, checked at the start, and put where they are cheapest to keep.
+//! The constraints of a model: classified, checked at the start, and put where they are cheapest to keep.
 
-use pc_mech::{Constraint, Expr, System};
-use pc_nonholo::{Constrained, Kind, Redundant, Sorted};
+use pc_mech::{Constraint, Expr, Multipliers, System};
+use pc_nonholo::{Constrained, ConstraintClassification, Kind, Redundant};
 
 use super::trial::{StartHeld, Trial};
-use crate::assembly::assembly::Assembler;
-use crate::assembly::constraint_treatment::{Bound, Form, Held, Verdict};
+use crate::assembly::assembler::Assembler;
+use crate::assembly::constraint_treatment::{
+    ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
+};
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::ConstraintKind;
-use crate::names::scope::Stage;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document;
+use crate::document::ConstraintKind;
+use crate::names::stage::Stage;
 
 /// A constraint of the text with its expression, x' still symbols.
 pub(super) struct Written<'g> {
@@ -44,6 +46,14 @@ impl<'g> Written<'g> {
     }
 }
 
+/// The system with what is observed of reactions, and its equations with multipliers.
+struct Reacting<'g> {
+    system: System<'g>,
+    multipliers: Multipliers<'g>,
+    /// What virtual work does not determine of the forces on bodies, in words.
+    undetermined: Vec<String>,
+}
+
 impl<'g> Assembler<'g, '_> {
     /// The entries of `[constraints]`.
     pub(super) fn constraints(&mut self) -> Result<Vec<Written<'g>>, ModelError> {
@@ -71,7 +81,7 @@ impl<'g> Assembler<'g, '_> {
 
     /// How the constraints bind the system, and the start on them; `at` are values of all symbols there, and so many of the
     /// quasi-velocities are `prescribed` for others to follow.
-    pub(super) fn bound(
+    pub(super) fn treatment(
         &self,
         system: &System<'g>,
         written: &[Written<'g>],
@@ -79,70 +89,122 @@ impl<'g> Assembler<'g, '_> {
         at: &[(Expr<'g>, f64)],
         (t_start, start): (f64, &mut Vec<f64>),
         prescribed: usize,
-    ) -> Result<Bound<'g>, ModelError> {
+    ) -> Result<ConstraintTreatment<'g>, ModelError> {
         if written.is_empty() {
-            return Ok(Bound::free());
+            return Ok(ConstraintTreatment::free());
         }
         let constraints: Vec<Constraint<'g>> = written.iter().map(|w| self.constraint(w, x_dot)).collect();
-        self.check_nonlinear(system, &constraints)?;
         let trial = Trial { model: self.model, system, constraints: &constraints, t: t_start };
+        let (classification, classified) = self.classify(&trial, start, at)?;
+        self.project_start(&trial, &classification, start, prescribed)?;
+        match self.attach_reactions(&trial, &classification)? {
+            None => Ok(ConstraintTreatment::nothing(classification.redundant().to_vec())),
+            Some(reacting) => self.choose(reacting, &classification, classified, at),
+        }
+    }
+
+    /// What the constraints do at the start.
+    fn classify(
+        &self,
+        trial: &Trial<'_, 'g>,
+        start: &[f64],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<(ConstraintClassification<'g>, Vec<ClassifiedConstraint>), ModelError> {
+        self.check_nonlinear(trial.system, trial.constraints)?;
         trial.check_finite(start)?;
-        let refused = |error| self.model.constraint_error(error);
-        let sorted = Sorted::new(system, &constraints, at).map_err(refused)?;
-        let verdicts = self.verdicts(&sorted)?;
+        let classification = ConstraintClassification::new(trial.system, trial.constraints, at);
+        let classification = classification.map_err(|error| self.model.document().constraint_error(error))?;
+        let classified = self.classified(&classification)?;
+        Ok((classification, classified))
+    }
+
+    /// Moves the start to the constraints, if the model says so, and checks that it satisfies them.
+    fn project_start(
+        &self,
+        trial: &Trial<'_, 'g>,
+        classification: &ConstraintClassification<'g>,
+        start: &mut Vec<f64>,
+        prescribed: usize,
+    ) -> Result<(), ModelError> {
         let projects = self.model.projects_start();
-        if projects || !sorted.redundant().is_empty() {
+        if projects || !classification.redundant().is_empty() {
             // Quasi-velocities that determine the others stay as they are prescribed.
-            let free =
-                system.quasi_velocities().len() - sorted.multipliers().map_or(0, |m| m.constraints().len());
+            let binding = classification.multipliers().map_or(0, |m| m.constraints().len());
+            let free = trial.system.quasi_velocities().len() - binding;
             let held = StartHeld::new(self.model, if free == prescribed { prescribed } else { 0 });
-            let nearest = trial.nearest(&sorted, start, &held);
+            let nearest = trial.nearest(classification, start, &held);
             if let Ok(nearest) = &nearest {
-                trial.check_redundant(&sorted, nearest)?;
+                trial.check_redundant(classification, nearest)?;
             }
             if projects {
                 *start = nearest?;
             }
         }
-        trial.check(start)?;
+        trial.check(start)
+    }
 
-        let eta = system.quasi_velocities();
-        let vanishing: Option<Vec<Expr<'g>>> = sorted.multipliers().and_then(|multipliers| {
-            let bare = |c: &Constraint<'g>| eta.iter().copied().find(|&eta| eta == c.expression());
-            multipliers.constraints().iter().map(bare).collect()
-        });
-        let (redundant, combinations) = (sorted.redundant().to_vec(), sorted.integrable_combinations());
-        let Some(multipliers) = sorted.multipliers() else { return Ok(Bound::nothing(redundant)) };
+    /// The equations with multipliers, and what is observed of the reactions; none where nothing binds.
+    fn attach_reactions(
+        &self,
+        trial: &Trial<'_, 'g>,
+        classification: &ConstraintClassification<'g>,
+    ) -> Result<Option<Reacting<'g>>, ModelError> {
+        let Some(binding) = classification.multipliers() else { return Ok(None) };
+        let redundant = classification.redundant();
         // What is dropped has no reaction.
         let none =
             |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
-        let system = system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
-        let (system, undetermined) = self.with_resultants(system, multipliers, &redundant)?;
+        let system = trial.system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
+        let (system, undetermined) = self.with_resultants(system, binding, redundant)?;
+        let multipliers = system.with_multipliers(binding.constraints());
         let multipliers =
-            system.with_multipliers(multipliers.constraints()).map_err(|e| refused(e.into()))?;
+            multipliers.map_err(|error| self.model.document().constraint_error(error.into()))?;
         // As many as are declared where these are completed, and independent then.
         let declared = &system.quasi_velocities()[..self.scope.quasi_velocities().len()];
         let dropped = |c: &&Constraint<'g>| redundant.iter().any(|dropped| dropped.constraint == c.name());
-        let followers: Vec<Constraint<'g>> = constraints.iter().filter(dropped).cloned().collect();
+        let followers: Vec<Constraint<'g>> = trial.constraints.iter().filter(dropped).cloned().collect();
         let multipliers = multipliers.preferring(declared).followed_by(&followers);
-        let Some(vanishing) = vanishing else {
-            let held = Held { multipliers: multipliers.clone(), holonomic: sorted.is_holonomic() };
-            let bound = Bound::new(Form::Held(Box::new(held)), multipliers, verdicts, redundant);
-            return Ok(bound.with_undetermined(undetermined).with_integrable_combinations(combinations));
+        Ok(Some(Reacting { system, multipliers, undetermined }))
+    }
+
+    /// The formulation that is cheapest to keep: without the quasi-velocities that vanish, where all constraints say no more
+    /// than that some do, else with multipliers.
+    fn choose(
+        &self,
+        Reacting { system, multipliers, undetermined }: Reacting<'g>,
+        classification: &ConstraintClassification<'g>,
+        classified: Vec<ClassifiedConstraint>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<ConstraintTreatment<'g>, ModelError> {
+        let refused = |error| self.model.document().constraint_error(error);
+        let eta = system.quasi_velocities();
+        let bare = |c: &Constraint<'g>| eta.iter().copied().find(|&eta| eta == c.expression());
+        let vanishing: Option<Vec<Expr<'g>>> = multipliers.constraints().iter().map(bare).collect();
+        let constrained = |system: &System<'g>, vanishing: &[Expr<'g>]| {
+            let constrained = Constrained::new(system, vanishing).map_err(refused)?;
+            Ok(ConstraintFormulation::Vanishing(Box::new(constrained)))
         };
-        let constrained = |system: &System<'g>| Constrained::new(system, &vanishing).map_err(refused);
-        let form = Form::Vanishing(Box::new(constrained(&system)?));
-        let bound = Bound::new(form, multipliers.clone(), verdicts.clone(), redundant.clone());
-        let bound = bound.with_undetermined(undetermined.clone()).with_integrable_combinations(combinations);
-        let observed = system.integrals().iter().chain(system.outputs());
+        let formulation = match &vanishing {
+            Some(vanishing) => constrained(&system, vanishing)?,
+            None => ConstraintFormulation::Multipliers(Box::new(MultiplierFormulation {
+                multipliers: multipliers.clone(),
+                holonomic: classification.is_holonomic(),
+            })),
+        };
+        let redundant = classification.redundant().to_vec();
+        let treatment = ConstraintTreatment::new(formulation, multipliers.clone(), classified, redundant)
+            .with_undetermined(undetermined)
+            .with_integrable_combinations(classification.integrable_combinations());
         let reactions = multipliers.reactions();
-        if !observed.into_iter().any(|(_, f)| reactions.iter().any(|&reaction| f.depends_on(reaction))) {
-            return Ok(bound);
+        let mut observed = system.integrals().iter().chain(system.outputs());
+        let is_observed = observed.any(|(_, f)| reactions.iter().any(|&reaction| f.depends_on(reaction)));
+        match vanishing.filter(|_| is_observed) {
+            None => Ok(treatment),
+            Some(vanishing) => {
+                let known = treatment.reactions(at).map_err(refused)?;
+                Ok(treatment.in_formulation(constrained(&system.with_observed(&known), &vanishing)?))
+            }
         }
-        let known = bound.reactions(at).map_err(refused)?;
-        let form = Form::Vanishing(Box::new(constrained(&system.with_observed(&known))?));
-        let bound = Bound::new(form, multipliers, verdicts, redundant).with_undetermined(undetermined);
-        Ok(bound.with_integrable_combinations(combinations))
     }
 
     /// The constraint, in quasi-velocities.
@@ -163,10 +225,14 @@ impl<'g> Assembler<'g, '_> {
                 Ok(_) => "is affine in the velocities",
                 Err(_) => continue,
             };
-            let text = self.model.constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
+            let text =
+                self.model.document().constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
             if let Some(kind) = text {
                 let constraint = constraint.name().to_owned();
-                return Err(self.model.error(&kind.place, Fault::NotNonlinear { constraint, what }));
+                return Err(self
+                    .model
+                    .document()
+                    .error(&kind.place, MeaningError::NotNonlinear { constraint, what }));
             }
         }
         Ok(())
@@ -177,21 +243,31 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// What each binding constraint does, unless the text says otherwise.
-    fn verdicts(&self, sorted: &Sorted<'g>) -> Result<Vec<Verdict>, ModelError> {
-        let Some(multipliers) = sorted.multipliers() else { return Ok(Vec::new()) };
+    fn classified(
+        &self,
+        classification: &ConstraintClassification<'g>,
+    ) -> Result<Vec<ClassifiedConstraint>, ModelError> {
+        let Some(multipliers) = classification.multipliers() else { return Ok(Vec::new()) };
         multipliers
             .constraints()
             .iter()
-            .zip(sorted.kinds())
+            .zip(classification.kinds())
             .map(|(constraint, &kind)| {
-                let given = self.model.constraint_text(constraint.name()).and_then(|text| text.kind.as_ref());
+                let given = self
+                    .model
+                    .document()
+                    .constraint_text(constraint.name())
+                    .and_then(|text| text.kind.as_ref());
                 if let (Some(given), Kind::Nonholonomic { residual }) = (given, kind)
                     && given.value == ConstraintKind::Holonomic
                 {
                     let constraint = constraint.name().to_owned();
-                    return Err(self.model.error(&given.place, Fault::NotHolonomic { constraint, residual }));
+                    return Err(self
+                        .model
+                        .document()
+                        .error(&given.place, MeaningError::NotHolonomic { constraint, residual }));
                 }
-                Ok(Verdict { constraint: constraint.name().to_owned(), kind })
+                Ok(ClassifiedConstraint { constraint: constraint.name().to_owned(), kind })
             })
             .collect()
     }

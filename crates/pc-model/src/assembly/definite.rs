@@ -2,7 +2,7 @@
 
 use pc_mech::Expr;
 
-use crate::model::model::Assembly;
+use crate::assembly::assembly::Assembly;
 
 /// What is this small against the largest entry of a matrix is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -15,7 +15,7 @@ impl<'g> Assembly<'g> {
         let eta = system.quasi_velocities();
         let k = eta.len();
         let hessian = system.momenta().into_iter().flat_map(|p| graph.gradient(p, eta));
-        let bound = self.bound.multipliers().map(|multipliers| multipliers.coefficients().entries());
+        let bound = self.constraints.multipliers().map(|multipliers| multipliers.coefficients().entries());
         let expressions: Vec<Expr<'g>> = hessian.chain(bound.into_iter().flatten().copied()).collect();
         let at = [system.parameters(), &self.at_start()].concat();
         let Ok(values) = graph.evaluate(&expressions, &at) else { return false };

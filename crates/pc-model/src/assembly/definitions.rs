@@ -5,11 +5,11 @@ use pc_mech::{AlgebraError, Constraint, Expr, Frame, System};
 use pc_nonholo::Binding;
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document::Expression;
-use crate::names::scope::Stage;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::Expression;
+use crate::names::stage::Stage;
 
 /// A coefficient smaller than this against the largest of its row is no pivot.
 const SMALL: f64 = 1e-3;
@@ -47,7 +47,10 @@ impl<'g> Assembler<'g, '_> {
         let positions = binding.iter().filter(|(_, constraint)| constraint.is_holonomic(&kinematic)).count();
         let (all, coordinates) = (definitions.len() + binding.len(), x.len());
         if all != coordinates && all - positions != coordinates {
-            return Err(self.model.error(place, Fault::DefinitionCount { definitions: all, coordinates }));
+            return Err(self
+                .model
+                .document()
+                .error(place, MeaningError::DefinitionCount { definitions: all, coordinates }));
         }
         if self.graph.generic_rank(&rows) < rows.len() {
             return Err(self.dependent(&rows, &Completion::default(), constraints));
@@ -65,7 +68,7 @@ impl<'g> Assembler<'g, '_> {
                     all.iter().map(|&value| self.graph.gradient(value, &velocities)).collect::<Vec<_>>();
                 self.dependent(&slopes, &completion, constraints)
             }
-            other => self.model.algebra_error(other),
+            other => self.model.document().algebra_error(other),
         })?;
         Ok((frame, completion.symbols))
     }
@@ -76,7 +79,10 @@ impl<'g> Assembler<'g, '_> {
         for quasi_velocity in &self.model.document().quasi_velocities {
             let Some(is) = &quasi_velocity.is else {
                 let name = quasi_velocity.name.text.clone();
-                return Err(self.model.error(&quasi_velocity.name.place, Fault::Undefined { name }));
+                return Err(self
+                    .model
+                    .document()
+                    .error(&quasi_velocity.name.place, MeaningError::Undefined { name }));
             };
             definitions.push(self.scope.resolve(is, Stage::Definition)?);
         }
@@ -89,7 +95,7 @@ impl<'g> Assembler<'g, '_> {
         let texts = self.model.document().quasi_velocities.iter().filter_map(|q| q.is.as_ref());
         let row = |(&definition, is): (&Expr<'g>, &Expression)| {
             let parts = affine(self.graph, definition, &velocities);
-            let fault = |text| Fault::NotAffine { text, variables: "velocities" };
+            let fault = |text| MeaningError::NotAffine { text, variables: "velocities" };
             parts.map(|(row, _)| row).ok_or_else(|| self.scope.error(is, is.ast.span, fault))
         };
         definitions.iter().zip(texts).map(row).collect()
@@ -111,7 +117,7 @@ impl<'g> Assembler<'g, '_> {
         let parameters = self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value));
         let builder = parameters.fold(builder, |builder, (symbol, value)| builder.parameter(symbol, value));
         let kinematic = builder.lagrangian(|_, _, _| Expr::ZERO).build();
-        let kinematic = kinematic.map_err(|error| self.model.derivation_error(error))?;
+        let kinematic = kinematic.map_err(|error| self.model.document().derivation_error(error))?;
         let put: Vec<_> = eta.iter().copied().zip(definitions.iter().copied()).collect();
         let contains = |value: Expr<'g>, symbols: &[Expr<'g>]| symbols.iter().any(|&s| value.depends_on(s));
         let (mut places, mut restricting) = (Vec::new(), Vec::new());
@@ -125,7 +131,7 @@ impl<'g> Assembler<'g, '_> {
             }
         }
         let binding = Binding::new(&kinematic, &restricting, at);
-        let binding = binding.map_err(|error| self.model.constraint_error(error))?;
+        let binding = binding.map_err(|error| self.model.document().constraint_error(error))?;
         let independent = binding.binding().iter().map(|&a| (places[a], restricting[a].clone())).collect();
         Ok((kinematic, independent))
     }
@@ -206,7 +212,9 @@ impl<'g> Assembler<'g, '_> {
     ) -> ModelError {
         let row = (0..rows.len()).find(|&r| self.graph.generic_rank(&rows[..=r]) <= r).unwrap_or(0);
         let at_rest = rows[row].iter().all(|slope| slope.is_zero());
-        let fault = |text| if at_rest { Fault::NoVelocity { text } } else { Fault::DependentDefinitions };
+        let fault = |text| {
+            if at_rest { MeaningError::NoVelocity { text } } else { MeaningError::DependentDefinitions }
+        };
         let document = self.model.document();
         let of_constraint = |row: usize| {
             let place = completion.constraints.get(row)?;
@@ -218,7 +226,7 @@ impl<'g> Assembler<'g, '_> {
         };
         match text {
             Some(text) => self.scope.error(text, text.ast.span, fault),
-            None => self.model.error(&document.end(), Fault::DependentDefinitions),
+            None => self.model.document().error(&document.end(), MeaningError::DependentDefinitions),
         }
     }
 }

@@ -2,14 +2,15 @@
 
 use pc_expr::{Direction, Expr};
 
-use crate::assembly::assembly::Assembler;
-use crate::assembly::constraint_treatment::Bound;
+use crate::assembly::assembler::Assembler;
+use crate::assembly::constraint_treatment::ConstraintTreatment;
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document;
-use crate::document::document::NamedExpression;
-use crate::names::scope::{Stage, entry};
+use crate::diagnostics::meaning::MeaningError;
+use crate::document;
+use crate::document::NamedExpression;
+use crate::names::scope::entry;
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// What passes through zero, ẋ = b η + b_0 put in, in the order of the file.
@@ -24,14 +25,14 @@ impl<'g> Assembler<'g, '_> {
         &mut self,
         crossings: Vec<Expr<'g>>,
         x_dot: &[(Expr<'g>, Expr<'g>)],
-        bound: &Bound<'g>,
+        constraints: &ConstraintTreatment<'g>,
         first_state: usize,
     ) -> Result<Vec<Event<'g>>, ModelError> {
         let mut events = Vec::with_capacity(crossings.len());
         for (event, when) in self.model.document().events.iter().zip(crossings) {
             let mut resets = Vec::with_capacity(event.reset.len());
             for reset in &event.reset {
-                let place = self.reset_place(reset, bound, first_state)?;
+                let place = self.reset_place(reset, constraints, first_state)?;
                 resets.push((place, self.at_event(&reset.expression, x_dot)?));
             }
             events.push(Event {
@@ -58,37 +59,39 @@ impl<'g> Assembler<'g, '_> {
     fn reset_place(
         &self,
         reset: &NamedExpression,
-        bound: &Bound<'g>,
+        constraints: &ConstraintTreatment<'g>,
         first_state: usize,
     ) -> Result<usize, ModelError> {
         let document = self.model.document();
         let name = reset.name.text.as_str();
         let n = document.coordinates.len();
         let place_of = |name: &str| document.coordinates.iter().position(|x| x.name.text == name);
-        let refuse = |fault| Err(self.model.error(&reset.name.place, fault));
+        let refuse = |fault| Err(self.model.document().error(&reset.name.place, fault));
         if let Some(coordinate) = name.strip_suffix('\'') {
             let Some(place) = place_of(coordinate) else {
                 let mut name = reset.name.clone();
                 name.text = coordinate.to_owned();
                 return Err(self.not_a_coordinate(&name));
             };
-            let vanishes = vanishes(bound, self.graph.symbol(name));
+            let vanishes = vanishes(constraints, self.graph.symbol(name));
             return match self.is_lagrangian_form() {
                 true if vanishes => {
-                    refuse(self.not_reset(name, "a velocity that a constraint keeps at zero", bound))
+                    refuse(self.not_reset(name, "a velocity that a constraint keeps at zero", constraints))
                 }
                 true => Ok(n + place),
-                false => refuse(self.not_reset(name, "a velocity that quasi-velocities give", bound)),
+                false => refuse(self.not_reset(name, "a velocity that quasi-velocities give", constraints)),
             };
         }
         if let Some(place) = place_of(name) {
             return Ok(place);
         }
         if let Some(place) = document.quasi_velocities.iter().position(|eta| eta.name.text == name) {
-            return match vanishes(bound, self.graph.symbol(name)) {
-                true => {
-                    refuse(self.not_reset(name, "a quasi-velocity that a constraint keeps at zero", bound))
-                }
+            return match vanishes(constraints, self.graph.symbol(name)) {
+                true => refuse(self.not_reset(
+                    name,
+                    "a quasi-velocity that a constraint keeps at zero",
+                    constraints,
+                )),
                 false => Ok(n + place),
             };
         }
@@ -104,14 +107,19 @@ impl<'g> Assembler<'g, '_> {
             () if entry(&document.outputs, name).is_some() => "an output",
             () => "declared nowhere",
         };
-        refuse(self.not_reset(name, what, bound))
+        refuse(self.not_reset(name, what, constraints))
     }
 
-    fn not_reset(&self, name: &str, what: &'static str, bound: &Bound<'g>) -> Fault {
+    fn not_reset(
+        &self,
+        name: &str,
+        what: &'static str,
+        constraints: &ConstraintTreatment<'g>,
+    ) -> MeaningError {
         let document = self.model.document();
         let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
         let states = document.states.iter().map(|state| state.name.text.clone());
-        let moving = |name: &String| !vanishes(bound, self.graph.symbol(name));
+        let moving = |name: &String| !vanishes(constraints, self.graph.symbol(name));
         let velocities: Vec<String> = match self.is_lagrangian_form() {
             true => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).filter(moving).collect(),
             false => {
@@ -119,7 +127,7 @@ impl<'g> Assembler<'g, '_> {
                 document.quasi_velocities.iter().map(|eta| &eta.name.text).filter(moving).cloned().collect()
             }
         };
-        Fault::NotReset {
+        MeaningError::NotReset {
             name: name.to_owned(),
             what,
             known: coordinates.chain(velocities).chain(states).collect(),
@@ -128,7 +136,7 @@ impl<'g> Assembler<'g, '_> {
 }
 
 /// Whether a constraint says that this quasi-velocity vanishes, and no more.
-fn vanishes<'g>(bound: &Bound<'g>, eta: Expr<'g>) -> bool {
-    let constraints = bound.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
+fn vanishes<'g>(constraints: &ConstraintTreatment<'g>, eta: Expr<'g>) -> bool {
+    let constraints = constraints.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
     constraints.iter().any(|constraint| constraint.expression() == eta)
 }

@@ -3,11 +3,12 @@
 use pc_mech::{AlgebraError, Expr, Frame};
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document::NamedExpression;
-use crate::names::scope::{Stage, entry};
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::NamedExpression;
+use crate::names::scope::entry;
+use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
     /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.
@@ -30,18 +31,23 @@ impl<'g> Assembler<'g, '_> {
         let frame = match (defined, document.kinematics.first()) {
             (Some(defined), Some(_)) => Err(self
                 .model
-                .error(&defined.name.place, Fault::TwoKinematics { name: defined.name.text.clone() })),
+                .document()
+                .error(&defined.name.place, MeaningError::TwoKinematics { name: defined.name.text.clone() })),
             (Some(_), None) => return self.frame_of_definitions(time, x, constraints, at),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
             (None, None) if self.is_lagrangian_form() => Ok(Frame::coordinate(self.graph, time, x)),
             (None, None) if x.is_empty() => {
                 let k = document.quasi_velocities.len();
                 let b = pc_mech::Matrix::from_fn(0, k, |_, _| Expr::ZERO);
-                Frame::new(self.graph, time, x, b, Vec::new()).map_err(|e| self.model.algebra_error(e))
+                Frame::new(self.graph, time, x, b, Vec::new())
+                    .map_err(|e| self.model.document().algebra_error(e))
             }
             (None, None) => {
                 let name = &document.quasi_velocities[0].name;
-                Err(self.model.error(&name.place, Fault::Undefined { name: name.text.clone() }))
+                Err(self
+                    .model
+                    .document()
+                    .error(&name.place, MeaningError::Undefined { name: name.text.clone() }))
             }
         };
         Ok((frame?, Vec::new()))
@@ -53,9 +59,10 @@ impl<'g> Assembler<'g, '_> {
         for coordinate in &document.coordinates {
             let Some(kinematics) = entry(&document.kinematics, &coordinate.name.text) else {
                 let coordinate = coordinate.name.text.clone();
-                return Err(self
-                    .model
-                    .error(&document.kinematics[0].name.place, Fault::KinematicsMissing { coordinate }));
+                return Err(self.model.document().error(
+                    &document.kinematics[0].name.place,
+                    MeaningError::KinematicsMissing { coordinate },
+                ));
             };
             velocities.push(self.scope.resolve(&kinematics.expression, Stage::Kinematics)?);
         }
@@ -63,14 +70,15 @@ impl<'g> Assembler<'g, '_> {
         Frame::from_velocities(self.graph, time, x, &eta, &velocities).map_err(|error| match error {
             AlgebraError::NotAffine { coordinate, .. } => match entry(&document.kinematics, &coordinate) {
                 Some(NamedExpression { expression, .. }) => {
-                    let fault = |text| Fault::NotAffine { text, variables: "quasi-velocities" };
+                    let fault = |text| MeaningError::NotAffine { text, variables: "quasi-velocities" };
                     self.scope.error(expression, expression.ast.span, fault)
                 }
-                None => {
-                    self.model.algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() })
-                }
+                None => self
+                    .model
+                    .document()
+                    .algebra_error(AlgebraError::NotAffine { coordinate, velocity: String::new() }),
             },
-            other => self.model.algebra_error(other),
+            other => self.model.document().algebra_error(other),
         })
     }
 }

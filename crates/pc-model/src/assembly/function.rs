@@ -2,11 +2,13 @@
 
 use pc_mech::Expr;
 
+use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::Source;
-use crate::document::document::Expression;
-use crate::model::model::{Assembly, Model};
-use crate::names::scope::{Scope, Stage};
+use crate::document::Expression;
+use crate::model::model::Model;
+use crate::names::scope::Scope;
+use crate::names::stage::Stage;
 
 impl Model {
     /// The function of (t, x, η) that a text says in the names of the model, where x' is the velocity of a coordinate x.

@@ -7,9 +7,10 @@ use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
 use pc_mech::Table;
 
 use crate::assembly::tables;
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::diagnostics::fault::Fault;
-use crate::document::document::{Document, Expression, InputValue, Name};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression in
@@ -157,6 +158,6 @@ impl Parameters {
 }
 
 fn not_finite(document: &Document, expression: &Expression, value: f64) -> ModelError {
-    let fault = Fault::ParameterNotFinite { text: expression.text.clone(), value };
+    let fault = MeaningError::ParameterNotFinite { text: expression.text.clone(), value };
     document.source.error(&expression.place(expression.ast.span), ErrorKind::Meaning(fault))
 }

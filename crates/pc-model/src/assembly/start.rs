@@ -1,14 +1,16 @@
 //! The start of a motion from what is given of it.
 
 use pc_algebra::affine;
-use pc_mech::{Expr, Frame};
+use pc_mech::{Expr, Frame, Graph};
 
 use super::constraints::Written;
-use crate::assembly::assembly::Assembler;
+use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
-use crate::document::document::Expression;
-use crate::names::scope::{Stage, entry};
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::Expression;
+use crate::model::model::Model;
+use crate::names::scope::{Scope, entry};
+use crate::names::stage::Stage;
 
 /// What is left of a unit vector that depends on others, beside rounding.
 const DEPENDENT: f64 = 1e-9;
@@ -26,6 +28,18 @@ pub(super) struct Given {
     velocities: Vec<f64>,
     /// First-order states; zero where nothing is given.
     pub(super) states: Vec<f64>,
+}
+
+/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
+///
+/// # Errors
+/// [`ModelError`] where one is not a number.
+pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
+    let parameters: Vec<(Expr<'_>, f64)> =
+        model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
+    let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
+    let given = assembler.given_start(&parameters)?;
+    Ok([given.values, given.states].concat())
 }
 
 impl<'g> Assembler<'g, '_> {
@@ -81,7 +95,7 @@ impl<'g> Assembler<'g, '_> {
         if value.is_finite() {
             return Ok(value);
         }
-        let fault = |text| Fault::NotFinite { text, value, state: Vec::new() };
+        let fault = |text| MeaningError::NotFinite { text, value, state: Vec::new() };
         Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
@@ -89,8 +103,8 @@ impl<'g> Assembler<'g, '_> {
     /// velocities, b η + b_0 = x', and from the constraints; where these leave them open, those declared are zero.
     ///
     /// # Errors
-    /// [`Fault::StartVelocity`] for a velocity that the others contradict; [`Fault::StartOpen`] where those that complete the
-    /// definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those
+    /// that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -126,7 +140,7 @@ impl<'g> Assembler<'g, '_> {
             (0..eta.len()).filter(|&s| equations.leaves_open(&unit(s))).map(|s| eta[s].to_string()).collect();
         if !open.is_empty() {
             let place = &self.model.document().quasi_velocities[0].name.place;
-            return Err(self.model.error(place, Fault::StartOpen { velocities: open }));
+            return Err(self.model.document().error(place, MeaningError::StartOpen { velocities: open }));
         }
         let solution = equations.solution(eta.len());
         for (s, value) in solution.into_iter().enumerate() {
@@ -158,8 +172,8 @@ impl<'g> Assembler<'g, '_> {
             };
             if let Some(found) = equations.add(row, given - drift) {
                 let (coordinate, found) = (velocity.name.text.clone(), found + drift);
-                let fault = Fault::StartVelocity { coordinate, given, found };
-                return Err(self.model.error(&velocity.expression.whole(), fault));
+                let fault = MeaningError::StartVelocity { coordinate, given, found };
+                return Err(self.model.document().error(&velocity.expression.whole(), fault));
             }
         }
         Ok(())

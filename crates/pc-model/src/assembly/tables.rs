@@ -5,10 +5,11 @@ use std::path::Path;
 
 use pc_mech::{Table, TableError};
 
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
-use crate::document::document::{Document, Input, InputValue, Name, TableFile};
+use crate::document::{Document, Input, InputValue, Name, TableFile};
 
 const LISTS: &str = "give as many values as times, two at least, and let the times rise";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
@@ -44,7 +45,7 @@ pub(crate) fn not_at_start(document: &Document, name: &Name, table: &Table) -> M
 }
 
 fn fault(document: &Document, place: &Place, what: String, help: &'static str) -> ModelError {
-    document.source.error(place, ErrorKind::Meaning(Fault::BadTable { what, help }))
+    document.source.error(place, ErrorKind::Meaning(MeaningError::BadTable { what, help }))
 }
 
 fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError> {

@@ -1,10 +1,10 @@
 //! Whether a state satisfies the constraints.
 
 use pc_mech::{CompileOptions, Constraint, Expr, MechError, System, VectorField};
-use pc_nonholo::Sorted;
+use pc_nonholo::ConstraintClassification;
 
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
 /// A start that misses a constraint by less than this displacement of a coordinate or velocity, absolute or relative
@@ -56,13 +56,13 @@ impl<'g> Trial<'_, 'g> {
     /// [`ModelError`] if none is found.
     pub(super) fn nearest(
         &self,
-        sorted: &Sorted<'g>,
+        classification: &ConstraintClassification<'g>,
         state: &[f64],
         held: &StartHeld,
     ) -> Result<Vec<f64>, ModelError> {
         let mut nearest = state.to_vec();
-        let refused = |error: MechError| self.model.constraint_error(error.into());
-        if let Some(multipliers) = sorted.multipliers() {
+        let refused = |error: MechError| self.model.document().constraint_error(error.into());
+        if let Some(multipliers) = classification.multipliers() {
             let options = CompileOptions::default().jacobian(false);
             let mut motion = multipliers.compile_for(options).map_err(refused)?;
             if held.is_empty() {
@@ -73,8 +73,8 @@ impl<'g> Trial<'_, 'g> {
                 moved.map_err(|failure| match MechError::from(failure) {
                     MechError::SingularConstraint { constraint, .. } => {
                         let held = held.names(self.system);
-                        let fault = Fault::StartHeld { constraint: constraint.clone(), held };
-                        self.model.constraint_fault(&constraint, fault)
+                        let fault = MeaningError::StartHeld { constraint: constraint.clone(), held };
+                        self.model.document().constraint_fault(&constraint, fault)
                     }
                     other => refused(other),
                 })?;
@@ -86,11 +86,12 @@ impl<'g> Trial<'_, 'g> {
     /// That the constraints and their rates have values.
     ///
     /// # Errors
-    /// [`Fault::NotFinite`] at the first that has none.
+    /// [`MeaningError::NotFinite`] at the first that has none.
     pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
         for constraint in self.constraints {
             let value = self.value(constraint.velocity(self.system), state);
-            let Some(text) = self.model.constraint_text(constraint.name()).filter(|_| !value.is_finite())
+            let Some(text) =
+                self.model.document().constraint_text(constraint.name()).filter(|_| !value.is_finite())
             else {
                 continue;
             };
@@ -98,8 +99,8 @@ impl<'g> Trial<'_, 'g> {
             let text_of_rate =
                 if constraint.is_holonomic(self.system) { format!("d({whole})") } else { whole.clone() };
             let names = self.state_symbols().map(|x| x.to_string()).zip(state.iter().copied());
-            let fault = Fault::NotFinite { text: text_of_rate, value, state: names.collect() };
-            return Err(self.model.error(&text.expression.place(text.expression.ast.span), fault));
+            let fault = MeaningError::NotFinite { text: text_of_rate, value, state: names.collect() };
+            return Err(self.model.document().error(&text.expression.place(text.expression.ast.span), fault));
         }
         Ok(())
     }
@@ -108,15 +109,22 @@ impl<'g> Trial<'_, 'g> {
     /// so up to a constant.
     ///
     /// # Errors
-    /// [`Fault::Contradictory`]
-    pub(super) fn check_redundant(&self, sorted: &Sorted<'g>, on: &[f64]) -> Result<(), ModelError> {
-        for redundant in sorted.redundant() {
+    /// [`MeaningError::Contradictory`]
+    pub(super) fn check_redundant(
+        &self,
+        classification: &ConstraintClassification<'g>,
+        on: &[f64],
+    ) -> Result<(), ModelError> {
+        for redundant in classification.redundant() {
             let written = self.constraints.iter().find(|c| c.name() == redundant.constraint);
             if let Some((constraint, (_, residual))) = written.and_then(|c| Some((c, self.off(c, on)?))) {
                 let others = redundant.follows_from.clone();
-                let fault =
-                    Fault::Contradictory { constraint: constraint.name().to_owned(), others, residual };
-                return Err(self.model.constraint_fault(constraint.name(), fault));
+                let fault = MeaningError::Contradictory {
+                    constraint: constraint.name().to_owned(),
+                    others,
+                    residual,
+                };
+                return Err(self.model.document().constraint_fault(constraint.name(), fault));
             }
         }
         Ok(())
@@ -125,15 +133,15 @@ impl<'g> Trial<'_, 'g> {
     /// That all constraints are satisfied.
     ///
     /// # Errors
-    /// [`Fault::OffConstraint`] at the first that is not.
+    /// [`MeaningError::OffConstraint`] at the first that is not.
     pub(super) fn check(&self, state: &[f64]) -> Result<(), ModelError> {
         let off =
             |constraint: &Constraint<'g>| Some((constraint.name().to_owned(), self.off(constraint, state)?));
         match self.constraints.iter().find_map(off) {
             None => Ok(()),
             Some((constraint, (what, residual))) => {
-                let fault = Fault::OffConstraint { what, constraint: constraint.clone(), residual };
-                Err(self.model.constraint_fault(&constraint, fault))
+                let fault = MeaningError::OffConstraint { what, constraint: constraint.clone(), residual };
+                Err(self.model.document().constraint_fault(&constraint, fault))
             }
         }
     }

@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use crate::diagnostics::error::{ErrorKind, ModelError};
-
 /// A model file: its name as shown in messages, and its text.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
@@ -77,11 +75,6 @@ impl Source {
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.bytes().filter(|byte| *byte == b'\n').count() + 1;
         Position { line, column: before[start..].chars().count() + 1 }
-    }
-
-    /// The error of kind `kind` at `place`.
-    pub fn error(&self, place: &Place, kind: impl Into<ErrorKind>) -> ModelError {
-        ModelError::new(self, place.clone(), kind.into())
     }
 
     /// The line on which `span` begins and under it carets below the part of it that `span` covers.

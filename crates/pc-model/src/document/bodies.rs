@@ -1,8 +1,9 @@
 //! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::document::document::{Body, Gravity, Inertia, Orientation};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::document::contents::{Body, Gravity, Inertia, Orientation};
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
 const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";

@@ -3,8 +3,10 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use crate::diagnostics::error::{ErrorKind, ModelError, Role};
-use crate::document::document::{Document, Name};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::{ErrorKind, Role};
+use crate::document::contents::Document;
+use crate::document::expression::Name;
 
 /// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {

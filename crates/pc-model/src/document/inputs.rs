@@ -3,8 +3,9 @@
 use pc_mech::Interpolation;
 
 use super::reader::{Item, Table};
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::document::document::{Input, InputValue, TableFile};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::document::contents::{Input, InputValue, TableFile};
 
 const KEYS: &[&str] = &["times", "values", "file", "column", "time", "interpolation"];
 const TIMES: &str = "times = [0.0, 1.0], values = [0.0, 2.0]";

@@ -7,9 +7,10 @@ use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
 
 use super::text_map::TextMap;
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::document::{Expression, Located, Name, NamedExpression};
+use crate::document::expression::{Expression, Located, Name, NamedExpression};
 
 /// A TOML table and the path of its entries.
 #[derive(Clone)]

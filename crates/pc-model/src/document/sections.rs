@@ -3,11 +3,13 @@
 use std::collections::HashSet;
 
 use super::reader::{Item, Table};
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::document::document::{
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::document::contents::{
     Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
-    NamedExpression, QuasiVelocity, State,
+    QuasiVelocity, State,
 };
+use crate::document::expression::NamedExpression;
 
 pub(super) fn heading(table: &Table<'_>) -> Result<Heading, ModelError> {
     let mut heading = Heading::default();

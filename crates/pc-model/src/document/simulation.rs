@@ -1,46 +1,18 @@
 //! The sections that say how the motion is followed: events and simulation.
 
-use super::reader::{Item, Table};
-use crate::diagnostics::source::Place;
 use pc_expr::Direction;
 
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::document::document::{Event, Form, Located, Method, NamedExpression};
+use super::reader::{Item, Table};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::document::contents::{EquationForm, Event, Method, Simulation};
+use crate::document::expression::{Located, NamedExpression};
 
 /// The most rows of a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
 
 /// The most places in one step where events are looked for.
 const MOST_SAMPLES_PER_STEP: u32 = 10_000;
-
-/// How the motion is computed; what is left out is left to the program.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Simulation {
-    /// The section's header.
-    pub place: Option<Place>,
-    /// Start time.
-    pub t_start: Option<Located<f64>>,
-    /// End time.
-    pub t_end: Option<Located<f64>>,
-    /// Number of rows, from 2 (start and end).
-    pub samples: Option<Located<usize>>,
-    /// Relative tolerance, positive.
-    pub rtol: Option<Located<f64>>,
-    /// Absolute tolerance, positive.
-    pub atol: Option<Located<f64>>,
-    /// Largest length of a step, positive.
-    pub max_step: Option<Located<f64>>,
-    /// In how many parts of a step events are looked for, at least 1.
-    pub samples_per_step: Option<Located<u32>>,
-    /// To which part of their distance those of an event have shrunk when they accumulate, from 0 to less than 1.
-    pub accumulation: Option<Located<f64>>,
-    /// Integration method.
-    pub method: Option<Located<Method>>,
-    /// Form of the equations.
-    pub form: Option<Located<Form>>,
-    /// Integrals, or `energy`, to whose values at the start the motion is projected.
-    pub project: Vec<Located<String>>,
-}
 
 pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
     let mut result = Simulation { place: Some(table.place.clone()), ..Simulation::default() };
@@ -66,8 +38,10 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
                 ])?);
             }
             "form" => {
-                result.form =
-                    Some(item.choice(&[("poincare", Form::Poincare), ("canonical", Form::Canonical)])?);
+                result.form = Some(item.choice(&[
+                    ("poincare", EquationForm::Poincare),
+                    ("canonical", EquationForm::Canonical),
+                ])?);
             }
             "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {
@@ -187,7 +161,7 @@ fn resets(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
 mod tests {
     use super::*;
     use crate::diagnostics::source::Source;
-    use crate::document::document::Document;
+    use crate::document::contents::Document;
 
     #[test]
     fn the_largest_table_is_that_of_the_message() {

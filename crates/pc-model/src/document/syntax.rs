@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use toml::de::{DeTable, Error};
 
-use crate::diagnostics::error::{ErrorKind, ModelError};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Source};
 
 /// The table of a whole file.

@@ -3,9 +3,10 @@
 use pc_expr::{Backend, Evaluator, Expr, Program};
 use pc_mech::MechError;
 
+use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
-use crate::flow::flow::inputs;
-use crate::model::model::{Assembly, Model};
+use crate::flow::reading::inputs;
+use crate::model::model::Model;
 
 /// Of each event the derivatives of its function, and of what its reset writes, by (t, y, p), where y = (x, η, z) with the free
 /// η, of which the others are functions.
@@ -70,7 +71,8 @@ impl EventSlopes {
             let rows: Vec<Expr<'g>> =
                 functions.iter().flat_map(|&function| graph.gradient(function, &symbols)).collect();
             let program = Program::new(graph, &inputs, &rows);
-            let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;
+            let program =
+                program.map_err(|error| model.document().derivation_error(MechError::from(error)))?;
             let rows_len = rows.len();
             let rows = Evaluator::new(program, Backend::Interpreter);
             Ok(Compiled { places, rows, values: vec![f64::NAN; rows_len] })

@@ -3,12 +3,12 @@
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
-use super::event_slopes::EventSlopes;
-use super::reading::Reading;
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::assembly::Assembly;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
-use crate::flow::flow::inputs;
-use crate::model::model::{Assembly, Model};
+use crate::flow::event_slopes::EventSlopes;
+use crate::flow::reading::{Reading, inputs};
+use crate::model::model::Model;
 
 /// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
 /// larger, is no rounding.
@@ -79,7 +79,7 @@ impl FlowEvents {
         let inputs = inputs(system, &system.state());
         let compiled = |values: &[_]| {
             let program = Program::new(system.graph(), &inputs, values);
-            let program = program.map_err(|error| model.derivation_error(MechError::from(error)))?;
+            let program = assembly.placed(program.map_err(MechError::from))?;
             Ok(Evaluator::new(program, Backend::Interpreter))
         };
         let declared = &assembly.events;
@@ -88,9 +88,11 @@ impl FlowEvents {
             let (places, values): (Vec<_>, Vec<_>) = event.resets.iter().copied().unzip();
             Ok(Reset { places, values: compiled(&values)? })
         });
-        let held = matches!(assembly.bound.form(), Form::Held(_)) && !declared.is_empty();
+        let held = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_))
+            && !declared.is_empty();
         // Those declared, where others complete them to a frame and follow from them.
-        let bound = assembly.bound.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
+        let bound =
+            assembly.constraints.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
         let follow = bound > 0 && assembly.declared + bound == system.quasi_velocities().len();
         Ok(FlowEvents {
             determining: if follow { (0..assembly.declared).collect() } else { Vec::new() },

@@ -1,15 +1,16 @@
 //! The vector field that is integrated, what happens on its way, and what a table shows of its states.
 
-use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
-use pc_mech::{LegendreTransform, MechError, Motion, System};
+use pc_expr::{Backend, Evaluator, Expr, Program};
+use pc_mech::{LegendreTransform, MechError, Motion};
 
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::assembly::Assembly;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::flow::event_slopes::EventSlopes;
-pub use crate::flow::events::FlowEvents;
-use crate::flow::reading::Reading;
+use crate::flow::events::FlowEvents;
+use crate::flow::reading::{Reading, inputs};
 use crate::flow::variables::Variables;
-use crate::model::model::{Assembly, Model};
+use crate::model::model::Model;
 
 /// Equations of motion of a model, compiled and tried at the start, with what is read off their states.
 #[derive(Clone, Debug)]
@@ -40,18 +41,22 @@ impl Flow {
                 Flow::of(model, assembly, &free, compiled, None)
             }
             Variables::Momenta => {
-                let mut transform = model.legendre_transform(assembly, variables)?;
-                let system = match assembly.bound.form() {
-                    Form::Held(_) => assembly.system.clone(),
-                    Form::Free | Form::Vanishing(_) => model.system_in(assembly, variables)?,
+                let mut transform = assembly.legendre_transform(variables)?;
+                let system = match assembly.constraints.formulation() {
+                    ConstraintFormulation::Multipliers(_) => assembly.system.clone(),
+                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
+                        assembly.system_in(variables)?
+                    }
                 };
                 let start = assembly.start_of(&system.state());
                 let start = transform.to_momenta(assembly.t_start, &start);
-                let start = start.map_err(|error| model.derivation_error(error))?;
-                let motion = match assembly.bound.form() {
-                    Form::Held(held) => model.compile_in_momenta(&held.multipliers, assembly, &start)?,
-                    Form::Free | Form::Vanishing(_) => {
-                        let canonical = model.canonical_in(assembly, variables)?;
+                let start = start.map_err(|error| assembly.document.derivation_error(error))?;
+                let motion = match assembly.constraints.formulation() {
+                    ConstraintFormulation::Multipliers(held) => {
+                        model.compile_in_momenta(&held.multipliers, assembly, &start)?
+                    }
+                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
+                        let canonical = assembly.canonical_in(variables)?;
                         model.compile_canonical(&canonical, assembly.t_start, &start)?
                     }
                 };
@@ -71,13 +76,13 @@ impl Flow {
         let system = &assembly.system;
         let x = system.frame().coordinates();
         let declared = &system.quasi_velocities()[..assembly.declared];
-        let all = assembly.quasi_velocities_of(free).map_err(|error| model.constraint_error(error))?;
+        let all = assembly.quasi_velocities_of(free)?;
         let eta = system.quasi_velocities();
         let free_places = free.iter().filter_map(|free| eta.iter().position(|eta| eta == free)).collect();
         let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
         let inputs = inputs(system, &[x, free, &states].concat());
-        let program = Program::new(system.graph(), &inputs, &all)
-            .map_err(|error| model.derivation_error(MechError::from(error)))?;
+        let program = Program::new(system.graph(), &inputs, &all).map_err(MechError::from);
+        let program = assembly.placed(program)?;
         let reading = Reading {
             coordinates: x.len(),
             quasi_velocities: Evaluator::new(program, Backend::Interpreter),
@@ -85,7 +90,8 @@ impl Flow {
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             transform,
         };
-        let explicit = reading.transform.is_none() && !matches!(assembly.bound.form(), Form::Held(_));
+        let explicit = reading.transform.is_none()
+            && !matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
         let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
@@ -161,14 +167,5 @@ impl Flow {
     /// Number of quasi-velocities.
     pub fn quasi_velocities(&self) -> usize {
         self.names.len() - self.motion.coordinates() - self.motion.states()
-    }
-}
-
-/// Time, a state of these symbols, and the parameters.
-pub(super) fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
-    Inputs {
-        time: Some(system.frame().time()),
-        state: state.to_vec(),
-        parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
     }
 }

@@ -1,7 +1,7 @@
 //! States read as coordinates, all quasi-velocities and first-order states of a model.
 
-use pc_expr::Evaluator;
-use pc_mech::{LegendreTransform, MechError};
+use pc_expr::{Evaluator, Expr, Inputs};
+use pc_mech::{LegendreTransform, MechError, System};
 
 /// How a state is read as coordinates and all quasi-velocities of the model, and written.
 #[derive(Clone, Debug)]
@@ -75,5 +75,14 @@ impl Reading {
     /// Values of the parameters.
     pub(super) fn parameters(&self) -> &[f64] {
         &self.parameters
+    }
+}
+
+/// Time, a state of these symbols, and the parameters.
+pub(super) fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
+    Inputs {
+        time: Some(system.frame().time()),
+        state: state.to_vec(),
+        parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
     }
 }

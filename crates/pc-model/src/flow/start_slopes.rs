@@ -3,7 +3,7 @@
 use pc_mech::Graph;
 
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
@@ -30,7 +30,7 @@ impl Flow {
         let refused = |why: &str, help| {
             let name = model.parameters().nth(j).map_or("", |(name, _)| name);
             let message = format!("there are no sensitivities by `{name}`: {why}");
-            model.error(&model.parameter_place(j), Fault::NoForm { message, help })
+            model.document().error(&model.parameter_place(j), MeaningError::NoForm { message, help })
         };
         if values.is_table(j) {
             return Err(refused("it is a function of time", "take them by parameters that are numbers"));

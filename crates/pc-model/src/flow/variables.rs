@@ -2,9 +2,9 @@
 
 use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
-use crate::assembly::constraint_treatment::Form;
+use crate::assembly::assembly::Assembly;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
-use crate::model::model::{Assembly, Model};
 
 /// The variables of the state beside the coordinates, and so which equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,23 +16,22 @@ pub enum Variables {
     Momenta,
 }
 
-impl Model {
+impl<'g> Assembly<'g> {
     /// The system of the quasi-velocities of the state; for momenta where multipliers hold constraints, that of
     /// independent ones.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
-    pub fn system_in<'g>(
-        &self,
-        assembly: &Assembly<'g>,
-        variables: Variables,
-    ) -> Result<System<'g>, ModelError> {
-        let free = || assembly.free_system().map_err(|error| self.constraint_error(error));
-        Ok(match (variables, assembly.bound.form()) {
-            (Variables::QuasiVelocities, Form::Held(_)) => assembly.system.without_observed(),
+    pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
+        Ok(match (variables, self.constraints.formulation()) {
+            (Variables::QuasiVelocities, ConstraintFormulation::Multipliers(_)) => {
+                self.system.without_observed()
+            }
             // What is observed may contain velocities that are not among the free ones.
-            (Variables::Momenta, Form::Held(_)) => free()?.without_observed(),
-            (_, Form::Free | Form::Vanishing(_)) => free()?,
+            (Variables::Momenta, ConstraintFormulation::Multipliers(_)) => {
+                self.free_system()?.without_observed()
+            }
+            (_, ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_)) => self.free_system()?,
         })
     }
 
@@ -40,32 +39,26 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
-    pub fn equations_in<'g>(&self, assembly: &Assembly<'g>) -> Result<Equations<'g>, ModelError> {
-        match assembly.bound.form() {
-            Form::Held(held) => Ok(held.multipliers.equations().clone()),
-            Form::Free | Form::Vanishing(_) => {
-                assembly.equations().map_err(|error| self.constraint_error(error))
-            }
+    pub fn equations_in(&self) -> Result<Equations<'g>, ModelError> {
+        match self.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) => Ok(held.multipliers.equations().clone()),
+            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => self.equations(),
         }
     }
 
-    /// The canonical equations of the momenta of the [system](Model::system_in) in these variables, η looked for from their start where they are
+    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, η looked for from their start where they are
     /// not closed.
     ///
     /// # Errors
     /// [`ModelError`] if there are none.
-    pub fn canonical_in<'g>(
-        &self,
-        assembly: &Assembly<'g>,
-        variables: Variables,
-    ) -> Result<Canonical<'g>, ModelError> {
-        let system = self.system_in(assembly, variables)?;
-        let start = assembly.start_of(&system.state());
+    pub fn canonical_in(&self, variables: Variables) -> Result<Canonical<'g>, ModelError> {
+        let system = self.system_in(variables)?;
+        let start = self.start_of(&system.state());
         let n = system.frame().coordinates().len();
         let canonical = system
             .canonical()
             .and_then(|canonical| canonical.with_guess(&start[n..n + system.quasi_velocities().len()]));
-        canonical.map_err(|error| self.derivation_error(error))
+        canonical.map_err(|error| self.document.derivation_error(error))
     }
 
     /// The change between the quasi-velocities of the state and its momenta; from momenta to quasi-velocities that satisfy
@@ -73,17 +66,13 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError`] if there is none.
-    pub fn legendre_transform(
-        &self,
-        assembly: &Assembly<'_>,
-        variables: Variables,
-    ) -> Result<LegendreTransform, ModelError> {
-        let transform = match (variables, assembly.bound.form()) {
-            (Variables::Momenta, Form::Held(held)) => {
-                held.multipliers.legendre_transform(&assembly.start_velocities())
+    pub fn legendre_transform(&self, variables: Variables) -> Result<LegendreTransform, ModelError> {
+        let transform = match (variables, self.constraints.formulation()) {
+            (Variables::Momenta, ConstraintFormulation::Multipliers(held)) => {
+                held.multipliers.legendre_transform(&self.start_velocities())
             }
-            _ => self.canonical_in(assembly, variables)?.legendre_transform(),
+            _ => self.canonical_in(variables)?.legendre_transform(),
         };
-        transform.map_err(|error| self.derivation_error(error))
+        transform.map_err(|error| self.document.derivation_error(error))
     }
 }

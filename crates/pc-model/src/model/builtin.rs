@@ -2,7 +2,7 @@
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::Source;
-use crate::document::document::Document;
+use crate::document::Document;
 
 /// A model that comes with the library.
 #[derive(Clone, Copy, Debug)]

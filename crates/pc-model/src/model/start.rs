@@ -2,7 +2,7 @@
 
 use pc_expr::Graph;
 
-use crate::assembly::assembly;
+use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
 use crate::model::model::Model;
 
@@ -83,6 +83,6 @@ impl Model {
     /// [`ModelError`] where a start value is not a number.
     pub fn start(&self) -> Result<Vec<f64>, ModelError> {
         self.parameter_values().check(self.document())?;
-        assembly::start(self, &Graph::new())
+        start::start(self, &Graph::new())
     }
 }

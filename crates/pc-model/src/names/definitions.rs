@@ -6,7 +6,8 @@ use pc_expr::Expr;
 use pc_expr::parse::{Ast, AstKind};
 
 use crate::diagnostics::error::ModelError;
-use crate::names::scope::{Context, Scope, Stage};
+use crate::names::scope::{Context, Scope};
+use crate::names::stage::Stage;
 
 impl<'g> Scope<'g, '_> {
     /// Looks at the definitions that nothing is made of: they may contain all that an output may.

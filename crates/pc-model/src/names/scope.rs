@@ -7,75 +7,13 @@ use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
 use crate::assembly::resultant::{force_names, torque_names};
-use crate::diagnostics::error::{ErrorKind, ModelError};
-use crate::diagnostics::fault::Fault;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::document::{Body, Document, Expression, NamedExpression};
-
-/// What an expression may contain, by the place where it stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Stage {
-    /// The value of a parameter: parameters before it.
-    Parameter,
-    /// A start value: parameters, and definitions made of them.
-    Start,
-    /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
-    Definition,
-    /// Kinematics: coordinates, t, and quasi-velocities.
-    Kinematics,
-    /// Mass, inertia, place and attitude of a body: coordinates and t.
-    Position,
-    /// Mass and inertia of a body: coordinates, first-order states and t.
-    Inertia,
-    /// The rate of a first-order state: everything but accelerations.
-    Rate,
-    /// The acceleration of gravity: parameters and t.
-    Gravity,
-    /// A constraint: everything but accelerations.
-    Constraint,
-    /// The energy or a force: everything but accelerations.
-    Dynamics,
-    /// An event: everything but accelerations.
-    Event,
-    /// A function that is asked for: everything but accelerations.
-    Function,
-    /// Integrals and outputs: everything.
-    Observation,
-}
-
-impl Stage {
-    fn place(self) -> &'static str {
-        match self {
-            Stage::Parameter => "the value of a parameter",
-            Stage::Start => "a start value",
-            Stage::Definition => "the definition of a quasi-velocity",
-            Stage::Kinematics => "[kinematics]",
-            Stage::Position | Stage::Inertia => "the mass, inertia, position or rotation of a body",
-            Stage::Rate => "the rate of a first-order state",
-            Stage::Gravity => "the acceleration of gravity",
-            Stage::Constraint => "a constraint",
-            Stage::Dynamics => "the Lagrangian or a force",
-            Stage::Event => "an event",
-            Stage::Function => "a function of the state",
-            Stage::Observation => "an integral or output",
-        }
-    }
-
-    fn allowed(self) -> &'static str {
-        match self {
-            Stage::Parameter => "numbers and parameters before it",
-            Stage::Start => "numbers, parameters and definitions made of them",
-            Stage::Definition => "parameters, coordinates, velocities x' and t",
-            Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
-            Stage::Position | Stage::Inertia => "parameters, coordinates and t",
-            Stage::Gravity => "numbers, parameters, inputs and t",
-            Stage::Constraint => "parameters, coordinates, velocities and t",
-            Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
-                "declared names"
-            }
-        }
-    }
-}
+use crate::document::{Body, Document, Expression, NamedExpression};
+use crate::names::functions::call;
+use crate::names::stage::Stage;
 
 /// A part of the model as written, and the expression it became: what is looked through when something is not a
 /// number.
@@ -196,7 +134,9 @@ impl<'g, 'd> Scope<'g, 'd> {
         let before = self.graph.zero_divisions();
         let value = self.ast(expression, &expression.ast, stage)?;
         if self.graph.zero_divisions() > before {
-            return Err(self.error(expression, expression.ast.span, |text| Fault::DivisionByZero { text }));
+            return Err(
+                self.error(expression, expression.ast.span, |text| MeaningError::DivisionByZero { text })
+            );
         }
         self.note(expression, expression.ast.span, value);
         Ok(value)
@@ -206,7 +146,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         &self,
         expression: &Expression,
         span: Span,
-        fault: impl FnOnce(String) -> Fault,
+        fault: impl FnOnce(String) -> MeaningError,
     ) -> ModelError {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
         self.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
@@ -276,7 +216,9 @@ impl<'g, 'd> Scope<'g, 'd> {
                 let before = self.graph.zero_divisions();
                 let value = call(function, &values, self.graph);
                 if self.graph.zero_divisions() > before {
-                    return Err(self.error(expression, ast.span, |text| Fault::DivisionByZero { text }));
+                    return Err(
+                        self.error(expression, ast.span, |text| MeaningError::DivisionByZero { text })
+                    );
                 }
                 self.note(expression, ast.span, value);
                 Ok(value)
@@ -300,7 +242,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             let span = Span { start, end: ast.span.end };
             if value.is_zero() {
-                return Err(self.error(expression, span, |text| Fault::DivisionByZero { text }));
+                return Err(self.error(expression, span, |text| MeaningError::DivisionByZero { text }));
             }
             product = product / value;
             self.note(expression, span, product);
@@ -317,8 +259,11 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let document = self.document;
         let refuse = |scope: &Self| {
-            let fault =
-                |_| Fault::NotHere { name: name.to_owned(), place: stage.place(), allowed: stage.allowed() };
+            let fault = |_| MeaningError::NotHere {
+                name: name.to_owned(),
+                place: stage.place(),
+                allowed: stage.allowed(),
+            };
             Err(scope.error(expression, span, fault))
         };
         if name == "pi" {
@@ -326,7 +271,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
         let own = self.context.definition.map(|(_, own)| own);
         let is_late = |place| own.is_some_and(|own| own <= place);
-        let late = |_| Fault::UsedBeforeDefined { name: name.to_owned() };
+        let late = |_| MeaningError::UsedBeforeDefined { name: name.to_owned() };
         if let Some(place) = document.parameters.iter().position(|p| p.name.text == name) {
             if stage == Stage::Parameter && is_late(place) {
                 return Err(self.error(expression, span, late));
@@ -378,7 +323,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Ok(symbol)
             }
             _ => {
-                let fault = |_| Fault::UnknownName { name: name.to_owned(), known: self.known() };
+                let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
             }
         }
@@ -422,7 +367,7 @@ impl<'g, 'd> Scope<'g, 'd> {
     ) -> Result<Expr<'g>, ModelError> {
         let coordinates = &self.document.coordinates;
         if !coordinates.iter().any(|c| c.name.text == name) {
-            let fault = |_| Fault::NotACoordinate {
+            let fault = |_| MeaningError::NotACoordinate {
                 name: name.to_owned(),
                 coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
             };
@@ -434,7 +379,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
-            | Stage::Gravity => Err(self.error(expression, span, |text| Fault::NotHere {
+            | Stage::Gravity => Err(self.error(expression, span, |text| MeaningError::NotHere {
                 name: text,
                 place: stage.place(),
                 allowed: stage.allowed(),
@@ -467,20 +412,20 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Observation => false,
         };
         if refused {
-            let fault = |text| Fault::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
+            let fault =
+                |text| MeaningError::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
-        let input =
-            |input: &&crate::document::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
+        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
-            return Err(self.error(expression, span, |_| Fault::RateOfInput { name }));
+            return Err(self.error(expression, span, |_| MeaningError::RateOfInput { name }));
         }
         let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
         let moves = |z: &Expr<'g>| value.depends_on(*z);
         if stage != Stage::Observation && velocities.iter().chain(&eta).any(moves) {
-            return Err(self.error(expression, span, |_| Fault::Acceleration { place: stage.place() }));
+            return Err(self.error(expression, span, |_| MeaningError::Acceleration { place: stage.place() }));
         }
         let rate = |symbol: &Expr<'g>| (*symbol, self.graph.symbol(&format!("{symbol}'")));
         let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
@@ -493,38 +438,16 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             if stage == Stage::Rate {
                 // The rates of two states may each contain that of the other.
-                let fault =
-                    |text| Fault::NotHere { name: text, place: stage.place(), allowed: "rates written out" };
+                let fault = |text| MeaningError::NotHere {
+                    name: text,
+                    place: stage.place(),
+                    allowed: "rates written out",
+                };
                 return Err(self.error(expression, span, fault));
             }
             rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
         }
         Ok(self.graph.directional(&[value], &rates)[0])
-    }
-}
-
-fn call<'g>(function: &str, args: &[Expr<'g>], graph: &'g Graph) -> Expr<'g> {
-    match (function, args) {
-        ("sin", &[x]) => x.sin(),
-        ("cos", &[x]) => x.cos(),
-        ("tan", &[x]) => x.tan(),
-        ("cot", &[x]) => x.cot(),
-        ("asin", &[x]) => x.asin(),
-        ("acos", &[x]) => x.acos(),
-        ("atan", &[x]) => x.atan(),
-        ("sinh", &[x]) => x.sinh(),
-        ("cosh", &[x]) => x.cosh(),
-        ("tanh", &[x]) => x.tanh(),
-        ("exp", &[x]) => x.exp(),
-        ("log", &[x]) => x.log(),
-        ("sqrt", &[x]) => x.sqrt(),
-        ("abs", &[x]) => x.abs(),
-        ("sign", &[x]) => x.sign(),
-        ("atan2", &[y, x]) => y.atan2(x),
-        ("min", &[x, y]) => x.min(y),
-        ("max", &[x, y]) => x.max(y),
-        ("step", &[x, a, b]) => x.step(a, b),
-        _ => unreachable!("the parser knows the functions and their arguments: {function} of {graph:?}"),
     }
 }
 

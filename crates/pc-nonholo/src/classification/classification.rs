@@ -3,7 +3,7 @@
 use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
 use crate::classification::binding::{Binding, Redundant};
-use crate::classification::involutive::{Field, involutive_closure};
+use crate::classification::involutive::{OperatorField, involutive_closure};
 use crate::error::NonholoError;
 use crate::reduction::adapted::independent;
 
@@ -25,14 +25,14 @@ pub enum Kind {
 
 /// Constraints of a system: those that bind it, each with its kind (Frobenius), and those that follow from them.
 #[derive(Clone, Debug)]
-pub struct Sorted<'g> {
+pub struct ConstraintClassification<'g> {
     multipliers: Option<Multipliers<'g>>,
     kinds: Vec<Kind>,
     combinations: usize,
     redundant: Vec<Redundant>,
 }
 
-impl<'g> Sorted<'g> {
+impl<'g> ConstraintClassification<'g> {
     /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by Frobenius' test into
     /// holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the velocities that all constraints allow,
     ///
@@ -54,16 +54,21 @@ impl<'g> Sorted<'g> {
         system: &System<'g>,
         constraints: &[Constraint<'g>],
         at: &[(Expr<'g>, f64)],
-    ) -> Result<Sorted<'g>, NonholoError> {
+    ) -> Result<ConstraintClassification<'g>, NonholoError> {
         let found = Binding::new(system, constraints, at)?;
         let redundant = found.redundant().to_vec();
         let binding: Vec<Constraint<'g>> = found.binding().iter().map(|&a| constraints[a].clone()).collect();
         if binding.is_empty() {
-            return Ok(Sorted { multipliers: None, kinds: Vec::new(), combinations: 0, redundant });
+            return Ok(ConstraintClassification {
+                multipliers: None,
+                kinds: Vec::new(),
+                combinations: 0,
+                redundant,
+            });
         }
         let multipliers = system.with_multipliers(&binding)?;
         let (kinds, combinations) = kinds(&multipliers, at)?;
-        Ok(Sorted { multipliers: Some(multipliers), kinds, combinations, redundant })
+        Ok(ConstraintClassification { multipliers: Some(multipliers), kinds, combinations, redundant })
     }
 
     /// The equations of motion with multipliers, unless nothing binds.
@@ -158,7 +163,7 @@ fn allowed<'g>(
     independent: &[usize],
     rows: &[Vec<Expr<'g>>],
     rests: &[Expr<'g>],
-) -> Result<Vec<Field<'g>>, NonholoError> {
+) -> Result<Vec<OperatorField<'g>>, NonholoError> {
     let l = independent.len();
     let a = Matrix::from_fn(l + rows.len(), system.quasi_velocities().len(), |u, s| match u.checked_sub(l) {
         Some(alpha) => rows[alpha][s],

@@ -3,7 +3,7 @@
 use pc_mech::{Expr, Neighbourhood, System};
 
 /// A field U = U^p X_p, p = 0..k; X_0 is that of time.
-pub(crate) type Field<'g> = Vec<Expr<'g>>;
+pub(crate) type OperatorField<'g> = Vec<Expr<'g>>;
 
 /// The terms of which the components C_αm U^m of a field along constraints are the sums.
 pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
@@ -15,7 +15,7 @@ pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
 /// `rows` are the C_α.
 pub(crate) fn involutive_closure<'g>(
     system: &System<'g>,
-    allowed: &[Field<'g>],
+    allowed: &[OperatorField<'g>],
     rows: &[Vec<Expr<'g>>],
     near: &Neighbourhood<'g>,
 ) -> Vec<Along<'g>> {
@@ -50,7 +50,7 @@ fn component<'g>(row: &[Expr<'g>], field: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
 }
 
 /// The terms of [U, V]^m = U(V^m) − V(U^m) + c_pq^m U^p V^q, p, q = 0..k.
-fn commutator<'g>(system: &System<'g>, u: &Field<'g>, v: &Field<'g>) -> Vec<Vec<Expr<'g>>> {
+fn commutator<'g>(system: &System<'g>, u: &OperatorField<'g>, v: &OperatorField<'g>) -> Vec<Vec<Expr<'g>>> {
     let structure = system.structure();
     let forth = along(system, u, v);
     let back = along(system, v, u);
@@ -62,7 +62,7 @@ fn commutator<'g>(system: &System<'g>, u: &Field<'g>, v: &Field<'g>) -> Vec<Vec<
 }
 
 /// U f = U^p X_p f for each f.
-fn along<'g>(system: &System<'g>, u: &Field<'g>, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn along<'g>(system: &System<'g>, u: &OperatorField<'g>, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let (graph, frame) = (system.graph(), system.frame());
     let rate = |i: usize| {
         let row = std::iter::once(frame.b0()[i]).chain(frame.b().row(i).iter().copied());

@@ -1,7 +1,7 @@
 //! What the motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
 
 use pc_mech::{Conservation, Equations, Expr, Graph, Neighbourhood, Number, Rates, Style, System};
-use pc_model::{Assembly, Form};
+use pc_model::{Assembly, ConstraintFormulation};
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
@@ -22,14 +22,14 @@ pub(super) struct Integral<'g> {
     pub(super) value: Expr<'g>,
     /// Where it comes from.
     how: &'static str,
-    verdict: Verdict<'g>,
+    verdict: ConservationVerdict<'g>,
     /// Whether an event may change it.
     jumps: bool,
 }
 
 /// What is known of the rate of change of a function along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Verdict<'g> {
+enum ConservationVerdict<'g> {
     /// It vanishes identically.
     Conserved,
     /// It vanishes identically for these values of the parameters.
@@ -68,11 +68,12 @@ pub(super) fn integrals<'g>(equations: &Equations<'g>, near: &Neighbourhood<'g>)
 /// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
 pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equations<'g>) {
     let open = |integral: &&mut Integral<'g>| {
-        integral.is_energy() && matches!(integral.verdict, Verdict::Rate { .. })
+        integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
     };
     for integral in list.iter_mut().filter(open) {
         let jumps = equations.rates().has_jumps(integral.value);
-        integral.verdict = if jumps { Verdict::BetweenJumps } else { Verdict::Conserved };
+        integral.verdict =
+            if jumps { ConservationVerdict::BetweenJumps } else { ConservationVerdict::Conserved };
     }
 }
 
@@ -81,7 +82,7 @@ pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equa
 pub(super) fn say_what_jumps<'g>(list: &mut [Integral<'g>], assembly: &Assembly<'g>) {
     let system = &assembly.system;
     let state = system.state();
-    let projected = matches!(assembly.bound.form(), Form::Held(_));
+    let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
     for reset in assembly.events.iter().map(|event| &event.resets).filter(|reset| !reset.is_empty()) {
         let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
         for integral in &mut *list {
@@ -89,8 +90,8 @@ pub(super) fn say_what_jumps<'g>(list: &mut [Integral<'g>], assembly: &Assembly<
             let jump = after - integral.value;
             if projected || !bind(system, jump).is_zero() {
                 integral.jumps = true;
-            } else if integral.verdict == Verdict::Conserved && !jump.is_zero() {
-                integral.verdict = Verdict::ConservedHere;
+            } else if integral.verdict == ConservationVerdict::Conserved && !jump.is_zero() {
+                integral.verdict = ConservationVerdict::ConservedHere;
             }
         }
     }
@@ -143,20 +144,20 @@ impl<'a, 'g> Search<'a, 'g> {
         self.equations.system()
     }
 
-    fn verdict(&self, function: Expr<'g>) -> Verdict<'g> {
+    fn verdict(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.rates.verdict(function) {
-            Ok(Conservation::Conserved) => Verdict::Conserved,
-            Ok(Conservation::ConservedHere) => Verdict::ConservedHere,
-            Ok(Conservation::ConservedBetweenJumps) => Verdict::BetweenJumps,
+            Ok(Conservation::Conserved) => ConservationVerdict::Conserved,
+            Ok(Conservation::ConservedHere) => ConservationVerdict::ConservedHere,
+            Ok(Conservation::ConservedBetweenJumps) => ConservationVerdict::BetweenJumps,
             Ok(Conservation::Changing(rate)) => self.changing(rate),
-            Err(_) => Verdict::NoFunction,
+            Err(_) => ConservationVerdict::NoFunction,
         }
     }
 
-    fn changing(&self, rate: Expr<'g>) -> Verdict<'g> {
+    fn changing(&self, rate: Expr<'g>) -> ConservationVerdict<'g> {
         let value = self.graph.evaluate(&[rate], &self.near.centre).ok();
         let at_start = value.map(|values| values[0]).filter(|value| value.is_finite());
-        Verdict::Rate { rate, at_start }
+        ConservationVerdict::Rate { rate, at_start }
     }
 
     fn bind(&self, function: Expr<'g>) -> Expr<'g> {
@@ -179,15 +180,15 @@ impl<'a, 'g> Search<'a, 'g> {
     fn energy(&self) -> Integral<'g> {
         let value = self.equations.energy();
         let verdict = match self.verdict(value) {
-            Verdict::Rate { .. } if self.unconstrained => {
+            ConservationVerdict::Rate { .. } if self.unconstrained => {
                 let rate = self.system().energy_rate();
                 let vanishes_here = self.bind(rate).is_zero();
                 if vanishes_here && self.rates.has_jumps(value) {
-                    Verdict::BetweenJumps
+                    ConservationVerdict::BetweenJumps
                 } else if rate.is_zero() {
-                    Verdict::Conserved
+                    ConservationVerdict::Conserved
                 } else if vanishes_here {
-                    Verdict::ConservedHere
+                    ConservationVerdict::ConservedHere
                 } else {
                     self.changing(rate)
                 }
@@ -223,11 +224,11 @@ impl<'a, 'g> Search<'a, 'g> {
     }
 
     /// The verdict on what is proved to be conserved at least for these parameters.
-    fn proved(&self, function: Expr<'g>) -> Verdict<'g> {
+    fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
-            known @ (Verdict::Conserved | Verdict::BetweenJumps) => known,
-            _ if self.rates.has_jumps(function) => Verdict::BetweenJumps,
-            _ => Verdict::ConservedHere,
+            known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
+            _ if self.rates.has_jumps(function) => ConservationVerdict::BetweenJumps,
+            _ => ConservationVerdict::ConservedHere,
         }
     }
 
@@ -246,14 +247,14 @@ impl<'a, 'g> Search<'a, 'g> {
         let degree = (1..=2).rev().find(|&d| binomial(bracket.variables().len() + d, d) <= MOST_FUNCTIONS);
         let momenta: Vec<_> =
             self.bound.momentum_symbols().into_iter().zip(self.system().momenta()).collect();
-        let casimirs: Vec<(Expr<'g>, Verdict<'g>)> = degree
+        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = degree
             .map_or_else(Vec::new, |degree| bracket.casimirs(degree as u32))
             .into_iter()
             .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
             .map(|(casimir, value)| {
                 let here = if forced { self.verdict(value) } else { self.proved(value) };
                 let always = !forced && self.system().bracket().is_casimir(casimir).unwrap_or(false);
-                (value, if always { Verdict::Conserved } else { here })
+                (value, if always { ConservationVerdict::Conserved } else { here })
             })
             .filter(|(_, verdict)| verdict.is_conserved())
             .collect();
@@ -336,27 +337,29 @@ fn binomial(n: usize, d: usize) -> usize {
     (1..=d).fold(1, |product, i| product * (n + 1 - i) / i)
 }
 
-impl Verdict<'_> {
+impl ConservationVerdict<'_> {
     fn is_conserved(self) -> bool {
-        matches!(self, Verdict::Conserved | Verdict::ConservedHere)
+        matches!(self, ConservationVerdict::Conserved | ConservationVerdict::ConservedHere)
     }
 
     /// `jumps`: whether an event may change it.
     fn words(self, jumps: bool) -> String {
         let between = if jumps { " between events" } else { "" };
         match self {
-            Verdict::Conserved => format!("conserved{between} (proved)"),
-            Verdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
-            Verdict::BetweenJumps => "conserved where it does not jump (proved)".to_owned(),
-            Verdict::NoFunction => "not decided: it is no function of time and state alone".to_owned(),
+            ConservationVerdict::Conserved => format!("conserved{between} (proved)"),
+            ConservationVerdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
+            ConservationVerdict::BetweenJumps => "conserved where it does not jump (proved)".to_owned(),
+            ConservationVerdict::NoFunction => {
+                "not decided: it is no function of time and state alone".to_owned()
+            }
             // Rounding of a rate that is zero there.
-            Verdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
+            ConservationVerdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
                 "not proved to be conserved, though it does not change at the start".to_owned()
             }
-            Verdict::Rate { at_start: Some(rate), .. } => {
+            ConservationVerdict::Rate { at_start: Some(rate), .. } => {
                 format!("not proved to be conserved: changes at the rate {} at the start", short(rate, 4))
             }
-            Verdict::Rate { at_start: None, .. } => "not proved to be conserved".to_owned(),
+            ConservationVerdict::Rate { at_start: None, .. } => "not proved to be conserved".to_owned(),
         }
     }
 }
@@ -380,7 +383,7 @@ impl Integral<'_> {
     /// The verdict, with the formula of what is not declared, and of the rate of the energy.
     pub(super) fn lines(&self) -> Vec<String> {
         let words = self.verdict.words(self.jumps);
-        if let (ENERGY, Verdict::Rate { rate, at_start }) = (self.how, self.verdict) {
+        if let (ENERGY, ConservationVerdict::Rate { rate, at_start }) = (self.how, self.verdict) {
             let formula = rate.display(Style::Book);
             let at_start =
                 at_start.map_or_else(String::new, |rate| format!(", {} at the start", short(rate, 4)));
@@ -413,7 +416,7 @@ impl Integral<'_> {
             "how": self.how,
             "verdict": self.verdict.words(self.jumps),
         });
-        if let Verdict::Rate { rate, at_start } = self.verdict {
+        if let ConservationVerdict::Rate { rate, at_start } = self.verdict {
             object["rate"] = json!(rate.to_string());
             object["rate_at_start"] = json!(at_start);
         }

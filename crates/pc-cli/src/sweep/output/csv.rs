@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::Out;
+use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Sheet};
 
 /// A header, then a line for each row, numbers with 17 significant digits; text in quotes where it needs them.
-pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut Out<'_>) -> io::Result<()> {
+pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
     let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
     writeln!(out, "{}", names.join(","))?; // names contain neither commas nor quotes
     for record in journal.records()? {

@@ -4,12 +4,17 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::Out;
+use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Sheet};
 
 /// Numbers are as short as gives the same number back; what is not finite is null.
-pub(super) fn write(title: &str, sheet: &Sheet, journal: &Journal, out: &mut Out<'_>) -> io::Result<()> {
+pub(super) fn write(
+    title: &str,
+    sheet: &Sheet,
+    journal: &Journal,
+    out: &mut FileWriter<'_>,
+) -> io::Result<()> {
     let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
     write!(out, "{{\n\"model\": {},\n\"columns\": {},\n\"rows\": [", json!(title), json!(names))?;
     let mut comma = "";

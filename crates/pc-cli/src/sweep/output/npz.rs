@@ -6,12 +6,12 @@ use npyz::{DType, WriterBuilder};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::Out;
+use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
 /// One array for each column, of `f64`, `u64` or text; the archive bears no date.
-pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut Out<'_>) -> io::Result<()> {
+pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
     let (rows, lengths) = extent(sheet, journal)?;
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -64,7 +64,7 @@ fn extent(sheet: &Sheet, journal: &Journal) -> io::Result<(u64, Vec<usize>)> {
 
 /// Writes one column as an array.
 fn fill<T: npyz::Serialize>(
-    archive: &mut ZipWriter<&mut Out<'_>>,
+    archive: &mut ZipWriter<&mut FileWriter<'_>>,
     dtype: DType,
     (sheet, journal, rows): (&Sheet, &Journal, u64),
     value: impl Fn(&[Cell<'_>]) -> T,

@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
-use super::Out;
+use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
@@ -25,7 +25,7 @@ enum Column {
 }
 
 /// Required columns INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), not compressed.
-pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut Out<'_>) -> io::Result<()> {
+pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
     let schema = schema(sheet).map_err(io::Error::other)?;
     let properties = Arc::new(WriterProperties::builder().build());
     let mut file = SerializedFileWriter::new(out, Arc::new(schema), properties).map_err(io::Error::other)?;

@@ -1,47 +1,12 @@
-//! What stands on the command line.
+//! The options of the commands.
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 use pc_model::Variables;
 use pc_model::document::MOST_SAMPLES;
 
-use crate::args::sweep::SweepArguments;
-use crate::run::checkpoint::SavingArguments;
-
-/// The command line of `pc`.
-#[derive(Clone, Debug, Parser)]
-#[command(
-    name = "pc",
-    version,
-    about = "Poincaré–Chetaev equations of mechanical systems, derived and integrated from text models",
-    after_help = "MODEL is a file, `-` for standard input, or the name of a model that comes with the program \
-                  (`pc models` lists them).\n\
-                  Exit codes: 0 done; 2 usage; 3 the model file is wrong; 4 the model is inconsistent; 5 the \
-                  integration failed; 130 interrupted."
-)]
-pub struct Arguments {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: Command,
-}
-
-/// What to do.
-#[derive(Clone, Debug, Subcommand)]
-pub enum Command {
-    /// Say whether a model holds together, what its motion keeps, and whether a steady motion is near
-    Check(CheckArguments),
-    /// Print the equations of motion
-    Derive(DeriveArguments),
-    /// Integrate the motion; CSV on standard output unless -o is given
-    Run(Box<RunArguments>),
-    /// Integrate many motions, of other parameters and starts, over all cores; what is finished survives interruptions
-    Sweep(Box<SweepArguments>),
-    /// Write the equations as C or Rust source that needs nothing of this program
-    Emit(EmitArguments),
-    /// List the models that come with the program, or print one
-    Models(ModelsArguments),
-}
+use crate::args::checkpoint::CheckpointArguments;
 
 /// The model and the values of its parameters.
 #[derive(Clone, Debug, Args)]
@@ -161,7 +126,7 @@ pub struct RunArguments {
     pub plot: Option<PathBuf>,
     /// Checkpoints.
     #[command(flatten)]
-    pub saving: SavingArguments,
+    pub checkpoints: CheckpointArguments,
 }
 
 /// Arguments of `pc emit`.
@@ -358,12 +323,6 @@ pub(crate) fn samples(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        use clap::CommandFactory;
-        Arguments::command().debug_assert();
-    }
 
     #[test]
     fn what_is_not_supported_yet_is_said_to_be_so() {

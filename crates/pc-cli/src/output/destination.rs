@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::commands::run::Run;
 use crate::error::CliError;
-use crate::plot::plot::Picture;
-use crate::report::text;
+use crate::motion::run::Run;
+use crate::output::{atomic, csv, json, npz, standard_output};
+use crate::plot::picture::Picture;
 
 /// How a result is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl Destination {
         let Some(&(_, encoding)) = encoding else {
             return Err(CliError::UnknownExtension { option, path: path.to_owned(), expected });
         };
-        crate::output::atomic::look(path).map_err(|source| write_error(path, source))?;
+        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
         Ok(Destination { encoding, path: Some(path.to_owned()) })
     }
 
@@ -72,9 +72,9 @@ impl Destination {
     /// [`CliError::Write`]; an existing file is then as it was.
     pub fn write_table(&self, run: &Run) -> Result<(), CliError> {
         self.write(|out| match self.encoding {
-            Encoding::Json => crate::output::json::write(run, out),
-            Encoding::Npz => crate::output::npz::write(run, out),
-            Encoding::Csv | Encoding::Svg | Encoding::Png => crate::output::csv::write(&run.table, out),
+            Encoding::Json => json::write(run, out),
+            Encoding::Npz => npz::write(run, out),
+            Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
         })
     }
 
@@ -92,14 +92,8 @@ impl Destination {
 
     fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
         match &self.path {
-            None => text::print(write),
-            Some(path) => {
-                crate::output::atomic::write(path, write).map_err(|source| write_error(path, source))
-            }
+            None => standard_output::print(write),
+            Some(path) => atomic::write(path, write).map_err(|source| CliError::cannot_write(path, source)),
         }
     }
-}
-
-fn write_error(path: &Path, source: io::Error) -> CliError {
-    CliError::Write { path: path.display().to_string(), source }
 }

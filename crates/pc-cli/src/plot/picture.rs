@@ -1,27 +1,7 @@
 //! The picture of a motion: coordinates, quasi-velocities, drift of the integrals, one panel each.
 
-use crate::commands::run::Run;
-use crate::run::table::Table;
-
-/// A picture that could not be drawn.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlotError {
-    /// The font that is built in is not one.
-    #[error("the built-in font cannot be read")]
-    Font,
-    /// The drawing library refused.
-    #[error("cannot draw the picture: {message}")]
-    Draw {
-        /// What it says.
-        message: String,
-    },
-    /// The bitmap could not be encoded.
-    #[error("cannot encode the picture: {message}")]
-    Encode {
-        /// What the encoder says.
-        message: String,
-    },
-}
+use crate::motion::run::Run;
+use crate::motion::table::Table;
 
 /// Panels under each other with a common axis of time.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,22 +69,6 @@ impl Picture {
             time: (time.0.min(time.1), time.0.max(time.1)),
             panels: panels.into_iter().filter(|panel| !panel.curves.is_empty()).collect(),
         }
-    }
-
-    /// As vector graphics.
-    ///
-    /// # Errors
-    /// [`PlotError`].
-    pub fn svg(&self) -> Result<String, PlotError> {
-        crate::plot::canvas::svg(self)
-    }
-
-    /// As a bitmap.
-    ///
-    /// # Errors
-    /// [`PlotError`].
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        crate::plot::canvas::png(self)
     }
 }
 

@@ -1,23 +1,23 @@
 //! Checkpoints of a run: written while it goes on, and gone on from.
 
 use std::fs;
-use std::io;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Args;
 use pc_model::{Flow, Model};
 use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, solve_checkpointed};
 
-use crate::args::args::RunForm;
+use crate::args::checkpoint::CheckpointArguments;
+use crate::args::options::RunForm;
 use crate::error::CliError;
+use crate::motion::checkpoint_error::CheckpointFileError;
+use crate::motion::identity;
+use crate::motion::identity::Identity;
+use crate::motion::plan::Plan;
 use crate::output::atomic;
 use crate::report::text;
-use crate::run::identity;
-use crate::run::identity::Identity;
-use crate::run::plan::Plan;
 
 /// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
 /// against them.
@@ -27,64 +27,9 @@ const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 /// numbers.
 const PATIENCE: u32 = 20;
 
-/// Arguments of `pc run` for checkpoints.
-#[derive(Clone, Debug, Default, Args)]
-pub struct SavingArguments {
-    /// Keep a checkpoint in FILE, for --resume. The integrator is begun anew at each, which changes the motion within its
-    /// tolerance
-    #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<PathBuf>,
-    /// Internal steps from one checkpoint to the next [default: 1000, or as in the FILE of --resume]
-    #[arg(long, value_name = "N")]
-    pub every: Option<NonZeroU64>,
-    /// Go on from the checkpoint in FILE, of the same model and options; the result is that of a run that was never
-    /// interrupted, to the last bit. Checkpoints go on to be kept there unless --checkpoint names another file
-    #[arg(long, value_name = "FILE")]
-    pub resume: Option<PathBuf>,
-}
-
-/// Why a run cannot go on from a file, or keep checkpoints there.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SavingError {
-    /// The file cannot be read.
-    #[error("--resume {}: it cannot be read", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// What is in the file is no checkpoint, or no longer one.
-    #[error("--resume {}: {source}; begin anew without --resume", path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// The checkpoint is that of another run.
-    #[error("--resume {}: it is of a run with {what}; repeat that command, or begin anew without --resume", path.display())]
-    OtherRun {
-        /// The file.
-        path: PathBuf,
-        /// What is different, then and now.
-        what: String,
-    },
-    /// A checkpoint would overwrite something else.
-    #[error("--checkpoint {}: the file is there and is no checkpoint; give another name", path.display())]
-    Occupied {
-        /// The file.
-        path: PathBuf,
-    },
-    /// `--every` where no checkpoint is kept.
-    #[error("--every says how often; give --checkpoint FILE too")]
-    Nowhere,
-}
-
 /// Checkpoints of one run.
 #[derive(Debug)]
-pub(crate) struct Saving {
+pub(crate) struct Checkpoints {
     path: PathBuf,
     every: NonZeroU64,
     identity: Identity,
@@ -92,40 +37,45 @@ pub(crate) struct Saving {
     from: Option<Checkpoint>,
 }
 
-impl Saving {
+impl Checkpoints {
     /// What the command line asks for: nothing, a file to write, one to go on from.
     ///
     /// # Errors
-    /// [`SavingError`]; [`CliError::Write`] where no file can be.
+    /// [`CheckpointFileError`]; [`CliError::Write`] where no file can be.
     pub(crate) fn new(
-        arguments: &SavingArguments,
+        arguments: &CheckpointArguments,
         model: &Model,
         plan: &Plan,
         form: RunForm,
-    ) -> Result<Option<Saving>, CliError> {
+    ) -> Result<Option<Checkpoints>, CliError> {
         let Some(path) = arguments.checkpoint.as_ref().or(arguments.resume.as_ref()) else {
-            return if arguments.every.is_some() { Err(SavingError::Nowhere.into()) } else { Ok(None) };
+            return if arguments.every.is_some() {
+                Err(CheckpointFileError::Nowhere.into())
+            } else {
+                Ok(None)
+            };
         };
         let overwritten = arguments.checkpoint.as_ref().and_then(|path| fs::read(path).ok());
         if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
-            return Err(SavingError::Occupied { path: path.clone() }.into());
+            return Err(CheckpointFileError::Occupied { path: path.clone() }.into());
         }
-        atomic::look(path).map_err(|source| write_error(path, source))?;
+        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
         let mut identity = identity::of_motion(model, plan, form);
         identity.insert(1, ("--samples".to_owned(), plan.samples.to_string()));
-        let mut saving =
-            Saving { path: path.clone(), every: arguments.every.unwrap_or(EVERY), identity, from: None };
+        let mut checkpoints =
+            Checkpoints { path: path.clone(), every: arguments.every.unwrap_or(EVERY), identity, from: None };
         if let Some(path) = &arguments.resume {
-            saving.take_up(path, arguments.every)?;
+            checkpoints.take_up(path, arguments.every)?;
         }
-        saving.identity.push((INTERVAL.to_owned(), saving.every.to_string()));
-        Ok(Some(saving))
+        checkpoints.identity.push((INTERVAL.to_owned(), checkpoints.every.to_string()));
+        Ok(Some(checkpoints))
     }
 
     /// Reads the checkpoint to go on from.
-    fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), SavingError> {
-        let bytes = fs::read(path).map_err(|source| SavingError::Read { path: path.to_owned(), source })?;
-        let unusable = |source| SavingError::Unusable { path: path.to_owned(), source };
+    fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), CheckpointFileError> {
+        let bytes =
+            fs::read(path).map_err(|source| CheckpointFileError::Read { path: path.to_owned(), source })?;
+        let unusable = |source| CheckpointFileError::Unusable { path: path.to_owned(), source };
         let (checkpoint, label) = Checkpoint::from_bytes(&bytes).map_err(unusable)?;
         let then: Identity = serde_json::from_str(&label).map_err(|_| unusable(CheckpointError::Foreign))?;
         let known = then.iter().find(|(name, _)| name == INTERVAL).and_then(|(_, every)| every.parse().ok());
@@ -133,7 +83,7 @@ impl Saving {
         let mut now = self.identity.clone();
         now.push((INTERVAL.to_owned(), self.every.to_string()));
         if let Some(what) = identity::difference(&then, &now) {
-            return Err(SavingError::OtherRun { path: path.to_owned(), what });
+            return Err(CheckpointFileError::OtherRun { path: path.to_owned(), what });
         }
         self.from = Some(checkpoint);
         Ok(())
@@ -151,10 +101,10 @@ impl Saving {
     ) -> Result<(Solution, Option<SolveError>), CliError> {
         let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
         let label = serde_json::to_string(&self.identity);
-        let label = label.map_err(|error| write_error(&self.path, error.into()))?;
+        let label = label.map_err(|error| CliError::cannot_write(&self.path, error.into()))?;
         let write = |checkpoint: &Checkpoint| {
             atomic::write(&self.path, |out| out.write_all(&checkpoint.to_bytes(&label)))
-                .map_err(|source| write_error(&self.path, source))
+                .map_err(|source| CliError::cannot_write(&self.path, source))
         };
         let start = Instant::now();
         write(&from)?;
@@ -189,7 +139,3 @@ impl Saving {
 
 /// Name of the number of steps between checkpoints.
 const INTERVAL: &str = "--every";
-
-fn write_error(path: &Path, source: io::Error) -> CliError {
-    CliError::Write { path: path.display().to_string(), source }
-}

@@ -4,10 +4,10 @@ use pc_model::Model;
 use pc_model::document;
 use pc_solve::{Accumulation, Method, Options};
 
-use crate::args::args;
-use crate::args::args::{RunArguments, RunForm};
+use crate::args::options;
+use crate::args::options::{RunArguments, RunForm};
 use crate::error::CliError;
-use crate::run::sensitivities;
+use crate::motion::sensitivities;
 
 /// Rows of a table if nobody says how many.
 const SAMPLES: usize = 201;
@@ -42,8 +42,8 @@ impl Plan {
     pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
         let written = model.document().simulation.form.as_ref().map(|form| form.value);
         arguments.form.unwrap_or(match written {
-            Some(document::Form::Canonical) => RunForm::Canonical,
-            Some(document::Form::Poincare) | None => RunForm::Poincare,
+            Some(document::EquationForm::Canonical) => RunForm::Canonical,
+            Some(document::EquationForm::Poincare) | None => RunForm::Poincare,
         })
     }
 
@@ -60,7 +60,7 @@ impl Plan {
             return Err(CliError::EndIsStart { t: t_end });
         }
         let method = match (arguments.method, simulation.method.as_ref().map(|method| method.value)) {
-            (Some(args::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
+            (Some(options::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
             _ => Method::Adams,
         };
         Ok(Plan {

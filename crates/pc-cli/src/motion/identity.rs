@@ -4,8 +4,8 @@
 use pc_model::Model;
 use pc_solve::Accumulation;
 
-use crate::args::args::RunForm;
-use crate::run::plan::Plan;
+use crate::args::options::RunForm;
+use crate::motion::plan::Plan;
 
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;

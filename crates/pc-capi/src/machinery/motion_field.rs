@@ -2,52 +2,52 @@
 
 use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
-use crate::api::force::Controller;
+use crate::machinery::controller::Controller;
 
 /// The vector field of the equations of motion, with or without forces that a function of the program computes.
 #[derive(Clone)]
-pub(crate) enum Field {
+pub(crate) enum MotionField {
     Free(Box<Motion>),
     Forced(Box<ForcedMotion<Controller>>),
 }
 
-impl Field {
+impl MotionField {
     /// The motion under external forces on these quasi-velocities, whose function is still to be set.
-    pub(crate) fn new(motion: Motion, forces: Vec<String>) -> Result<Field, MechError> {
+    pub(crate) fn new(motion: Motion, forces: Vec<String>) -> Result<MotionField, MechError> {
         match forces.as_slice() {
-            [] => Ok(Field::Free(Box::new(motion))),
-            _ => Ok(Field::Forced(Box::new(motion.forced(forces, Controller::default())?))),
+            [] => Ok(MotionField::Free(Box::new(motion))),
+            _ => Ok(MotionField::Forced(Box::new(motion.forced(forces, Controller::default())?))),
         }
     }
 
     /// Sets the function of the forces. The one before is returned, or the new one where there are no forces.
     pub(crate) fn set_force(&mut self, controller: Controller) -> Result<Controller, Controller> {
         match self {
-            Field::Free(_) => Err(controller),
-            Field::Forced(forced) => Ok(std::mem::replace(forced.force_mut(), controller)),
+            MotionField::Free(_) => Err(controller),
+            MotionField::Forced(forced) => Ok(std::mem::replace(forced.force_mut(), controller)),
         }
     }
 
     fn motion(&self) -> &Motion {
         match self {
-            Field::Free(motion) => motion,
-            Field::Forced(forced) => forced.motion(),
+            MotionField::Free(motion) => motion,
+            MotionField::Forced(forced) => forced.motion(),
         }
     }
 
     /// The machine code of f, if it is no more than that.
     pub(crate) fn machine_code(&mut self) -> Option<MachineCode> {
         match self {
-            Field::Free(motion) => motion.machine_code(),
-            Field::Forced(_) => None,
+            MotionField::Free(motion) => motion.machine_code(),
+            MotionField::Forced(_) => None,
         }
     }
 
     /// What it asks for of the parameters as they are.
     pub(crate) fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match self {
-            Field::Free(motion) => motion.fixed_pivots(),
-            Field::Forced(_) => None,
+            MotionField::Free(motion) => motion.fixed_pivots(),
+            MotionField::Forced(_) => None,
         }
     }
 
@@ -69,48 +69,48 @@ impl Field {
     /// What should be zero of each of them.
     pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         match self {
-            Field::Free(motion) => motion.constraint_residuals(t, y),
-            Field::Forced(forced) => forced.constraint_residuals(t, y),
+            MotionField::Free(motion) => motion.constraint_residuals(t, y),
+            MotionField::Forced(forced) => forced.constraint_residuals(t, y),
         }
     }
 
     /// The parameters, without forces.
     pub(crate) fn parameters(&self) -> &[f64] {
         match self {
-            Field::Free(motion) => motion.parameters(),
-            Field::Forced(forced) => forced.parameters(),
+            MotionField::Free(motion) => motion.parameters(),
+            MotionField::Forced(forced) => forced.parameters(),
         }
     }
 
     /// The parameters, to be changed.
     pub(crate) fn parameters_mut(&mut self) -> &mut [f64] {
         match self {
-            Field::Free(motion) => motion.parameters_mut(),
-            Field::Forced(forced) => forced.parameters_mut(),
+            MotionField::Free(motion) => motion.parameters_mut(),
+            MotionField::Forced(forced) => forced.parameters_mut(),
         }
     }
 
     /// The parameters, then the forces at (t, y).
     pub(crate) fn inputs(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Failure> {
         match self {
-            Field::Free(motion) => Ok(motion.parameters()),
-            Field::Forced(forced) => forced.inputs(t, y),
+            MotionField::Free(motion) => Ok(motion.parameters()),
+            MotionField::Forced(forced) => forced.inputs(t, y),
         }
     }
 
     /// The observables; those that contain a force that cannot be computed are not finite.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         match self {
-            Field::Free(motion) => motion.observe(t, y),
-            Field::Forced(forced) => forced.observe(t, y),
+            MotionField::Free(motion) => motion.observe(t, y),
+            MotionField::Forced(forced) => forced.observe(t, y),
         }
     }
 
     /// The observables without a call of the function of the forces; those that contain a force are not finite.
     pub(crate) fn observe_unforced(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         match self {
-            Field::Free(motion) => motion.observe(t, y),
-            Field::Forced(forced) => {
+            MotionField::Free(motion) => motion.observe(t, y),
+            MotionField::Forced(forced) => {
                 let controller = std::mem::take(forced.force_mut());
                 let values = forced.observe(t, y);
                 *forced.force_mut() = controller;
@@ -123,13 +123,13 @@ impl Field {
 macro_rules! delegate {
     ($self:expr, $field:pat => $call:expr) => {
         match $self {
-            Field::Free($field) => $call,
-            Field::Forced($field) => $call,
+            MotionField::Free($field) => $call,
+            MotionField::Forced($field) => $call,
         }
     };
 }
 
-impl VectorField for Field {
+impl VectorField for MotionField {
     fn dim(&self) -> usize {
         delegate!(self, field => field.dim())
     }

@@ -14,21 +14,21 @@ use pc_mech::Graph;
 use pc_model::{Category, Model};
 use pc_solve::{Ending, Ensemble};
 
-use crate::args::args::RunForm;
 use crate::args::input;
+use crate::args::options::RunForm;
 use crate::args::sweep::{Law, Random, SweepArguments, Vary};
 use crate::error::CliError;
+use crate::motion::identity;
+use crate::motion::identity::Identity;
+use crate::motion::interrupt;
+use crate::motion::plan::Plan;
 use crate::report::text::{labelled, short};
 use crate::report::{notes, text};
-use crate::run::identity;
-use crate::run::identity::Identity;
-use crate::run::interrupt;
-use crate::run::plan::Plan;
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
 use crate::sweep::journal::Journal;
 use crate::sweep::member::Members;
-use crate::sweep::output::Destination;
+use crate::sweep::output::destination::Destination;
 use crate::sweep::progress::Progress;
 use crate::sweep::sheet::Sheet;
 

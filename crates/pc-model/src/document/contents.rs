@@ -1,92 +1,10 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
-//!
-//! ```
-//! use pc_model::{Document, Source};
-//! let text = "coordinates.x = 1.0\nlagrangian.kinetic = \"x'^2/2\"";
-//! let document = Document::parse(Source::new("free.toml", text))?;
-//! assert_eq!(document.coordinates[0].name.text, "x");
-//! # Ok::<(), pc_model::ModelError>(())
-//! ```
-
-use std::ops::Range;
 
 use pc_expr::Direction;
-use pc_expr::parse::{Ast, Span, nearest, parse};
 use pc_mech::Interpolation;
 
-use crate::diagnostics::error::{ErrorKind, ModelError, SECTIONS};
 use crate::diagnostics::source::{Place, Source};
-
-use crate::document::simulation::Simulation;
-use crate::document::text_map::TextMap;
-
-/// A value and where it stands in the file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Located<T> {
-    /// The value.
-    pub value: T,
-    /// Where it stands.
-    pub place: Place,
-}
-
-/// A name and where it stands in the file, quotes excluded.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Name {
-    /// The name.
-    pub text: String,
-    /// Where it stands.
-    pub place: Place,
-}
-
-/// An expression and where it stands in the file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Expression {
-    /// As written, escapes of the TOML string resolved.
-    pub text: String,
-    /// Its tree, with spans in `text`.
-    pub ast: Ast,
-    pub(super) entry: String,
-    pub(super) map: TextMap,
-}
-
-impl Expression {
-    /// The expression that is the whole of a text.
-    ///
-    /// # Errors
-    /// [`ModelError`] if it is none.
-    pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
-        let text = source.text();
-        let ast = parse(text).map_err(|error| {
-            let span = error.span.start..error.span.end;
-            source.error(&Place { entry: String::new(), span }, error)
-        })?;
-        Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
-    }
-
-    /// Bytes of the file at which a part of the expression stands.
-    pub fn locate(&self, span: Span) -> Range<usize> {
-        self.map.locate(span.start..span.end)
-    }
-
-    /// The place of a part of the expression.
-    pub fn place(&self, span: Span) -> Place {
-        Place { entry: self.entry.clone(), span: self.locate(span) }
-    }
-
-    /// The place of the whole expression.
-    pub fn whole(&self) -> Place {
-        self.place(Span { start: 0, end: self.text.len() })
-    }
-}
-
-/// `name = "expression"`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedExpression {
-    /// What stands on the left.
-    pub name: Name,
-    /// What stands on the right.
-    pub expression: Expression,
-}
+use crate::document::expression::{Expression, Located, Name, NamedExpression};
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -357,79 +275,46 @@ pub enum Method {
 
 /// Forms of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum EquationForm {
     /// Equations for η.
     Poincare,
     /// Equations for the momenta.
     Canonical,
 }
 
+/// How the motion is computed; what is left out is left to the program.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Simulation {
+    /// The section's header.
+    pub place: Option<Place>,
+    /// Start time.
+    pub t_start: Option<Located<f64>>,
+    /// End time.
+    pub t_end: Option<Located<f64>>,
+    /// Number of rows, from 2 (start and end).
+    pub samples: Option<Located<usize>>,
+    /// Relative tolerance, positive.
+    pub rtol: Option<Located<f64>>,
+    /// Absolute tolerance, positive.
+    pub atol: Option<Located<f64>>,
+    /// Largest length of a step, positive.
+    pub max_step: Option<Located<f64>>,
+    /// In how many parts of a step events are looked for, at least 1.
+    pub samples_per_step: Option<Located<u32>>,
+    /// To which part of their distance those of an event have shrunk when they accumulate, from 0 to less than 1.
+    pub accumulation: Option<Located<f64>>,
+    /// Integration method.
+    pub method: Option<Located<Method>>,
+    /// Form of the equations.
+    pub form: Option<Located<EquationForm>>,
+    /// Integrals, or `energy`, to whose values at the start the motion is projected.
+    pub project: Vec<Located<String>>,
+}
+
 impl Document {
-    /// The document of a model file.
-    ///
-    /// # Errors
-    /// The first thing in the file that is not part of a model.
-    pub fn parse(source: Source) -> Result<Self, ModelError> {
-        let mut document = Self::default();
-        for item in
-            crate::document::reader::Table::root(&source, &crate::document::syntax::table(&source)?).items()
-        {
-            document.read(&item)?;
-        }
-        document.source = source;
-        crate::document::checks::check_names(&document)?;
-        crate::document::checks::require_motion(&document)?;
-        crate::document::checks::require_energy(&document)?;
-        crate::document::checks::require_bodies(&document)?;
-        Ok(document)
-    }
-
-    /// The document of a model file as read from disk.
-    ///
-    /// # Errors
-    /// As [`Document::parse`], and when the bytes are not UTF-8.
-    pub fn from_bytes(name: impl Into<String>, bytes: &[u8]) -> Result<Self, ModelError> {
-        Self::parse(Source::from_bytes(name, bytes))
-    }
-
     /// The end of the file, where what is missing could be added.
     pub fn end(&self) -> Place {
         let end = self.source.text().trim_end().len();
         Place { entry: String::new(), span: end..end }
-    }
-
-    /// Reads one section.
-    fn read(&mut self, item: &crate::document::reader::Item<'_>) -> Result<(), ModelError> {
-        let key = item.key();
-        if !SECTIONS.contains(&key) {
-            let name = key.to_owned();
-            return Err(item.key_error(if item.is_table() {
-                ErrorKind::UnknownSection { name, nearest: nearest(key, SECTIONS.iter().copied()) }
-            } else {
-                ErrorKind::OutsideSection { key: name }
-            }));
-        }
-        let table = item.section(key, &format!("[{key}]"))?;
-        match key {
-            "model" => self.model = crate::document::sections::heading(&table)?,
-            "parameters" => self.parameters = table.declarations()?,
-            "inputs" => self.inputs = crate::document::inputs::inputs(&table)?,
-            "definitions" => self.definitions = table.declarations()?,
-            "coordinates" => self.coordinates = table.declarations()?,
-            "quasi_velocities" => crate::document::sections::quasi_velocities(&table, self)?,
-            "states" => self.states = crate::document::sections::states(&table)?,
-            "kinematics" => self.kinematics = table.expressions()?,
-            "algebra" => self.algebra = Some(crate::document::sections::algebra(&table)?),
-            "constraints" => self.constraints = crate::document::sections::constraints(&table)?,
-            "lagrangian" => self.lagrangian = Some(crate::document::sections::lagrangian(&table)?),
-            "bodies" => self.bodies = crate::document::bodies::bodies(&table)?,
-            "gravity" => self.gravity = Some(crate::document::bodies::gravity(&table)?),
-            "forces" => self.forces = table.expressions()?,
-            "integrals" => self.integrals = table.declarations()?,
-            "outputs" => self.outputs = table.declarations()?,
-            "events" => self.events = crate::document::simulation::events(&table)?,
-            _ => self.simulation = crate::document::simulation::simulation(&table)?,
-        }
-        Ok(())
     }
 }

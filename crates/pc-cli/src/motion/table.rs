@@ -3,7 +3,7 @@
 use pc_model::Flow;
 use pc_solve::Trajectory;
 
-use crate::run::sensitivities::Derivatives;
+use crate::motion::sensitivities::Derivatives;
 
 /// A row for each output time.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,13 +2,13 @@
 
 use pc_mech::acts_as_zero;
 
-use crate::diagnostics::error::Category;
+use crate::diagnostics::category::Category;
 use crate::diagnostics::words::{against, at, listed, rounded, suggest, undetermined_text};
 
 /// A fault of the meaning; quasi-velocities stand for their operators.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Fault {
+pub enum MeaningError {
     /// A name that is declared nowhere.
     #[error("the name `{name}` is not declared")]
     UnknownName {
@@ -386,33 +386,33 @@ pub enum Fault {
     },
 }
 
-impl Fault {
+impl MeaningError {
     /// Whether the text or the model is to blame.
     pub fn category(&self) -> Category {
         match self {
-            Fault::DefinitionCount { .. }
-            | Fault::DependentDefinitions
-            | Fault::Jacobi { .. }
-            | Fault::AlgebraNeeded
-            | Fault::RankDeficient { .. }
-            | Fault::Undetermined { .. }
-            | Fault::NotClosed { .. }
-            | Fault::Contradiction { .. }
-            | Fault::Degenerate { .. }
-            | Fault::NotHolonomic { .. }
-            | Fault::StartOpen { .. }
-            | Fault::StartVelocity { .. }
-            | Fault::StartHeld { .. }
-            | Fault::OffConstraint { .. }
-            | Fault::Contradictory { .. }
-            | Fault::Constraint { .. }
-            | Fault::ParameterNotFinite { .. }
-            | Fault::NotFinite { .. }
-            | Fault::SingularStart { .. }
-            | Fault::NotAnIntegral { .. }
-            | Fault::ForceNotDetermined { .. }
-            | Fault::NoForm { .. }
-            | Fault::Derivation { .. } => Category::Inconsistent,
+            MeaningError::DefinitionCount { .. }
+            | MeaningError::DependentDefinitions
+            | MeaningError::Jacobi { .. }
+            | MeaningError::AlgebraNeeded
+            | MeaningError::RankDeficient { .. }
+            | MeaningError::Undetermined { .. }
+            | MeaningError::NotClosed { .. }
+            | MeaningError::Contradiction { .. }
+            | MeaningError::Degenerate { .. }
+            | MeaningError::NotHolonomic { .. }
+            | MeaningError::StartOpen { .. }
+            | MeaningError::StartVelocity { .. }
+            | MeaningError::StartHeld { .. }
+            | MeaningError::OffConstraint { .. }
+            | MeaningError::Contradictory { .. }
+            | MeaningError::Constraint { .. }
+            | MeaningError::ParameterNotFinite { .. }
+            | MeaningError::NotFinite { .. }
+            | MeaningError::SingularStart { .. }
+            | MeaningError::NotAnIntegral { .. }
+            | MeaningError::ForceNotDetermined { .. }
+            | MeaningError::NoForm { .. }
+            | MeaningError::Derivation { .. } => Category::Inconsistent,
             _ => Category::Text,
         }
     }
@@ -420,90 +420,90 @@ impl Fault {
     /// What would be right.
     pub fn help(&self) -> String {
         match self {
-            Fault::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
-            Fault::UnknownIntegral { name, known } => {
+            MeaningError::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
+            MeaningError::UnknownIntegral { name, known } => {
                 suggest(name, known, &format!("the integrals are {}", listed(known)))
             }
-            Fault::NotAnIntegral { .. } => {
+            MeaningError::NotAnIntegral { .. } => {
                 "leave it out of `project`; `pc check` says what the motion keeps".into()
             }
-            Fault::UsedBeforeDefined { .. } => "what is defined is evaluated in order; move it up".into(),
-            Fault::NotACoordinate { name, coordinates } => {
+            MeaningError::UsedBeforeDefined { .. } => "what is defined is evaluated in order; move it up".into(),
+            MeaningError::NotACoordinate { name, coordinates } => {
                 suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
             }
-            Fault::NothingToPush { name, known } => {
+            MeaningError::NothingToPush { name, known } => {
                 suggest(name, known, &format!("a force can act on {}", listed(known)))
             }
-            Fault::NotReset { name, what, known } => match *what {
+            MeaningError::NotReset { name, what, known } => match *what {
                 "declared nowhere" => suggest(name, known, &format!("an event can reset {}", listed(known))),
                 _ => format!("an event can reset {}", listed(known)),
             },
-            Fault::NotHere { allowed, .. } => format!("use {allowed} only"),
-            Fault::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
-            Fault::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
-            Fault::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
-            Fault::ConstraintNotAffine { constraint, .. } => format!(
+            MeaningError::NotHere { allowed, .. } => format!("use {allowed} only"),
+            MeaningError::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
+            MeaningError::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
+            MeaningError::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
+            MeaningError::ConstraintNotAffine { constraint, .. } => format!(
                 "write a sum of terms linear in the velocities, or say that it is none, with Chetaev's condition for the \
                  displacements: `{constraint} = {{ expr = \"…\", kind = \"nonlinear\" }}`"
             ),
-            Fault::NotNonlinear { .. } => "leave its kind out".into(),
-            Fault::ForceNotDetermined { .. } => {
+            MeaningError::NotNonlinear { .. } => "leave its kind out".into(),
+            MeaningError::ForceNotDetermined { .. } => {
                 "take coordinates in which the body moves by itself, and constraints that tie it".into()
             }
-            Fault::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
-            Fault::NoForm { help, .. } => (*help).into(),
-            Fault::KinematicsMissing { coordinate } => {
+            MeaningError::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
+            MeaningError::NoForm { help, .. } => (*help).into(),
+            MeaningError::KinematicsMissing { coordinate } => {
                 format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")
             }
-            Fault::Undefined { name } => {
+            MeaningError::Undefined { name } => {
                 format!("give [kinematics] for every coordinate, or define `{name} = {{ is = \"…\", start = 0.0 }}`")
             }
-            Fault::TwoKinematics { .. } => "keep either [kinematics] or the `is`".into(),
-            Fault::DefinitionCount { .. } | Fault::DependentDefinitions => {
+            MeaningError::TwoKinematics { .. } => "keep either [kinematics] or the `is`".into(),
+            MeaningError::DefinitionCount { .. } | MeaningError::DependentDefinitions => {
                 "give as many independent definitions (and constraints) as there are coordinates".into()
             }
-            Fault::NotHolonomic { .. } => "leave its kind out, or write it as a function of coordinates and t".into(),
-            Fault::OffConstraint { .. } => {
+            MeaningError::NotHolonomic { .. } => "leave its kind out, or write it as a function of coordinates and t".into(),
+            MeaningError::OffConstraint { .. } => {
                 "give a start that satisfies it, or have it moved there by --project-start".into()
             }
-            Fault::StartOpen { .. } => {
+            MeaningError::StartOpen { .. } => {
                 "start where they are determined, or define other quasi-velocities".into()
             }
-            Fault::StartVelocity { .. } => {
+            MeaningError::StartVelocity { .. } => {
                 "leave it out, or the `start` of a quasi-velocity, which then follows".into()
             }
-            Fault::StartHeld { .. } => "keep less".into(),
-            Fault::Contradictory { .. } => "no motion satisfies it; mend it or leave it out".into(),
-            Fault::Constraint { help, .. } => (*help).into(),
-            Fault::UnknownAlgebra { known, .. } => {
+            MeaningError::StartHeld { .. } => "keep less".into(),
+            MeaningError::Contradictory { .. } => "no motion satisfies it; mend it or leave it out".into(),
+            MeaningError::Constraint { help, .. } => (*help).into(),
+            MeaningError::UnknownAlgebra { known, .. } => {
                 format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
             }
-            Fault::AlgebraDimension { .. } => {
+            MeaningError::AlgebraDimension { .. } => {
                 "an algebra has one operator for each quasi-velocity; leave [algebra] out if the frame determines it"
                     .into()
             }
-            Fault::BracketNotLinear { .. } => "write for example \"w3\", \"-2*w1 + w2\" or \"0\"".into(),
-            Fault::BracketsNotSkew { .. } => "[X, Y] = -[Y, X]; give one of the two".into(),
-            Fault::Jacobi { .. } => "no frame of operators has these brackets; check their signs".into(),
-            Fault::AlgebraNeeded | Fault::RankDeficient { .. } | Fault::Undetermined { .. } => {
+            MeaningError::BracketNotLinear { .. } => "write for example \"w3\", \"-2*w1 + w2\" or \"0\"".into(),
+            MeaningError::BracketsNotSkew { .. } => "[X, Y] = -[Y, X]; give one of the two".into(),
+            MeaningError::Jacobi { .. } => "no frame of operators has these brackets; check their signs".into(),
+            MeaningError::AlgebraNeeded | MeaningError::RankDeficient { .. } | MeaningError::Undetermined { .. } => {
                 "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`, or `{}` if all are \
                  zero"
                     .into()
             }
-            Fault::NotClosed { .. } => {
+            MeaningError::NotClosed { .. } => {
                 "the kinematics stand for constraints that are not integrable; give them in [constraints], and what has a rate \
                  but is no coordinate in [states]"
                     .into()
             }
-            Fault::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
-            Fault::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
-            Fault::BadTable { help, .. } => (*help).into(),
-            Fault::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
-            Fault::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
-            Fault::NotFinite { .. } | Fault::SingularStart { .. } => {
+            MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
+            MeaningError::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            MeaningError::BadTable { help, .. } => (*help).into(),
+            MeaningError::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
+            MeaningError::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
+            MeaningError::NotFinite { .. } | MeaningError::SingularStart { .. } => {
                 "start where the coordinates and functions are regular".into()
             }
-            Fault::Derivation { .. } => "check the model".into(),
+            MeaningError::Derivation { .. } => "check the model".into(),
         }
     }
 }

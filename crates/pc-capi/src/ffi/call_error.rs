@@ -1,0 +1,159 @@
+//! The ways in which a call can fail.
+
+use std::error::Error;
+use std::ffi::CString;
+
+use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_expr::Failure;
+use pc_mech::MechError;
+use pc_solve::{CheckpointError, EnsembleError, SolveError};
+use pc_verify::VerifyError;
+
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::c_string;
+
+/// The ways in which a call can fail.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CallError {
+    #[error("{what} is a null pointer")]
+    Null { what: &'static str },
+    #[error("{what}: room for {found} numbers, but there are {expected}")]
+    Length { what: &'static str, found: usize, expected: usize },
+    #[error("{what}: {found} numbers are more than any memory has, which is {most}; is it −1?")]
+    TooLong { what: &'static str, found: usize, most: usize },
+    #[error("{what} does not stand at a multiple of {alignment} bytes, as its type does")]
+    Misaligned { what: &'static str, alignment: usize },
+    #[error("{what} is not UTF-8 text: byte number {offset} (from 0) does not fit")]
+    NotText { what: &'static str, offset: usize },
+    #[error("{what} is {value}, but must be finite")]
+    NotFinite { what: &'static str, value: f64 },
+    #[error("{first} and {second} share memory")]
+    Overlap { first: &'static str, second: &'static str },
+    #[error("{what} has no value here: it is {value}")]
+    NoValue { what: &'static str, value: f64 },
+    #[error("{value} is not a value of {what}")]
+    Choice { what: &'static str, value: i64 },
+    #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
+    StructSize { what: &'static str, found: usize, least: usize, most: usize },
+    #[error("{what}: there is no number {index}, there are {count}")]
+    Index { what: &'static str, index: usize, count: usize },
+    #[error("{what} needs a model begun with pc_model_new; this one was read from a text")]
+    NotADraft { what: &'static str },
+    #[error("there is no model called `{name}`; pc_builtin_name lists those there are")]
+    NoSuchModel { name: String },
+    #[error("cannot read `{path}`: {source}")]
+    Read { path: String, source: std::io::Error },
+    #[error("{what} is not known of this system: {why}")]
+    Unsupported { what: &'static str, why: &'static str },
+    #[error("the handle is in use by another call")]
+    Busy,
+    #[error("an earlier call failed inside; this handle can only be freed")]
+    Broken,
+    #[error("a fault of the library: {message}")]
+    Panic { message: String },
+    #[error("the observer stopped the integration")]
+    Stopped,
+    #[error("a terminal event ended the integration")]
+    Terminal,
+    #[error("{what} comes before the first step, and there has been one")]
+    Begun { what: &'static str },
+    #[error("there is no event called `{name}`; pc_model_add_event adds one")]
+    NoSuchEvent { name: String },
+    #[error("the event {name} has not occurred")]
+    NotOccurred { name: String },
+    #[error("no terminal event ended the last call")]
+    NotEnded,
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("{0}")]
+    Ensemble(#[from] EnsembleError),
+    #[error(transparent)]
+    Verify(VerifyError),
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    UnknownParameter(#[from] UnknownParameter),
+    #[error(transparent)]
+    UnknownIntegral(#[from] UnknownIntegral),
+    #[error(transparent)]
+    UnknownStart(#[from] UnknownStart),
+    #[error(transparent)]
+    NotForced(#[from] NotForced),
+    #[error("{0}")]
+    Evaluation(#[from] Failure),
+    #[error(transparent)]
+    Mechanics(#[from] MechError),
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}
+
+impl CallError {
+    pub(crate) fn status(&self) -> pc_status {
+        match self {
+            CallError::Null { .. }
+            | CallError::Length { .. }
+            | CallError::TooLong { .. }
+            | CallError::Misaligned { .. }
+            | CallError::NotText { .. }
+            | CallError::NotFinite { .. }
+            | CallError::Overlap { .. }
+            | CallError::Choice { .. }
+            | CallError::StructSize { .. }
+            | CallError::Index { .. }
+            | CallError::NotADraft { .. }
+            | CallError::Begun { .. }
+            | CallError::Solve(SolveError::Input(_)) => pc_status::PC_INVALID_ARGUMENT,
+            CallError::Model(error) => match error.category() {
+                Category::Text => pc_status::PC_INVALID_MODEL,
+                Category::Unsupported => pc_status::PC_UNSUPPORTED,
+                Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
+            },
+            CallError::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
+            CallError::Unsupported { .. } | CallError::Verify(_) => pc_status::PC_UNSUPPORTED,
+            CallError::NoSuchModel { .. }
+            | CallError::UnknownParameter(_)
+            | CallError::UnknownIntegral(_)
+            | CallError::UnknownStart(_)
+            | CallError::NotForced(_)
+            | CallError::NoSuchEvent { .. }
+            | CallError::NotOccurred { .. }
+            | CallError::NotEnded => pc_status::PC_NOT_FOUND,
+            CallError::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+                pc_status::PC_NOT_FOUND
+            }
+            CallError::Read { .. } => pc_status::PC_IO,
+            CallError::Evaluation(_) | CallError::Mechanics(_) | CallError::NoValue { .. } => {
+                pc_status::PC_EVALUATION
+            }
+            CallError::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
+            CallError::Stopped => pc_status::PC_STOPPED,
+            CallError::Terminal => pc_status::PC_EVENT,
+            CallError::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
+            CallError::Busy => pc_status::PC_BUSY,
+            // Of the solver: its set-up, which fails for want of memory, as threads do.
+            CallError::Broken | CallError::Panic { .. } | CallError::Ensemble(_) | CallError::Solve(_) => {
+                pc_status::PC_INTERNAL
+            }
+        }
+    }
+
+    /// What is said, with the cause where the sentence does not hold it.
+    fn message(&self) -> String {
+        let mut message = self.to_string();
+        let mut cause = match self {
+            CallError::Solve(error) => error.source(),
+            CallError::Ensemble(error) => error.source(),
+            _ => None,
+        };
+        while let Some(error) = cause {
+            message += &format!(": {error}");
+            cause = error.source();
+        }
+        message
+    }
+
+    /// Status and message.
+    pub(crate) fn told(&self) -> (pc_status, CString) {
+        (self.status(), c_string(&self.message()))
+    }
+}

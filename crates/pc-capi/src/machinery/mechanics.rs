@@ -1,0 +1,81 @@
+//! The parts of the equations as functions of the state.
+
+use ::pc_model::{Model, Variables};
+use pc_expr::{Evaluator, Inputs, Program};
+use pc_mech::{Backend, Equations, Expr, Graph, MechError};
+
+use crate::ffi::call_error::CallError;
+
+/// The parts of M η̇ = r and of ẋ = b η + b_0, functions of t and (x, η).
+#[derive(Clone)]
+pub(crate) struct Mechanics {
+    /// M, k × k.
+    pub(crate) mass: Evaluator,
+    /// c_rs^m, the index m fastest, then s, then r.
+    pub(crate) structure: Evaluator,
+    pub(crate) operators: usize,
+    /// b η + b_0, then r, then ż, which the external forces are inputs of too.
+    pub(crate) right: Evaluator,
+    /// Whether M η̇ = r is all there is: no multipliers, no momenta.
+    pub(crate) complete: bool,
+}
+
+impl Mechanics {
+    pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph)?;
+        let equations = assembly.equations_in()?;
+        let structure = equations.system().structure();
+        let operators = structure.operators();
+        let all = || 0..=operators;
+        let pairs = all().flat_map(|r| all().map(move |s| (r, s)));
+        let coefficients = pairs.flat_map(|(r, s)| (1..=operators).map(move |m| structure.get(r, s, m)));
+        let of_states: Vec<Expr<'_>> = equations.system().states().iter().map(|&(_, rate)| rate).collect();
+        let right = [equations.velocities(), equations.right_hand_side(), &of_states].concat();
+        let held =
+            matches!(assembly.constraints.formulation(), ::pc_model::ConstraintFormulation::Multipliers(_));
+        let forces: Vec<Expr<'_>> =
+            equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
+        let compiled =
+            |values: &[Expr<'_>], forces: &[Expr<'_>]| assembly.placed(compile(&equations, values, forces));
+        Ok(Mechanics {
+            mass: compiled(equations.mass_matrix().entries(), &[])?,
+            structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,
+            operators,
+            right: compiled(&right, &forces)?,
+            complete: variables == Variables::QuasiVelocities && !held,
+        })
+    }
+}
+
+/// `values` as functions of t, (x, η), the parameters and `forces`.
+pub(crate) fn compile<'g>(
+    equations: &Equations<'g>,
+    values: &[Expr<'g>],
+    forces: &[Expr<'g>],
+) -> Result<Evaluator, MechError> {
+    let system = equations.system();
+    let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
+    let inputs = Inputs {
+        time: Some(system.frame().time()),
+        state: system.state(),
+        parameters: parameters.chain(forces.iter().copied()).collect(),
+    };
+    Ok(Evaluator::new(Program::new(system.graph(), &inputs, values)?, Backend::Interpreter))
+}
+
+/// The values at (t, state), if all are numbers.
+pub(crate) fn evaluate(
+    program: &mut Evaluator,
+    (t, state, parameters): (f64, &[f64], &[f64]),
+    values: &mut [f64],
+) -> Result<(), CallError> {
+    program.eval(t, state, parameters, values);
+    if values.iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    match program.diagnose(t, state, parameters) {
+        Some(error) => Err(MechError::from(error).into()),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,220 @@
+//! A system behind its handle: what never changes of it, and what one call at a time may use.
+
+use std::ffi::{CString, c_char};
+use std::sync::{Arc, OnceLock};
+
+use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
+use pc_expr::{Event, Events, Pattern};
+use pc_mech::{Graph, LegendreTransform, VectorField};
+
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::handle;
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::{c_string, c_strings, nth};
+use crate::machinery::exclusive::Exclusive;
+use crate::machinery::lock_free_rhs::Direct;
+use crate::machinery::mechanics::Mechanics;
+use crate::machinery::motion_field::MotionField;
+
+/// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
+pub struct pc_system {
+    /// Dropped first: what functions of the program destroy may look at names.
+    pub(crate) inner: Exclusive<Inner>,
+    /// What needs the field to live, but not to be held; known after the first evaluation.
+    direct: OnceLock<Option<Direct>>,
+    pub(crate) inventory: Arc<Inventory>,
+}
+
+/// What never changes.
+pub(crate) struct Inventory {
+    pub(crate) model: Model,
+    pub(crate) variables: Variables,
+    pub(crate) names: Vec<CString>,
+    pub(crate) coordinates: usize,
+    pub(crate) states: usize,
+    pub(crate) parameters: Vec<CString>,
+    pub(crate) observables: Vec<CString>,
+    pub(crate) conserved: usize,
+    pub(crate) constraints: Vec<CString>,
+    /// Places of the reactions among the observables, with their names.
+    pub(crate) reactions: Vec<usize>,
+    pub(crate) pattern: Option<Pattern>,
+    /// The quasi-velocities on which external forces act.
+    pub(crate) forces: Vec<CString>,
+    pub(crate) t_start: f64,
+    pub(crate) start: Vec<f64>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) event_names: Vec<CString>,
+}
+
+impl Inventory {
+    /// Length of the state.
+    pub(crate) fn dim(&self) -> usize {
+        self.names.len()
+    }
+
+    /// The time and state from which the model starts.
+    pub(crate) fn start(&self) -> (f64, &[f64]) {
+        (self.t_start, &self.start)
+    }
+}
+
+#[derive(Clone)]
+pub(crate) struct Inner {
+    pub(crate) field: MotionField,
+    /// The values of the parameters, of which some follow others.
+    pub(crate) values: Parameters,
+    /// The time and state with the values of the integrals that are kept by projection.
+    kept_at: (f64, Vec<f64>),
+    /// What happens where; none in most models.
+    pub(crate) events: FlowEvents,
+    /// Derived when first asked for.
+    pub(crate) mechanics: Option<Mechanics>,
+    pub(crate) legendre: Option<LegendreTransform>,
+}
+
+impl pc_system {
+    /// `reactions` says whether there are reactions among the outputs.
+    pub(crate) fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, CallError> {
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph)?;
+        let flow = Flow::new(&model, &assembly, variables)?;
+        let motion = &flow.motion;
+        let parameters: Vec<_> =
+            assembly.system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
+        let observables = motion.observable_names();
+        let constraints = &model.document().constraints;
+        let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
+        // After the outputs of the model, of which one may be called as they are.
+        let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
+        let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
+        let forces = model.external_forces();
+        let pattern = match forces.as_slice() {
+            [] => motion.sparsity().cloned(),
+            _ => Some(Pattern::full(motion.dim(), motion.dim())),
+        };
+        let inventory = Inventory {
+            variables,
+            names: c_strings(motion.names()),
+            coordinates: motion.coordinates(),
+            states: motion.states(),
+            parameters: c_strings(&parameters),
+            observables: c_strings(observables),
+            conserved: motion.conserved_len(),
+            constraints: c_strings(motion.constraint_names()),
+            reactions: reactions.collect(),
+            pattern,
+            forces: c_strings(&forces),
+            t_start: assembly.t_start,
+            start: flow.start.clone(),
+            events: flow.events.events().to_vec(),
+            event_names: flow.events.events().iter().map(|event| c_string(event.name())).collect(),
+            model,
+        };
+        let field = MotionField::new(flow.motion, forces)?;
+        let kept_at = (assembly.t_start, flow.start);
+        let values = inventory.model.parameter_values().clone();
+        let inner = Inner { field, values, kept_at, events: flow.events, mechanics: None, legendre: None };
+        Ok(pc_system {
+            inventory: Arc::new(inventory),
+            direct: OnceLock::new(),
+            inner: Exclusive::new(inner),
+        })
+    }
+
+    /// Another one of the same equations.
+    pub(crate) fn copy(&self) -> Result<pc_system, CallError> {
+        let mut inner = self.inner.take()?.clone();
+        let direct = OnceLock::new();
+        if self.direct().is_some() {
+            // The code is there, and the copy has it as well.
+            direct.get_or_init(|| Direct::of(&mut inner.field));
+        }
+        Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Exclusive::new(inner) })
+    }
+
+    /// The machine code of f, where it is all that f is, and known to be.
+    #[inline]
+    pub(crate) fn direct(&self) -> Option<&Direct> {
+        self.direct.get()?.as_ref()
+    }
+
+    /// So that evaluations from now on need only the machine code, if that is all.
+    pub(crate) fn prepare_direct(&self, inner: &mut Inner) {
+        self.direct.get_or_init(|| Direct::of(&mut inner.field));
+    }
+
+    pub(crate) fn set_parameters(&self, inner: &mut Inner, set: impl Fn(&mut [f64])) {
+        inner.set_parameters(set);
+        if let Some(direct) = self.direct() {
+            direct.publish(&mut inner.field);
+        }
+    }
+}
+
+impl Inner {
+    /// What is kept by projection are then the values of these parameters.
+    fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
+        set(self.field.parameters_mut());
+        self.field.restart(self.kept_at.0, &self.kept_at.1);
+        self.events.set_parameters(self.field.parameters());
+        if let Some(legendre) = &mut self.legendre {
+            set(legendre.parameters_mut());
+        }
+    }
+
+    /// What is kept by projection are then the values there.
+    pub(crate) fn keep_from(&mut self, t: f64, y: &[f64]) {
+        self.kept_at = (t, y.to_vec());
+        self.field.restart(t, y);
+    }
+}
+
+/// Calls `body` with what the system is, and what only one may use at a time.
+///
+/// # Safety
+/// `system` is null or a live handle, `error` null or a place for a pointer.
+pub(crate) unsafe fn inside(
+    system: *const pc_system,
+    error: *mut *mut pc_error,
+    body: impl FnOnce(&Inventory, &mut Inner) -> Result<(), CallError>,
+) -> pc_status {
+    // SAFETY: as promised.
+    unsafe { holding(system, error, |system, inner| body(&system.inventory, inner)) }
+}
+
+/// Calls `body` with the system, and what only one may use at a time.
+///
+/// # Safety
+/// As for [`inside`].
+pub(crate) unsafe fn holding(
+    system: *const pc_system,
+    error: *mut *mut pc_error,
+    body: impl FnOnce(&pc_system, &mut Inner) -> Result<(), CallError>,
+) -> pc_status {
+    let body = || {
+        // SAFETY: as promised.
+        let system = unsafe { handle(system, "system") }?;
+        body(system, &mut *system.inner.take()?)
+    };
+    // SAFETY: as promised.
+    unsafe { entry(error, body) }
+}
+
+/// A number of the inventory; 0 of null.
+pub(crate) fn count(system: *const pc_system, number: impl FnOnce(&Inventory) -> usize) -> usize {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    unsafe { system.as_ref() }.map_or(0, |system| number(&system.inventory))
+}
+
+/// A name of the inventory; null of null, and beyond the last.
+pub(crate) fn name(
+    system: *const pc_system,
+    index: usize,
+    list: impl FnOnce(&Inventory) -> &[CString],
+) -> *const c_char {
+    // SAFETY: null or a live handle, as the preamble demands of the callers.
+    unsafe { system.as_ref() }.map_or(std::ptr::null(), |system| nth(list(&system.inventory), index))
+}

@@ -1,0 +1,354 @@
+//! `pc check`: whether a model holds together.
+
+use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, System, VectorField};
+use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
+use pc_nonholo::{Kind, Redundant};
+use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
+use pc_verify::{Agreement, Options, VerifyError, verify};
+use serde_json::{Value, json};
+
+use super::frame::{self, FrameFacts};
+use super::integrals::{self, Integral};
+use super::steady::{self, Search};
+use crate::args::input;
+use crate::args::options::{CheckArguments, Format};
+use crate::error::CliError;
+use crate::output::standard_output::print;
+use crate::report::notes::{NEGATIVE_ENERGY, dropped, say_moved};
+use crate::report::text::{assignments, labelled, short, small, wrapped};
+use crate::report::verification;
+
+/// Prints what can be said of a model before it is run.
+///
+/// # Errors
+/// [`CliError`]; of an inconsistent model that is the answer.
+pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
+    let model = input::open(&arguments.model)?;
+    let graph = Graph::new();
+    let (assembly, equations) = input::derive(&model, &graph)?;
+    say_moved(&assembly);
+    let second = match verify(&model, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
+    print(|out| match arguments.format {
+        Format::Text => write!(out, "{}", report.text()),
+        Format::Json => writeln!(out, "{:#}", report.json()),
+    })
+}
+
+/// What can be said of a model before it is run.
+#[derive(Clone, Debug)]
+struct Report<'g> {
+    title: String,
+    coordinates: Vec<String>,
+    quasi_velocities: Vec<String>,
+    /// First-order states.
+    states: Vec<String>,
+    rank: usize,
+    given_algebra: bool,
+    closure_residual: f64,
+    jacobi_residual: f64,
+    algebra: String,
+    mass_rank: usize,
+    negative_energy: bool,
+    /// The number of its rows.
+    free: usize,
+    t_start: f64,
+    start: Vec<f64>,
+    largest_rate: f64,
+    frame: FrameFacts,
+    /// Each with what it does.
+    constraints: Vec<(String, String)>,
+    classified: Vec<ClassifiedConstraint>,
+    redundant: Vec<Redundant>,
+    integrable_combinations: usize,
+    start_residual: f64,
+    integrals: Vec<Integral<'g>>,
+    steady: Search,
+    operations: Operations,
+    second: Option<Result<Agreement, VerifyError>>,
+}
+
+impl<'g> Report<'g> {
+    fn new(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        equations: &Equations<'g>,
+    ) -> Result<Report<'g>, CliError> {
+        let system = &assembly.system;
+        let (frame, structure, graph) = (system.frame(), system.structure(), system.graph());
+        let operations = assembly.placed(Operations::of(equations).map_err(MechError::from))?;
+        let names = |symbols: &[Expr<'_>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
+
+        let (mut motion, start) = model.compile(assembly)?;
+        let mut rate = vec![0.0; start.len()];
+        // `compile` has tried the same
+        let evaluated = motion.rhs(assembly.t_start, &start, &mut rate).is_ok();
+        let largest_rate = rate.iter().fold(0.0f64, |largest, r| largest.max(r.abs()));
+
+        let state = system.state().into_iter();
+        let mut centre = system.parameters().to_vec();
+        centre.push((frame.time(), assembly.t_start));
+        centre.extend(state.zip(assembly.start.iter().copied()));
+        let near = Neighbourhood { centre };
+
+        let mut integrals = integrals::integrals(equations, &near);
+        if assembly.keeps_energy() && energy_remark(assembly).is_none() {
+            integrals::say_energy_is_kept(&mut integrals, equations);
+        }
+        if energy_remark(assembly).is_some()
+            && let Some(energy) = energy_of_all(assembly, equations)
+        {
+            integrals::add_energy_of_all(&mut integrals, equations, &near, energy);
+        }
+        integrals::say_what_jumps(&mut integrals, assembly);
+        Ok(Report {
+            title: model.title().to_owned(),
+            coordinates: names(frame.coordinates()),
+            quasi_velocities: names(system.quasi_velocities()),
+            states: system.states().iter().map(|(z, _)| z.to_string()).collect(),
+            rank: frame.rank(),
+            given_algebra: model.document().algebra.is_some(),
+            closure_residual: frame.closure_residual(structure, &near),
+            jacobi_residual: frame.jacobi_residual(structure, &near),
+            algebra: algebra(system),
+            mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
+            negative_energy: assembly.has_negative_energy(),
+            free: equations.mass_matrix().rows(),
+            t_start: assembly.t_start,
+            start: assembly.start.clone(),
+            largest_rate: if evaluated { largest_rate } else { f64::NAN },
+            frame: FrameFacts::of(system, &near),
+            constraints: constraints(assembly),
+            classified: assembly.constraints.classified().to_vec(),
+            redundant: assembly.constraints.redundant().to_vec(),
+            integrable_combinations: assembly.constraints.integrable_combinations(),
+            start_residual: start_residual(assembly, &near),
+            steady: steady_motion(assembly, equations, motion, &integrals),
+            integrals,
+            operations,
+            second: None,
+        })
+    }
+
+    fn text(&self) -> String {
+        const LABEL: usize = 19;
+        const WIDTH: usize = 78;
+        let k = self.quasi_velocities.len();
+        let counted_names = |symbol: &str, names: &[String]| {
+            let mut lines = wrapped(names.iter().cloned(), WIDTH - 8);
+            lines.insert(0, format!("{symbol} = {}", names.len()));
+            if lines.len() == 2 { vec![lines.join("   ")] } else { lines }
+        };
+        let brackets = match (self.given_algebra, self.rank == k) {
+            (true, _) => "brackets given",
+            (false, true) => "brackets from the frame",
+            (false, false) => "constant brackets found",
+        };
+        let names = self.coordinates.iter().chain(&self.quasi_velocities).chain(&self.states);
+        let names = names.map(String::as_str);
+        let start = assignments(names.zip(self.start.iter().copied()), WIDTH);
+        let rank = [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(self.frame.constraints());
+        let of_states = if self.states.is_empty() { Vec::new() } else { counted_names("l", &self.states) };
+        let entries: [(&str, Vec<String>); 13] = [
+            ("coordinates", counted_names("n", &self.coordinates)),
+            ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
+            ("states", of_states),
+            ("rank of the frame", rank.collect()),
+            ("holonomic", self.frame.holonomic(WIDTH)),
+            ("closure", vec![held(self.closure_residual)]),
+            ("Jacobi identity", vec![held(self.jacobi_residual)]),
+            ("algebra", vec![self.algebra.clone()]),
+            ("constraints", self.constraint_lines()),
+            ("mass matrix", self.mass_matrix_lines()),
+            ("start", start),
+            (
+                "rates there",
+                vec![format!(
+                    "finite at t = {}, the largest {}",
+                    short(self.t_start, 6),
+                    short(self.largest_rate, 4)
+                )],
+            ),
+            (
+                "operations",
+                vec![
+                    counted("parameters free ", &self.operations.free),
+                    counted("parameters bound", &self.operations.bound),
+                ],
+            ),
+        ];
+        let mut text = format!("{}\n", self.title);
+        for (label, lines) in &entries {
+            text += &labelled(label, LABEL, lines);
+        }
+        if let Some(second) = &self.second {
+            text += &labelled("second derivation", LABEL, &verification::lines(second, WIDTH));
+        }
+        let width = self.integrals.iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
+        let mut integrals = Vec::new();
+        for integral in &self.integrals {
+            let lines = (0..).zip(integral.lines());
+            integrals.extend(
+                lines.map(|(i, line)| format!("{:width$}  {line}", if i == 0 { &integral.name } else { "" })),
+            );
+        }
+        text += &labelled("integrals", LABEL, &integrals);
+        text + &labelled("steady motion", LABEL, &self.steady.lines(WIDTH))
+    }
+
+    fn mass_matrix_lines(&self) -> Vec<String> {
+        let rank = format!("symmetric, rank {} of {}", self.mass_rank, self.free);
+        let negative = self.negative_energy.then(|| NEGATIVE_ENERGY.to_owned());
+        [rank].into_iter().chain(negative).collect()
+    }
+
+    fn constraint_lines(&self) -> Vec<String> {
+        match self.constraints.as_slice() {
+            [] => vec!["none".to_owned()],
+            all => {
+                let combinations = match self.integrable_combinations {
+                    0 => None,
+                    1 => Some("one combination of the nonholonomic ones is integrable".to_owned()),
+                    n => {
+                        Some(format!("{n} independent combinations of the nonholonomic ones are integrable"))
+                    }
+                };
+                all.iter().map(|(name, what)| format!("{name}: {what}")).chain(combinations).collect()
+            }
+        }
+    }
+
+    fn json(&self) -> Value {
+        let integrals: Vec<Value> = self.integrals.iter().map(Integral::object).collect();
+        let (frame_constraints, holonomic) = self.frame.objects();
+        json!({
+            "model": self.title,
+            "coordinates": self.coordinates.len(),
+            "quasi_velocities": self.quasi_velocities.len(),
+            "states": self.states,
+            "rank": self.rank,
+            "frame_constraints": frame_constraints,
+            "holonomic": holonomic,
+            "closure_residual": self.closure_residual,
+            "constraints": self.classified.iter().map(constraint).collect::<Vec<_>>(),
+            "dropped_constraints": self.redundant.iter().map(dropped_object).collect::<Vec<_>>(),
+            "integrable_combinations": self.integrable_combinations,
+            "jacobi_residual": self.jacobi_residual,
+            "algebra": self.algebra,
+            "mass_matrix_rank": self.mass_rank,
+            "negative_energy": self.negative_energy,
+            "start_residual": self.start_residual,
+            "integrals": integrals,
+            "steady_motion": self.steady.object(),
+            "second_derivation": self.second.as_ref().map(verification::object),
+        })
+    }
+}
+
+/// The algebra of the operators in words, for the values of the parameters if it depends on them.
+fn algebra(system: &System<'_>) -> String {
+    let (always, bound) = (system.structure(), system.with_parameters_bound());
+    match bound.structure().are_constant() && !always.are_constant() {
+        true => frame::algebra(bound.structure(), "constant for these parameters"),
+        false => frame::algebra(always, "constant structure coefficients"),
+    }
+}
+
+/// Whether an identity holds of which numbers leave a residual, relative to its terms.
+fn held(residual: f64) -> String {
+    match Identity::of(residual) {
+        Identity::Proved => "holds identically".to_owned(),
+        Identity::Open { rest } if rest.is_finite() => format!("open: holds to {}", small(rest)),
+        Identity::Open { .. } => "open: has no values near the start".to_owned(),
+        Identity::Disproved { rest } => format!("disproved: {} of the terms is left", small(rest)),
+    }
+}
+
+/// The energy of all velocities, which is that of a run, in the independent ones of the equations.
+fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
+    let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
+    let values = assembly.quasi_velocities_of(free).ok()?;
+    let known: Vec<(Expr<'g>, Expr<'g>)> = all.iter().copied().zip(values).collect();
+    let graph = assembly.system.graph();
+    Some(graph.substitute(&[assembly.system.energy()], &known)[0])
+}
+
+/// The steady motion near the start of the equations of a model, of which `motion` is what is integrated.
+fn steady_motion<'g>(
+    assembly: &Assembly<'g>,
+    equations: &Equations<'g>,
+    motion: Motion,
+    integrals: &[Integral<'g>],
+) -> Search {
+    let system = equations.system();
+    if assembly.constraints.nonlinear().is_some() {
+        return Search::Nonlinear;
+    }
+    let start = assembly.start_of(&system.state());
+    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
+        return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
+    };
+    let Ok(mut independent) = equations.compile() else { return Search::None };
+    let constraints = held.multipliers.constraints().iter();
+    let positions: Vec<(String, Expr<'g>)> = constraints
+        .filter(|constraint| constraint.is_holonomic(&assembly.system))
+        .map(|constraint| (constraint.name().to_owned(), constraint.expression()))
+        .collect();
+    steady::steady_motion(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
+}
+
+/// The constraints, those dropped at the end, each with what it does.
+fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
+    let binding = assembly.constraints.classified().iter().map(|verdict| {
+        let words = kind_in_words(verdict.kind);
+        let words = match verdict.kind {
+            Kind::Nonholonomic { residual } => format!("{words}, by {} in a bracket", short(residual, 3)),
+            Kind::Position | Kind::Integrable | Kind::Nonlinear => words.to_owned(),
+        };
+        (verdict.constraint.clone(), words)
+    });
+    let redundant = dropped(assembly).into_iter().map(|(name, reason)| (name, format!("{reason}; dropped")));
+    binding.chain(redundant).collect()
+}
+
+fn constraint(verdict: &ClassifiedConstraint) -> Value {
+    let residual = match verdict.kind {
+        Kind::Nonholonomic { residual } => Some(residual),
+        Kind::Position | Kind::Integrable => Some(0.0),
+        Kind::Nonlinear => None, // not tried
+    };
+    json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
+}
+
+fn dropped_object(redundant: &Redundant) -> Value {
+    json!({ "name": redundant.constraint, "follows_from": redundant.follows_from })
+}
+
+/// The largest value at the start of what should vanish.
+fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
+    let Some(multipliers) = assembly.constraints.multipliers() else { return 0.0 };
+    let graph = assembly.system.graph();
+    let value = |x: Expr<'_>| graph.evaluate(&[x], &near.centre).map_or(f64::NAN, |values| values[0]);
+    let constraints = multipliers.constraints().iter();
+    let both = constraints.flat_map(|c| [c.expression(), c.velocity(&assembly.system)]);
+    both.map(|x| value(x).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_hold_is_not_said_to_hold() {
+        assert_eq!(held(0.0), "holds identically");
+        assert_eq!(held(2.5e-16), "open: holds to 2.5e-16");
+        assert_eq!(held(2e-9), "open: holds to 2.0e-9");
+        assert_eq!(held(2e-3), "disproved: 2.0e-3 of the terms is left");
+        assert!(
+            held(f64::NAN).starts_with("open: has no") && held(f64::INFINITY).starts_with("open: has no")
+        );
+    }
+}

@@ -1,0 +1,70 @@
+//! A motion as far as it was computed, and how that went.
+
+use std::time::Duration;
+
+use pc_solve::{SolveError, Statistics};
+
+use crate::motion::plan::Plan;
+use crate::motion::table::Table;
+use crate::report::verification::Verification;
+
+/// A motion as far as it was computed, and how that went.
+#[derive(Debug)]
+pub struct Run {
+    /// What the model calls itself.
+    pub title: String,
+    /// The parameters with their values.
+    pub parameters: Vec<(String, f64)>,
+    /// How it was to be computed.
+    pub plan: Plan,
+    /// Names of the components of the state that was integrated.
+    pub state: Vec<String>,
+    /// What was reached.
+    pub table: Table,
+    /// The constraints that are held, with the largest residual of each at the output times.
+    pub constraints: Vec<(String, f64)>,
+    /// The constraints that were dropped, each with the reason.
+    pub dropped: Vec<(String, String)>,
+    /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
+    pub keeps_energy: bool,
+    /// The names of the events that the model has.
+    pub events: Vec<String>,
+    /// What occurred, in order: the numbers of events, and when.
+    pub occurrences: Vec<(usize, f64)>,
+    /// How it ended.
+    pub ending: Ending,
+    /// What a second derivation says; none where it was not asked.
+    pub verification: Option<Verification>,
+    /// The work done.
+    pub statistics: Statistics,
+    /// The time it took.
+    pub wall: Duration,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum Ending {
+    /// At its end.
+    Completed,
+    /// By a terminal event.
+    Event {
+        /// Its name.
+        name: String,
+    },
+    /// By Ctrl-C.
+    Interrupted,
+    /// The integration could not go on.
+    Failed(Box<SolveError>),
+}
+
+impl Ending {
+    /// In a word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Ending::Completed => "completed",
+            Ending::Event { .. } => "event",
+            Ending::Interrupted => "interrupted",
+            Ending::Failed(_) => "failed",
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! What can go wrong with a picture.
+
+/// A picture that could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlotError {
+    /// The font that is built in is not one.
+    #[error("the built-in font cannot be read")]
+    Font,
+    /// The drawing library refused.
+    #[error("cannot draw the picture: {message}")]
+    Draw {
+        /// What it says.
+        message: String,
+    },
+    /// The bitmap could not be encoded.
+    #[error("cannot encode the picture: {message}")]
+    Encode {
+        /// What the encoder says.
+        message: String,
+    },
+}

@@ -1,0 +1,72 @@
+//! Where the table of a sweep goes.
+
+use std::path::{Path, PathBuf};
+
+#[cfg(feature = "parquet")]
+use super::parquet;
+use super::{csv, json, npz};
+use crate::error::CliError;
+use crate::output::atomic;
+use crate::sweep::journal::Journal;
+use crate::sweep::sheet::Sheet;
+
+/// Where the table goes.
+#[derive(Debug)]
+pub(crate) struct Destination {
+    path: PathBuf,
+    encoding: Encoding,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Encoding {
+    Csv,
+    Json,
+    Npz,
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+impl Destination {
+    /// # Errors
+    /// [`CliError::UnknownExtension`]; [`CliError::Write`] where no file can be.
+    pub(crate) fn new(path: &Path) -> Result<Destination, CliError> {
+        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        let encoding = match extension.as_deref() {
+            Some("csv") => Encoding::Csv,
+            Some("json") => Encoding::Json,
+            Some("npz") => Encoding::Npz,
+            #[cfg(feature = "parquet")]
+            Some("parquet") => Encoding::Parquet,
+            _ => {
+                let expected = if cfg!(feature = "parquet") {
+                    ".csv, .json, .npz or .parquet"
+                } else {
+                    ".csv, .json or .npz (.parquet where pc is built with its feature `parquet`)"
+                };
+                return Err(CliError::UnknownExtension { option: "-o", path: path.to_owned(), expected });
+            }
+        };
+        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
+        Ok(Destination { path: path.to_owned(), encoding })
+    }
+
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the table.
+    ///
+    /// # Errors
+    /// [`CliError::Write`]; an existing file is then as it was.
+    pub(crate) fn write(&self, title: &str, sheet: &Sheet, journal: &Journal) -> Result<(), CliError> {
+        let written = atomic::write_file(&self.path, |out| match self.encoding {
+            Encoding::Csv => csv::write(sheet, journal, out),
+            Encoding::Json => json::write(title, sheet, journal, out),
+            Encoding::Npz => npz::write(sheet, journal, out),
+            #[cfg(feature = "parquet")]
+            Encoding::Parquet => parquet::write(sheet, journal, out),
+        });
+        written.map_err(|source| CliError::cannot_write(&self.path, source))
+    }
+}

@@ -1,0 +1,22 @@
+//! What the reader of a message has to change.
+
+/// What the reader of a message has to change; decides the exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// The text of the model is wrong.
+    Text,
+    /// The text is right, but asks for something that cannot be done yet.
+    Unsupported,
+    /// The text is right, but what it says contradicts itself.
+    Inconsistent,
+}
+
+impl Category {
+    /// Exit code of the program.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Text | Self::Unsupported => 3,
+            Self::Inconsistent => 4,
+        }
+    }
+}

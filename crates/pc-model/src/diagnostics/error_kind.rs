@@ -1,0 +1,338 @@
+//! The ways in which a model can be wrong, and what would be right.
+
+use std::fmt;
+
+use pc_expr::parse::{FUNCTIONS, ParseError};
+use thiserror::Error;
+
+use crate::diagnostics::category::Category;
+use crate::diagnostics::meaning::MeaningError;
+
+/// The ways in which a model can be wrong.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The file is not text.
+    #[error("the file is not UTF-8 text: found byte 0x{byte:02x}")]
+    NotText {
+        /// The first byte that does not fit.
+        byte: u8,
+    },
+    /// The file is not TOML.
+    #[error("not valid TOML: {message}")]
+    Toml {
+        /// What the TOML parser says.
+        message: String,
+        /// What would be right.
+        help: &'static str,
+    },
+    /// The same key twice in one table.
+    #[error("`{key}` is given twice")]
+    DuplicateKey {
+        /// The key as written.
+        key: String,
+    },
+    /// Nothing in the file.
+    #[error("the model is empty")]
+    Empty,
+    /// Nothing gives the energy.
+    #[error("no [lagrangian] section")]
+    NoLagrangian,
+    /// Neither coordinates nor quasi-velocities.
+    #[error("no [coordinates] and no [quasi_velocities]: nothing moves")]
+    NothingMoves,
+    /// A section that does not exist.
+    #[error("unknown section [{name}]")]
+    UnknownSection {
+        /// Its name.
+        name: String,
+        /// A section with nearly that name.
+        nearest: Option<&'static str>,
+    },
+    /// An entry before the first section.
+    #[error("`{key}` stands outside any section")]
+    OutsideSection {
+        /// Its key.
+        key: String,
+    },
+    /// An entry that does not exist in its section.
+    #[error("unknown entry `{key}`")]
+    UnknownKey {
+        /// Its key.
+        key: String,
+        /// The entries there are.
+        allowed: &'static [&'static str],
+        /// The one with nearly that name.
+        nearest: Option<&'static str>,
+    },
+    /// A value of the wrong type.
+    #[error("expected {expected}, found {found}")]
+    WrongType {
+        /// The type that is right, in words.
+        expected: &'static str,
+        /// The type of the value given, in words.
+        found: &'static str,
+        /// How the entry could be written.
+        example: String,
+    },
+    /// A list of the wrong length.
+    #[error("expected {expected}, found {found}")]
+    WrongLength {
+        /// What the list should hold, in words.
+        expected: &'static str,
+        /// How many it holds.
+        found: usize,
+        /// How the entry could be written.
+        example: &'static str,
+    },
+    /// An entry that cannot be left out.
+    #[error("`{key}` is missing")]
+    Missing {
+        /// Its key.
+        key: &'static str,
+        /// How it could be written.
+        example: &'static str,
+    },
+    /// An entry that does nothing by itself.
+    #[error("`{key}` has no effect without `{without}`")]
+    NoEffect {
+        /// Its key.
+        key: String,
+        /// The entry that it needs.
+        without: &'static str,
+        /// How this could be written.
+        example: &'static str,
+    },
+    /// Two entries of which only one may be given.
+    #[error("`{first}` and `{second}` exclude each other")]
+    Exclusive {
+        /// The one.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+        /// When to use which.
+        help: &'static str,
+    },
+    /// A key that should be a name and is not.
+    #[error("`{key}` is not a name")]
+    NotAName {
+        /// The key.
+        key: String,
+    },
+    /// A name with a meaning of its own.
+    #[error("the name `{name}` is reserved")]
+    Reserved {
+        /// The name.
+        name: String,
+    },
+    /// One name for two things.
+    #[error("`{name}` is already the name of {first} (line {line})")]
+    NameTaken {
+        /// The name.
+        name: String,
+        /// What it names first.
+        first: Role,
+        /// On which line.
+        line: usize,
+    },
+    /// A key of `brackets` that is not a pair.
+    #[error("`{key}` is not a pair of names")]
+    NotAPair {
+        /// The key.
+        key: String,
+    },
+    /// The bracket of a field with itself.
+    #[error("the bracket of `{name}` with itself is always zero")]
+    SelfBracket {
+        /// The name given twice.
+        name: String,
+    },
+    /// The same bracket twice.
+    #[error("the bracket of `{left}` and `{right}` is given twice")]
+    BracketTwice {
+        /// First name.
+        left: String,
+        /// Second name.
+        right: String,
+    },
+    /// `nan` or `inf`.
+    #[error("expected a finite number, found `{text}`")]
+    NotFinite {
+        /// As written.
+        text: String,
+    },
+    /// An integer that a floating-point number cannot hold exactly.
+    #[error("the integer {text} is too large")]
+    IntegerTooLarge {
+        /// As written.
+        text: String,
+    },
+    /// A number that makes no sense for its entry.
+    #[error("expected {expected}, found {found}")]
+    OutOfRange {
+        /// What would make sense, in words.
+        expected: &'static str,
+        /// As written.
+        found: String,
+        /// How the entry could be written.
+        example: &'static str,
+    },
+    /// A word that is not among those possible.
+    #[error("`{found}` is not one of the choices")]
+    UnknownChoice {
+        /// As written.
+        found: String,
+        /// The choices.
+        allowed: Vec<&'static str>,
+        /// The one with nearly that name.
+        nearest: Option<&'static str>,
+    },
+    /// Wrong text of an expression.
+    #[error(transparent)]
+    Expression(#[from] ParseError),
+    /// Text that is well formed and says something that cannot be.
+    #[error(transparent)]
+    Meaning(#[from] MeaningError),
+    /// Something that the program cannot do yet.
+    #[error("{what} not supported yet")]
+    Unsupported {
+        /// What, with its verb: `events are`.
+        what: &'static str,
+    },
+}
+
+/// What a name in the one namespace of a model stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// An entry of `[parameters]`.
+    Parameter,
+    /// An entry of `[inputs]`.
+    Input,
+    /// An entry of `[definitions]`.
+    Definition,
+    /// An entry of `[coordinates]`.
+    Coordinate,
+    /// An entry of `[quasi_velocities]`.
+    QuasiVelocity,
+    /// An entry of `[states]`.
+    State,
+    /// An entry of `[integrals]`.
+    Integral,
+    /// An entry of `[outputs]`.
+    Output,
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Parameter => "a parameter",
+            Self::Input => "an input",
+            Self::Definition => "a definition",
+            Self::Coordinate => "a coordinate",
+            Self::QuasiVelocity => "a quasi-velocity",
+            Self::State => "a first-order state",
+            Self::Integral => "an integral",
+            Self::Output => "an output",
+        })
+    }
+}
+
+/// The sections of a model.
+pub(crate) const SECTIONS: &[&str] = &[
+    "model",
+    "parameters",
+    "inputs",
+    "definitions",
+    "coordinates",
+    "quasi_velocities",
+    "states",
+    "kinematics",
+    "algebra",
+    "constraints",
+    "lagrangian",
+    "bodies",
+    "gravity",
+    "forces",
+    "integrals",
+    "outputs",
+    "events",
+    "simulation",
+];
+
+const LEAST: &str = "a model needs at least [coordinates] (or [algebra] and [quasi_velocities]) and [lagrangian] \
+                     with `kinetic = \"…\"` or `lagrangian = \"…\"`, or [bodies.NAME]";
+
+impl ErrorKind {
+    /// Whether the text, the model, or this program is to blame.
+    pub fn category(&self) -> Category {
+        match self {
+            Self::Unsupported { .. } => Category::Unsupported,
+            Self::Meaning(fault) => fault.category(),
+            _ => Category::Text,
+        }
+    }
+
+    /// What would be right.
+    pub fn help(&self) -> String {
+        match self {
+            Self::NotText { .. } => "save the model as plain text in UTF-8".into(),
+            Self::Toml { help, .. } => (*help).into(),
+            Self::DuplicateKey { .. } => "keep one of them".into(),
+            Self::Empty | Self::NoLagrangian | Self::NothingMoves => LEAST.into(),
+            Self::UnknownSection { nearest, .. } => possible(*nearest, "sections", SECTIONS),
+            Self::OutsideSection { .. } => {
+                format!("put it under its section header; {}", possible(None, "sections", SECTIONS))
+            }
+            Self::UnknownKey { allowed, nearest, .. } => possible(*nearest, "entries here", allowed),
+            Self::WrongType { example, .. } => format!("write `{example}`"),
+            Self::WrongLength { example, .. } | Self::OutOfRange { example, .. } => {
+                format!("write `{example}`")
+            }
+            Self::Missing { example, .. } => format!("add `{example}`"),
+            Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
+            Self::Exclusive { help, .. } => (*help).into(),
+            Self::NotAName { .. } => {
+                "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()
+            }
+            Self::Reserved { name } => reserved(name),
+            Self::NameTaken { name, .. } => format!(
+                "parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
+                 namespace; choose another name, such as `{name}_1`"
+            ),
+            Self::NotAPair { .. } => {
+                "a bracket is written `\"w1,w2\" = \"w3\"`, the one with time `\"t,w1\" = \"w2\"`".into()
+            }
+            Self::SelfBracket { .. } => "take the entry out".into(),
+            Self::BracketTwice { .. } => "keep one of them".into(),
+            Self::NotFinite { .. } => "write a number such as `1.0` or `1e-3`".into(),
+            Self::IntegerTooLarge { .. } => {
+                "write it with a decimal point or an exponent, as in `1e20`".into()
+            }
+            Self::UnknownChoice { allowed, nearest, .. } => possible(*nearest, "choices", allowed),
+            Self::Expression(error) => error.help(),
+            Self::Meaning(fault) => fault.help(),
+            Self::Unsupported { .. } => "take the entry out".into(),
+        }
+    }
+}
+
+fn possible(nearest: Option<&str>, what: &str, words: &[&str]) -> String {
+    let words = words.join(", ");
+    match nearest {
+        Some(word) => format!("did you mean `{word}`? The {what} are {words}"),
+        None => format!("the {what} are {words}"),
+    }
+}
+
+fn reserved(name: &str) -> String {
+    let meaning = match name {
+        "t" => "it is the time".into(),
+        "pi" => "it is the number π".into(),
+        "energy" => "it is the energy column that every run has".into(),
+        _ => match FUNCTIONS.iter().find(|function| function.name == name) {
+            Some(function) => format!("it is the function `{}`", function.usage),
+            None => "it has a meaning of its own".into(),
+        },
+    };
+    format!("{meaning}; choose another name, such as `{name}_1`")
+}

@@ -1,0 +1,77 @@
+//! Values, names and expressions, each with its place in the file.
+
+use std::ops::Range;
+
+use pc_expr::parse::{Ast, Span, parse};
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::source::{Place, Source};
+use crate::document::text_map::TextMap;
+
+/// A value and where it stands in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A name and where it stands in the file, quotes excluded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// The name.
+    pub text: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// An expression and where it stands in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    /// As written, escapes of the TOML string resolved.
+    pub text: String,
+    /// Its tree, with spans in `text`.
+    pub ast: Ast,
+    pub(super) entry: String,
+    pub(super) map: TextMap,
+}
+
+impl Expression {
+    /// The expression that is the whole of a text.
+    ///
+    /// # Errors
+    /// [`ModelError`] if it is none.
+    pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
+        let text = source.text();
+        let ast = parse(text).map_err(|error| {
+            let span = error.span.start..error.span.end;
+            source.error(&Place { entry: String::new(), span }, error)
+        })?;
+        Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
+    }
+
+    /// Bytes of the file at which a part of the expression stands.
+    pub fn locate(&self, span: Span) -> Range<usize> {
+        self.map.locate(span.start..span.end)
+    }
+
+    /// The place of a part of the expression.
+    pub fn place(&self, span: Span) -> Place {
+        Place { entry: self.entry.clone(), span: self.locate(span) }
+    }
+
+    /// The place of the whole expression.
+    pub fn whole(&self) -> Place {
+        self.place(Span { start: 0, end: self.text.len() })
+    }
+}
+
+/// `name = "expression"`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedExpression {
+    /// What stands on the left.
+    pub name: Name,
+    /// What stands on the right.
+    pub expression: Expression,
+}

@@ -1,0 +1,80 @@
+//! From the text of a model to its document, section by section.
+//!
+//! ```
+//! use pc_model::{Document, Source};
+//! let text = "coordinates.x = 1.0\nlagrangian.kinetic = \"x'^2/2\"";
+//! let document = Document::parse(Source::new("free.toml", text))?;
+//! assert_eq!(document.coordinates[0].name.text, "x");
+//! # Ok::<(), pc_model::ModelError>(())
+//! ```
+
+use pc_expr::parse::nearest;
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::{ErrorKind, SECTIONS};
+use crate::diagnostics::source::Source;
+use crate::document::contents::Document;
+use crate::document::reader::{Item, Table};
+use crate::document::{bodies, checks, inputs, sections, simulation, syntax};
+
+impl Document {
+    /// The document of a model file.
+    ///
+    /// # Errors
+    /// The first thing in the file that is not part of a model.
+    pub fn parse(source: Source) -> Result<Self, ModelError> {
+        let mut document = Self::default();
+        for item in Table::root(&source, &syntax::table(&source)?).items() {
+            document.read(&item)?;
+        }
+        document.source = source;
+        checks::check_names(&document)?;
+        checks::require_motion(&document)?;
+        checks::require_energy(&document)?;
+        checks::require_bodies(&document)?;
+        Ok(document)
+    }
+
+    /// The document of a model file as read from disk.
+    ///
+    /// # Errors
+    /// As [`Document::parse`], and when the bytes are not UTF-8.
+    pub fn from_bytes(name: impl Into<String>, bytes: &[u8]) -> Result<Self, ModelError> {
+        Self::parse(Source::from_bytes(name, bytes))
+    }
+
+    /// Reads one section.
+    fn read(&mut self, item: &Item<'_>) -> Result<(), ModelError> {
+        let key = item.key();
+        if !SECTIONS.contains(&key) {
+            let name = key.to_owned();
+            return Err(item.key_error(if item.is_table() {
+                ErrorKind::UnknownSection { name, nearest: nearest(key, SECTIONS.iter().copied()) }
+            } else {
+                ErrorKind::OutsideSection { key: name }
+            }));
+        }
+        let table = item.section(key, &format!("[{key}]"))?;
+        match key {
+            "model" => self.model = sections::heading(&table)?,
+            "parameters" => self.parameters = table.declarations()?,
+            "inputs" => self.inputs = inputs::inputs(&table)?,
+            "definitions" => self.definitions = table.declarations()?,
+            "coordinates" => self.coordinates = table.declarations()?,
+            "quasi_velocities" => sections::quasi_velocities(&table, self)?,
+            "states" => self.states = sections::states(&table)?,
+            "kinematics" => self.kinematics = table.expressions()?,
+            "algebra" => self.algebra = Some(sections::algebra(&table)?),
+            "constraints" => self.constraints = sections::constraints(&table)?,
+            "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
+            "bodies" => self.bodies = bodies::bodies(&table)?,
+            "gravity" => self.gravity = Some(bodies::gravity(&table)?),
+            "forces" => self.forces = table.expressions()?,
+            "integrals" => self.integrals = table.declarations()?,
+            "outputs" => self.outputs = table.declarations()?,
+            "events" => self.events = simulation::events(&table)?,
+            _ => self.simulation = simulation::simulation(&table)?,
+        }
+        Ok(())
+    }
+}

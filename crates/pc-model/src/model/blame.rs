@@ -1,0 +1,174 @@
+//! Errors of the derivation, at the place in the file that is to blame.
+
+use pc_mech::{AlgebraError, MechError};
+use pc_nonholo::NonholoError;
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
+use crate::diagnostics::source::Place;
+use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
+
+impl Document {
+    /// Puts an error of the derivation under constraints at the place in the file that is to blame.
+    pub(crate) fn constraint_error(&self, error: NonholoError) -> ModelError {
+        let message = error.to_string();
+        let cannot = |name: &str, help| {
+            self.constraint_fault(name, MeaningError::Constraint { message: message.clone(), help })
+        };
+        let last = self.constraints.last().map_or("", |constraint| constraint.name.text.as_str());
+        match error {
+            NonholoError::Contradictory { constraint, .. } => {
+                cannot(&constraint, "no motion satisfies it; mend it or leave it out")
+            }
+            NonholoError::Nonlinear { constraint, .. } => {
+                cannot(&constraint, "take a form with multipliers: poincare, lagrange, or canonical")
+            }
+            NonholoError::Mech(error) => match error {
+                MechError::ConstraintNotAffine { constraint } => {
+                    let text = self.constraint_text(&constraint).map(|c| c.expression.text.clone());
+                    let text = text.unwrap_or_default();
+                    let fault = MeaningError::ConstraintNotAffine { constraint: constraint.clone(), text };
+                    self.constraint_fault(&constraint, fault)
+                }
+                MechError::TooManyConstraints { .. } => cannot(
+                    last,
+                    "there must be fewer independent constraints than velocities, or nothing moves",
+                ),
+                MechError::DependentConstraint { constraint } => {
+                    cannot(&constraint, "leave out what follows from other constraints")
+                }
+                MechError::SingularConstraint { constraint, .. } => {
+                    cannot(&constraint, "start where the constraints are independent of each other")
+                }
+                MechError::NoProjection { constraints, .. } => cannot(
+                    constraints.first().map_or(last, String::as_str),
+                    "start nearer to a state that satisfies them, if there is one",
+                ),
+                other => self.derivation_error(other),
+            },
+            NonholoError::NotAQuasiVelocity { .. }
+            | NonholoError::Twice { .. }
+            | NonholoError::NotInVelocities => cannot(last, "check [constraints]"),
+        }
+    }
+
+    /// The text of a constraint.
+    pub(crate) fn constraint_text(&self, name: &str) -> Option<&Constraint> {
+        self.constraints.iter().find(|constraint| constraint.name.text == name)
+    }
+
+    /// A fault of a constraint, at its expression.
+    pub(crate) fn constraint_fault(&self, name: &str, fault: MeaningError) -> ModelError {
+        let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
+        let place = expression.map(|expression| expression.place(expression.ast.span));
+        self.error(&place.unwrap_or_else(|| self.end()), fault)
+    }
+
+    /// Puts an error of the derivation at the place in the file that is to blame.
+    pub(crate) fn derivation_error(&self, error: MechError) -> ModelError {
+        match error {
+            MechError::DegenerateLagrangian { rank, size, quasi_velocities: undetermined } => {
+                self.error(&self.energy_place(), MeaningError::Degenerate { rank, size, undetermined })
+            }
+            error @ (MechError::Redundant { .. }
+            | MechError::Algebra(AlgebraError::DependentOperators { .. })) => {
+                let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
+                self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
+            }
+            error @ MechError::NotQuadratic { .. } => {
+                let help = "its forms are poincare and, where the coordinates are independent, lagrange";
+                self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
+            }
+            MechError::Algebra(error) => self.algebra_error(error),
+            MechError::UnknownIntegral { name, known } => {
+                self.error(&self.kept_place(&name), MeaningError::UnknownIntegral { name, known })
+            }
+            MechError::NotAnIntegral { name, t, rate } => {
+                self.error(&self.kept_place(&name), MeaningError::NotAnIntegral { name, t, rate })
+            }
+            other => {
+                self.error(&self.energy_place(), MeaningError::Derivation { message: other.to_string() })
+            }
+        }
+    }
+
+    pub(crate) fn error(&self, place: &Place, kind: impl Into<ErrorKind>) -> ModelError {
+        self.source.error(place, kind)
+    }
+
+    /// Where it is said that an integral is to be kept; its definition if it is said elsewhere.
+    pub(crate) fn kept_place(&self, name: &str) -> Place {
+        let written = self.simulation.project.iter().find(|written| written.value == name);
+        let integral = || self.integrals.iter().find(|integral| integral.name.text == name);
+        let defined = || integral().map(|integral| integral.name.place.clone());
+        written.map(|name| name.place.clone()).or_else(defined).unwrap_or_else(|| self.energy_place())
+    }
+
+    pub(crate) fn energy_place(&self) -> Place {
+        let document = self;
+        let energy = document.lagrangian.as_ref().map(|l| &l.place);
+        let place = energy.or_else(|| document.bodies.first().map(|body| &body.place));
+        place.cloned().unwrap_or_else(|| document.end())
+    }
+
+    /// The name of operator number s, from 1; 0 is time.
+    fn operator_name(&self, s: usize) -> String {
+        let declared = &self.quasi_velocities;
+        match (s, declared.is_empty()) {
+            (0, _) => "t".to_owned(),
+            (_, false) => declared.get(s - 1).map_or_else(String::new, |q| q.name.text.clone()),
+            (_, true) => {
+                self.coordinates.get(s - 1).map_or_else(String::new, |x| format!("{}'", x.name.text))
+            }
+        }
+    }
+
+    fn operator_place(&self, s: usize) -> Place {
+        let quasi_velocity = self.quasi_velocities.get(s.max(1) - 1);
+        quasi_velocity.map_or_else(|| self.end(), |q| q.name.place.clone())
+    }
+
+    pub(crate) fn algebra_error(&self, error: AlgebraError) -> ModelError {
+        let names = |pair: (usize, usize)| [self.operator_name(pair.0), self.operator_name(pair.1)];
+        let brackets_of = |pair: (usize, usize)| -> Place {
+            let algebra = self.algebra.as_ref();
+            let brackets = match algebra.map(|a| &a.definition) {
+                None => return self.operator_place(pair.1),
+                Some(AlgebraDefinition::Catalogue(name)) => return name.place.clone(),
+                Some(AlgebraDefinition::Brackets(brackets)) => brackets,
+            };
+            let section = algebra.map_or_else(|| self.end(), |a| a.place.clone());
+            let [r, s] = names(pair);
+            let matches = |b: &&Bracket| {
+                (b.left.text == r && b.right.text == s) || (b.left.text == s && b.right.text == r)
+            };
+            brackets.iter().find(matches).map_or(section, |b| b.left.place.clone())
+        };
+        match error {
+            AlgebraError::RankDeficient { rank, operators, pair } => self.error(
+                &self.operator_place(pair.1),
+                MeaningError::RankDeficient { rank, operators, pair: names(pair) },
+            ),
+            AlgebraError::Undetermined { combination, operators, .. } => {
+                let last = combination.last().map_or(1, |&(s, _)| s);
+                let names = (1..=operators).map(|s| self.operator_name(s)).collect();
+                self.error(&self.operator_place(last), MeaningError::Undetermined { combination, names })
+            }
+            AlgebraError::NotClosed { pair, residual } => self
+                .error(&self.operator_place(pair.1), MeaningError::NotClosed { pair: names(pair), residual }),
+            AlgebraError::Contradiction { pair, residual } => {
+                self.error(&brackets_of(pair), MeaningError::Contradiction { pair: names(pair), residual })
+            }
+            AlgebraError::Jacobi { triple: (r, s, u), component, defect } => {
+                let triple = [r, s, u].map(|s| self.operator_name(s));
+                let fault = MeaningError::Jacobi { triple, component: self.operator_name(component), defect };
+                self.error(&brackets_of((r, s)), fault)
+            }
+            AlgebraError::AlgebraNeeded => self.error(&self.operator_place(1), MeaningError::AlgebraNeeded),
+            other => {
+                self.error(&self.operator_place(1), MeaningError::Derivation { message: other.to_string() })
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What an expression may contain, by the place where it stands.
+
+/// What an expression may contain, by the place where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Stage {
+    /// The value of a parameter: parameters before it.
+    Parameter,
+    /// A start value: parameters, and definitions made of them.
+    Start,
+    /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
+    Definition,
+    /// Kinematics: coordinates, t, and quasi-velocities.
+    Kinematics,
+    /// Mass, inertia, place and attitude of a body: coordinates and t.
+    Position,
+    /// Mass and inertia of a body: coordinates, first-order states and t.
+    Inertia,
+    /// The rate of a first-order state: everything but accelerations.
+    Rate,
+    /// The acceleration of gravity: parameters and t.
+    Gravity,
+    /// A constraint: everything but accelerations.
+    Constraint,
+    /// The energy or a force: everything but accelerations.
+    Dynamics,
+    /// An event: everything but accelerations.
+    Event,
+    /// A function that is asked for: everything but accelerations.
+    Function,
+    /// Integrals and outputs: everything.
+    Observation,
+}
+
+impl Stage {
+    pub(super) fn place(self) -> &'static str {
+        match self {
+            Stage::Parameter => "the value of a parameter",
+            Stage::Start => "a start value",
+            Stage::Definition => "the definition of a quasi-velocity",
+            Stage::Kinematics => "[kinematics]",
+            Stage::Position | Stage::Inertia => "the mass, inertia, position or rotation of a body",
+            Stage::Rate => "the rate of a first-order state",
+            Stage::Gravity => "the acceleration of gravity",
+            Stage::Constraint => "a constraint",
+            Stage::Dynamics => "the Lagrangian or a force",
+            Stage::Event => "an event",
+            Stage::Function => "a function of the state",
+            Stage::Observation => "an integral or output",
+        }
+    }
+
+    pub(super) fn allowed(self) -> &'static str {
+        match self {
+            Stage::Parameter => "numbers and parameters before it",
+            Stage::Start => "numbers, parameters and definitions made of them",
+            Stage::Definition => "parameters, coordinates, velocities x' and t",
+            Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
+            Stage::Position | Stage::Inertia => "parameters, coordinates and t",
+            Stage::Gravity => "numbers, parameters, inputs and t",
+            Stage::Constraint => "parameters, coordinates, velocities and t",
+            Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
+                "declared names"
+            }
+        }
+    }
+}
