@@ -5,37 +5,46 @@
  *     pc_system *top = NULL;
  *     pc_error *error = NULL;
  *     if (pc_model_builtin("heavy-top-lagrange", &model, &error) == PC_OK &&
- *         pc_system_new(model, NULL, &top, &error) == PC_OK) { ... pc_system_rhs(top, t, y, n, ydot, n, &error) ... }
+ *         pc_system_new(model, NULL, &top, &error) == PC_OK) {
+ *         ... pc_system_rhs(top, t, y, n, ydot, n, &error) ...
+ *     }
  *     if (error) fprintf(stderr, "%s\n", pc_error_message(error));
  *     pc_error_free(error);
  *     pc_system_free(top);
  *     pc_model_free(model);
  *
- * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then first-order states;
- * ydot is its rate.
+ * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then
+ * first-order states; ydot is its rate.
  *
- * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a pc_error, or NULL. There it
- * writes NULL if all went well, and otherwise a new error, which you free; what stood there before is not looked at. PC_STOPPED
- * and PC_EVENT are no failures: an observer, or a terminal event, has ended an integration. Results are written unless the call
- * fails, except that a new handle or text is NULL after a failure, and that arrays for results may hold anything then.
+ * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a
+ * pc_error, or NULL. There it writes NULL if all went well, and otherwise a new error, which you
+ * free; what stood there before is not looked at. PC_STOPPED and PC_EVENT are no failures: an
+ * observer, or a terminal event, has ended an integration. Results are written unless the call
+ * fails, except that a new handle or text is NULL after a failure, and that arrays for results may
+ * hold anything then.
  *
- * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file, pc_model_builtin,
- * pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of its type; `char *` you free with pc_string_free,
- * bytes with pc_bytes_free; `const char *` belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL. Handles are independent: a model can be freed while its system
- * lives, and a system while its solvers and kernels do.
+ * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file,
+ * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
+ * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
+ * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
+ * Handles are independent: a model can be freed while its system lives, and a system while its
+ * solvers and kernels do.
  *
- * Arrays. Each comes with its length, which has to be the right one, not only large enough. They are `double`, aligned as such,
- * and an array that is written shares no memory with another one; this is checked. NULL goes with the length 0. Matrices are dense and column-major,
+ * Arrays. Each comes with its length, which has to be the right one, not only large enough. They
+ * are `double`, aligned as such, and an array that is written shares no memory with another one;
+ * this is checked. NULL goes with the length 0. Matrices are dense and column-major,
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
- * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a time: a second one at the same
- * time returns PC_BUSY and does nothing; only of pc_system_rhs many may succeed side by side, as it says. (Freeing a handle
- * while another thread uses it is not safe, as ever.) Different handles are independent; to evaluate on many threads, give
- * each its own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call. Names and sizes
- * may be read at any time, by any number of threads.
+ * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a
+ * time: a second one at the same time returns PC_BUSY and does nothing; only of pc_system_rhs many
+ * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
+ * safe, as ever.) Different handles are independent; to evaluate on many threads, give each its
+ * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
+ * call. Names and sizes may be read at any time, by any number of threads.
  *
- * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program; memory that is exhausted does, and
- * a stack: threads that make models and systems need some 256 KiB, more for long expressions.
+ * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program;
+ * memory that is exhausted does, and a stack: threads that make models and systems need some 256
+ * KiB, more for long expressions.
  */
 
 #ifndef PC_H
@@ -70,8 +79,8 @@ extern "C" {
 #define PC_ABI_VERSION 0
 
 /**
- * How a call ended. New ones may be added, so treat an unknown one as an error; PC_STATUS_LAST, which is never returned,
- * makes room for them.
+ * How a call ended. New ones may be added, so treat an unknown one as an error; PC_STATUS_LAST,
+ * which is never returned, makes room for them.
  */
 typedef enum {
   /**
@@ -79,8 +88,8 @@ typedef enum {
    */
   PC_OK = 0,
   /**
-   * The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that is not finite,
-   * an unknown choice.
+   * The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that
+   * is not finite, an unknown choice.
    */
   PC_INVALID_ARGUMENT = 1,
   /**
@@ -108,8 +117,8 @@ typedef enum {
    */
   PC_EVALUATION = 7,
   /**
-   * The integration could not begin or go on. Events that occur ever more closely, as a ball's that comes to rest, are
-   * such an end.
+   * The integration could not begin or go on. Events that occur ever more closely, as a ball's
+   * that comes to rest, are such an end.
    */
   PC_INTEGRATION = 8,
   /**
@@ -117,12 +126,13 @@ typedef enum {
    */
   PC_STOPPED = 9,
   /**
-   * The handle is in use: by another thread, or by the call that called the observer or the force function.
+   * The handle is in use: by another thread, or by the call that called the observer or the
+   * force function.
    */
   PC_BUSY = 10,
   /**
-   * A fault of the library, after which the handle can only be freed; or threads or memory for a solver are not to be
-   * had, and the handle is as it was.
+   * A fault of the library, after which the handle can only be freed; or threads or memory for
+   * a solver are not to be had, and the handle is as it was.
    */
   PC_INTERNAL = 11,
   /**
@@ -148,8 +158,8 @@ typedef enum {
  */
 typedef enum {
   /**
-   * Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish, all of them
-   * with multipliers otherwise.
+   * Poincaré's, of quasi-velocities: independent ones if constraints say that the others
+   * vanish, all of them with multipliers otherwise.
    */
   PC_POINCARE = 0,
   /**
@@ -191,7 +201,8 @@ typedef enum {
 } pc_iteration;
 
 /**
- * How the linear systems of Newton's iteration are solved; values of pc_solver_options.linear_solver.
+ * How the linear systems of Newton's iteration are solved; values of
+ * pc_solver_options.linear_solver.
  */
 typedef enum {
   /**
@@ -249,23 +260,23 @@ typedef enum {
 } pc_direction;
 
 /**
- * A motion as a function of time. It never changes, so that any number of threads may use it. Free it with
- * pc_dense_free.
+ * A motion as a function of time. It never changes, so that any number of threads may use it.
+ * Free it with pc_dense_free.
  */
 typedef struct pc_dense pc_dense;
 
 /**
- * Why a call failed: status, message and, for a model, the place in its text. Never changes; free it with
- * pc_error_free.
+ * Why a call failed: status, message and, for a model, the place in its text. Never changes;
+ * free it with pc_error_free.
  */
 typedef struct pc_error pc_error;
 
 /**
- * f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian. Free it with
- * pc_kernel_free.
+ * f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
+ * Free it with pc_kernel_free.
  *
- * It has room to compute in, so each thread needs its own, and two calls at the same time are not safe; in
- * return there are no locks.
+ * It has room to compute in, so each thread needs its own, and two calls at the same time are
+ * not safe; in return there are no locks.
  */
 typedef struct pc_kernel pc_kernel;
 
@@ -347,7 +358,8 @@ typedef struct {
    */
   uint64_t max_steps;
   /**
-   * Length of the first step, positive in both directions of time; 0, the default, for an estimate.
+   * Length of the first step, positive in both directions of time; 0, the default, for an
+   * estimate.
    */
   double initial_step;
   /**
@@ -363,8 +375,8 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by default. Between two such
-   * places an even number of zeros may be missed.
+   * Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by
+   * default. Between two such places an even number of zeros may be missed.
    */
   uint32_t samples_per_step;
   /**
@@ -372,18 +384,18 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Events that follow each other ever faster are an error once what is left of the first of their distances is this part,
-   * from 0, for never, to less than 1; 1e-5 by default.
+   * Events that follow each other ever faster are an error once what is left of the first of
+   * their distances is this part, from 0, for never, to less than 1; 1e-5 by default.
    */
   double accumulation;
 } pc_solver_options;
 
 /**
- * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so `q_length` is
- * pc_system_force_count. y is the state of the system; in the canonical form it has momenta. Returns 0; a
- * positive number where the forces are not defined, so that a smaller step may help; a negative one to give
- * up. What is left unwritten is not a number, and treated as a positive answer. It must return: no exceptions,
- * no longjmp.
+ * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
+ * `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
+ * has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
+ * step may help; a negative one to give up. What is left unwritten is not a number, and treated
+ * as a positive answer. It must return: no exceptions, no longjmp.
  */
 typedef int (*pc_force_function)(double t,
                                  const double *y,
@@ -393,8 +405,9 @@ typedef int (*pc_force_function)(double t,
                                  void *user);
 
 /**
- * Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to `dq[i + j*e]`
- * for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
+ * Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j
+ * to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as
+ * pc_force_function.
  */
 typedef int (*pc_force_jacobian)(double t,
                                  const double *y,
@@ -409,16 +422,18 @@ typedef int (*pc_force_jacobian)(double t,
 typedef void (*pc_destroy)(void *user);
 
 /**
- * Is given the state at each output time. Returns 0 to go on; anything else ends the run with PC_STOPPED. It
- * may call any function on other handles, and must return: no exceptions, no longjmp.
+ * Is given the state at each output time. Returns 0 to go on; anything else ends the run with
+ * PC_STOPPED. It may call any function on other handles, and must return: no exceptions, no
+ * longjmp.
  */
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
- * Is given each event where it occurs, by its number among the events of the solver, with the states before and
- * after it, which are valid during the call. Of simultaneous events each has the state that it found and the one
- * that it left. Returns 0 to go on; anything else ends the call with PC_STOPPED, or with PC_EVENT where a
- * terminal event does so too. Otherwise as pc_observer.
+ * Is given each event where it occurs, by its number among the events of the solver, with the
+ * states before and after it, which are valid during the call. Of simultaneous events each has
+ * the state that it found and the one that it left. Returns 0 to go on; anything else ends the
+ * call with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as
+ * pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
                                  double t,
@@ -428,11 +443,16 @@ typedef int (*pc_event_observer)(size_t event,
                                  void *user);
 
 /**
- * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends the
- * integration with PC_INTEGRATION, as a value does that is not finite or not written. It should depend on
- * nothing but its arguments and be smooth. It must return: no exceptions, no longjmp.
+ * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
+ * ends the integration with PC_INTEGRATION, as a value does that is not finite or not written.
+ * It should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
+ * longjmp.
  */
-typedef int (*pc_event_function)(double t, const double *y, size_t y_length, double *value, void *user);
+typedef int (*pc_event_function)(double t,
+                                 const double *y,
+                                 size_t y_length,
+                                 double *value,
+                                 void *user);
 
 /**
  * Turns the state y before the event into the state after it. Otherwise as pc_event_function.
@@ -492,8 +512,8 @@ typedef struct {
    */
   double step_time;
   /**
-   * Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
-   * does not let expect: the beginning of a pulse, a jump.
+   * Steps that were to end no later than where the explicit dependence on time shows something
+   * that the motion up to there does not let expect: the beginning of a pulse, a jump.
    */
   uint64_t limited_steps;
 } pc_statistics;
@@ -515,11 +535,13 @@ typedef struct {
    */
   const char *message;
   /**
-   * The output times that it reached, as many as `rows`; the time of a terminal event is the last one.
+   * The output times that it reached, as many as `rows`; the time of a terminal event is the
+   * last one.
    */
   const double *times;
   /**
-   * The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there are none.
+   * The states at these, one after the other, each of `dim` numbers. As `times`, NULL where
+   * there are none.
    */
   const double *states;
   /**
@@ -533,8 +555,9 @@ typedef struct {
 } pc_member;
 
 /**
- * Is given each member in order, on the thread of the call; what it points to is valid during the call. Returns 0
- * to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as pc_observer.
+ * Is given each member in order, on the thread of the call; what it points to is valid during
+ * the call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
+ * pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
@@ -554,8 +577,8 @@ const char *pc_status_name(int status);
 pc_status pc_error_status(const pc_error *error);
 
 /**
- * The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line at fault and
- * what would be right, over several lines of text. The empty text of null.
+ * The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
+ * line at fault and what would be right, over several lines of text. The empty text of null.
  */
 const char *pc_error_message(const pc_error *error);
 
@@ -565,7 +588,8 @@ const char *pc_error_message(const pc_error *error);
 size_t pc_error_line(const pc_error *error);
 
 /**
- * The column at which the text at fault begins, in characters from 1; 0 if there is none, or of null.
+ * The column at which the text at fault begins, in characters from 1; 0 if there is none, or of
+ * null.
  */
 size_t pc_error_column(const pc_error *error);
 
@@ -585,8 +609,8 @@ size_t pc_error_length(const pc_error *error);
 int pc_error_integrator_code(const pc_error *error);
 
 /**
- * 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should try a smaller step;
- * else 0, as of null.
+ * 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator
+ * should try a smaller step; else 0, as of null.
  */
 int pc_error_is_recoverable(const pc_error *error);
 
@@ -601,8 +625,8 @@ void pc_error_free(pc_error *error);
 void pc_string_free(char *text);
 
 /**
- * Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages call it;
- * NULL for "model".
+ * Reads a model from `length` bytes of text, which need no zero at the end. `name` is how
+ * messages call it; NULL for "model".
  */
 pc_status pc_model_parse(const char *text,
                          size_t length,
@@ -646,76 +670,72 @@ void pc_model_free(pc_model *model);
 pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Has states projected to the value that this integral, or "energy", has at the start: after each step of a
- * solver, and by pc_system_project. An unknown name is found by pc_system_new.
+ * Has states projected to the value that this integral, or "energy", has at the start: after
+ * each step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
  */
 pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
 
 /**
- * Whether the start is moved to where the constraints are satisfied (else a start off them is refused). Not 0 is yes.
+ * Whether the start is moved to where the constraints are satisfied (else a start off them is
+ * refused). Not 0 is yes.
  */
-pc_status pc_model_project_start(pc_model *model,
-                                 int yes,
-                                 pc_error **error);
+pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
 
 /**
- * Has a start that is moved to where the constraints are satisfied keep the value of this coordinate or quasi-velocity: the others
- * follow. Without pc_model_project_start it says nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+ * Has a start that is moved to where the constraints are satisfied keep the value of this
+ * coordinate or quasi-velocity: the others follow. Without pc_model_project_start it says
+ * nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
  */
-pc_status pc_model_hold_start(pc_model *model,
-                              const char *name,
-                              pc_error **error);
+pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
 
 /**
- * Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
- * is yes.
+ * Whether the reactions of the constraints are observed, each called `λ_` and the name of its
+ * constraint. Not 0 is yes.
  */
-pc_status pc_model_observe_reactions(pc_model *model,
-                                     int yes,
-                                     pc_error **error);
+pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
 /**
- * Whether systems of the model are derived with their derivatives by parameters, which pc_solver_add_sensitivity takes. Not 0
- * is yes.
+ * Whether systems of the model are derived with their derivatives by parameters, which
+ * pc_solver_add_sensitivity takes. Not 0 is yes.
  */
-pc_status pc_model_differentiate(pc_model *model,
-                                 int yes,
-                                 pc_error **error);
+pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
 /**
- * The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
- * wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
- * pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
- * pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force.
+ * The text of the model, to be freed with pc_string_free. That of a model built by calls is the
+ * text that these wrote; lines and columns of errors are counted in it. What no text says is not
+ * in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
+ * pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
+ * pc_model_differentiate, pc_model_add_external_force.
  */
-pc_status pc_model_text(const pc_model *model,
-                        char **text,
-                        pc_error **error);
+pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * A model without anything, to be built by the calls below, in any order between sorts of entries; the order of
- * coordinates, quasi-velocities, parameters and so on is that of their calls. Expressions are those of the text
- * model, where `x'` is the velocity of the coordinate x, and `t` the time. What is said is understood as a
- * whole by pc_model_check and pc_system_new, whose errors name the entry and show its expression.
+ * A model without anything, to be built by the calls below, in any order between sorts of
+ * entries; the order of coordinates, quasi-velocities, parameters and so on is that of their
+ * calls. Expressions are those of the text model, where `x'` is the velocity of the coordinate
+ * x, and `t` the time. What is said is understood as a whole by pc_model_check and
+ * pc_system_new, whose errors name the entry and show its expression.
  */
-pc_status pc_model_new(const char *name,
-                       pc_model **model,
-                       pc_error **error);
+pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
 /**
- * Reads what has been said as a whole: PC_OK if all names are known and all expressions well formed, and the frame and
- * the start are in order. Whether equations can be derived is found by pc_system_new.
+ * Reads what has been said as a whole: PC_OK if all names are known and all expressions well
+ * formed, and the frame and the start are in order. Whether equations can be derived is found by
+ * pc_system_new.
  */
-pc_status pc_model_check(const pc_model *model,
-                         pc_error **error);
+pc_status pc_model_check(const pc_model *model, pc_error **error);
 
 /**
  * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
  */
-pc_status pc_model_add_parameter(pc_model *model, const char *name, double value, pc_error **error);
+pc_status pc_model_add_parameter(pc_model *model,
+                                 const char *name,
+                                 double value,
+                                 pc_error **error);
 
 /**
- * Adds a parameter that is an expression in those before it, which it follows until it is set itself.
+ * Adds a parameter that is an expression in those before it, which it follows until it is set
+ * itself.
  */
 pc_status pc_model_add_parameter_expression(pc_model *model,
                                             const char *name,
@@ -723,17 +743,16 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
                                             pc_error **error);
 
 /**
- * Adds an input: a value that is constant until it is set, as parameters are, after all of which it comes. Forces, rates of
- * states, events and what is watched may contain it, but nothing that velocities or momenta depend on.
+ * Adds an input: a value that is constant until it is set, as parameters are, after all of which
+ * it comes. Forces, rates of states, events and what is watched may contain it, but nothing that
+ * velocities or momenta depend on.
  */
-pc_status pc_model_add_input(pc_model *model,
-                             const char *name,
-                             double value,
-                             pc_error **error);
+pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Adds an input that is a function of time: `length` values at rising times, between them "linear", "cubic" or "hold"; NULL
- * for "linear". No step of a solver crosses one of the times. Its values are not set otherwise.
+ * Adds an input that is a function of time: `length` values at rising times, between them
+ * "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
+ * Its values are not set otherwise.
  */
 pc_status pc_model_add_input_table(pc_model *model,
                                    const char *name,
@@ -744,9 +763,10 @@ pc_status pc_model_add_input_table(pc_model *model,
                                    pc_error **error);
 
 /**
- * Adds an input whose table is a column of a file of numbers with commas between them, below a line of names; otherwise as
- * pc_model_add_input_table. `time` is the name of the column of times, NULL for "t" or else the first. The path is taken from
- * the working directory as it is now.
+ * Adds an input whose table is a column of a file of numbers with commas between them, below a
+ * line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of
+ * times, NULL for "t" or else the first. The path is taken from the working directory as it is
+ * now.
  */
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
@@ -757,8 +777,9 @@ pc_status pc_model_add_input_file(pc_model *model,
                                   pc_error **error);
 
 /**
- * Adds a first-order state with its value at the start and its rate: an expression of time, coordinates, velocities and
- * states. It is integrated with the motion and comes after the velocities in the state; no frame knows it.
+ * Adds a first-order state with its value at the start and its rate: an expression of time,
+ * coordinates, velocities and states. It is integrated with the motion and comes after the
+ * velocities in the state; no frame knows it.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -767,8 +788,8 @@ pc_status pc_model_add_state(pc_model *model,
                              pc_error **error);
 
 /**
- * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of parameters and t: it acts on
- * the mass centres of all bodies and counts in the energy.
+ * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of
+ * parameters and t: it acts on the mass centres of all bodies and counts in the energy.
  */
 pc_status pc_model_set_gravity(pc_model *model,
                                const char *x,
@@ -787,13 +808,16 @@ pc_status pc_model_add_definition(pc_model *model,
 /**
  * Adds a coordinate with its value at the start.
  */
-pc_status pc_model_add_coordinate(pc_model *model, const char *name, double start, pc_error **error);
+pc_status pc_model_add_coordinate(pc_model *model,
+                                  const char *name,
+                                  double start,
+                                  pc_error **error);
 
 /**
- * Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in the velocities
- * x', or NULL where the kinematics are given the other way round, by pc_model_set_kinematics. Without any
- * quasi-velocities they are the velocities themselves; `name` may then be `x'`, to give one its value at the
- * start.
+ * Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in
+ * the velocities x', or NULL where the kinematics are given the other way round, by
+ * pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves;
+ * `name` may then be `x'`, to give one its value at the start.
  */
 pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       const char *name,
@@ -802,8 +826,8 @@ pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for every coordinate,
- * or for none.
+ * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for
+ * every coordinate, or for none.
  */
 pc_status pc_model_set_kinematics(pc_model *model,
                                   const char *coordinate,
@@ -811,16 +835,15 @@ pc_status pc_model_set_kinematics(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only where the frame
- * does not determine them.
+ * Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only
+ * where the frame does not determine them.
  */
-pc_status pc_model_set_algebra(pc_model *model,
-                               const char *name,
-                               pc_error **error);
+pc_status pc_model_set_algebra(pc_model *model, const char *name, pc_error **error);
 
 /**
- * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as "w3"; brackets
- * that are not set are zero. `left` may be "t", for X_0. Instead of pc_model_set_algebra.
+ * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
+ * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. Instead of
+ * pc_model_set_algebra.
  */
 pc_status pc_model_set_bracket(pc_model *model,
                                const char *left,
@@ -829,8 +852,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not affine in the
- * velocities is said to be so by pc_model_set_constraint_kind.
+ * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not
+ * affine in the velocities is said to be so by pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -838,7 +861,8 @@ pc_status pc_model_add_constraint(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential energy.
+ * Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential
+ * energy.
  */
 pc_status pc_model_set_lagrangian(pc_model *model, const char *expression, pc_error **error);
 
@@ -860,22 +884,31 @@ pc_status pc_model_set_dissipation(pc_model *model, const char *expression, pc_e
 /**
  * Adds a force, conjugate to a quasi-velocity, or to a coordinate.
  */
-pc_status pc_model_add_force(pc_model *model, const char *on, const char *expression, pc_error **error);
+pc_status pc_model_add_force(pc_model *model,
+                             const char *on,
+                             const char *expression,
+                             pc_error **error);
 
 /**
  * Adds an expression that should stay constant, to be watched.
  */
-pc_status pc_model_add_integral(pc_model *model, const char *name, const char *expression, pc_error **error);
+pc_status pc_model_add_integral(pc_model *model,
+                                const char *name,
+                                const char *expression,
+                                pc_error **error);
 
 /**
  * Adds an expression to be watched.
  */
-pc_status pc_model_add_output(pc_model *model, const char *name, const char *expression, pc_error **error);
+pc_status pc_model_add_output(pc_model *model,
+                              const char *name,
+                              const char *expression,
+                              pc_error **error);
 
 /**
- * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its mass centre or
- * of a point of it that is at rest, as expressions of coordinates. Energy and forces follow from bodies; no
- * Lagrangian is needed beside them.
+ * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its
+ * mass centre or of a point of it that is at rest, as expressions of coordinates. Energy and
+ * forces follow from bodies; no Lagrangian is needed beside them.
  */
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
@@ -906,7 +939,8 @@ pc_status pc_model_set_body_torque(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets the angular velocity of a rigid body, in axes of the body. Excludes pc_model_set_body_rotation.
+ * Sets the angular velocity of a rigid body, in axes of the body. Excludes
+ * pc_model_set_body_rotation.
  */
 pc_status pc_model_set_body_angular_velocity(pc_model *model,
                                              const char *body,
@@ -916,8 +950,8 @@ pc_status pc_model_set_body_angular_velocity(pc_model *model,
                                              pc_error **error);
 
 /**
- * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx, Iyy, Izz, or 6,
- * which go on with Ixy, Iyz, Ixz.
+ * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx,
+ * Iyy, Izz, or 6, which go on with Ixy, Iyz, Ixz.
  */
 pc_status pc_model_set_body_inertia(pc_model *model,
                                     const char *body,
@@ -926,8 +960,8 @@ pc_status pc_model_set_body_inertia(pc_model *model,
                                     pc_error **error);
 
 /**
- * Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of space, row by
- * row.
+ * Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those
+ * of space, row by row.
  */
 pc_status pc_model_set_body_rotation(pc_model *model,
                                      const char *body,
@@ -946,8 +980,8 @@ pc_status pc_model_set_description(pc_model *model, const char *description, pc_
 pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
 
 /**
- * Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where there are no
- * quasi-velocities, to another number.
+ * Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where
+ * there are no quasi-velocities, to another number.
  */
 pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
 
@@ -960,8 +994,8 @@ pc_status pc_model_set_start_expression(pc_model *model,
                                         pc_error **error);
 
 /**
- * Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or "nonlinear" of one that is
- * not affine in the velocities and obeys Chetaev's condition.
+ * Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or
+ * "nonlinear" of one that is not affine in the velocities and obeys Chetaev's condition.
  */
 pc_status pc_model_set_constraint_kind(pc_model *model,
                                        const char *constraint,
@@ -974,8 +1008,8 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are the next five; a
- * solver is told by its own options.
+ * Sets the time to which the program `pc` runs the model. It is written to the text, as are the
+ * next five; a solver is told by its own options.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
@@ -987,19 +1021,21 @@ pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error
 /**
  * Sets the tolerances with which the program `pc` runs the model, both positive.
  */
-pc_status pc_model_set_tolerances(pc_model *model, double relative, double absolute, pc_error **error);
+pc_status pc_model_set_tolerances(pc_model *model,
+                                  double relative,
+                                  double absolute,
+                                  pc_error **error);
 
 /**
- * Sets the largest length of a step, positive, with which the program `pc` runs the model: an event whose function has
- * passed through zero and back within a step is not seen.
+ * Sets the largest length of a step, positive, with which the program `pc` runs the model: an
+ * event whose function has passed through zero and back within a step is not seen.
  */
-pc_status pc_model_set_max_step(pc_model *model,
-                                double length,
-                                pc_error **error);
+pc_status pc_model_set_max_step(pc_model *model, double length, pc_error **error);
 
 /**
- * Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step` places of each step, from 1, and
- * events whose distances shrink geometrically to less than `accumulation` of the first are taken for accumulated.
+ * Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step`
+ * places of each step, from 1, and events whose distances shrink geometrically to less than
+ * `accumulation` of the first are taken for accumulated.
  */
 pc_status pc_model_set_event_search(pc_model *model,
                                     size_t samples_per_step,
@@ -1027,8 +1063,9 @@ void pc_system_options_init(pc_system_options *options, size_t size);
 void pc_solver_options_init(pc_solver_options *options, size_t size);
 
 /**
- * Derives and compiles the equations of a model. `options` may be NULL. This takes from milliseconds to, for a hundred
- * bodies, seconds; everything else is fast, except where it says that it derives.
+ * Derives and compiles the equations of a model. `options` may be NULL. This takes from
+ * milliseconds to, for a hundred bodies, seconds; everything else is fast, except where it says
+ * that it derives.
  */
 pc_status pc_system_new(const pc_model *model,
                         const pc_system_options *options,
@@ -1036,21 +1073,21 @@ pc_status pc_system_new(const pc_model *model,
                         pc_error **error);
 
 /**
- * A copy for another thread, with the parameters as they are now. It shares the machine code there is: that of
- * f, and that of each derivative which the original has evaluated before (the first evaluation of each compiles
- * it).
+ * A copy for another thread, with the parameters as they are now. It shares the machine code
+ * there is: that of f, and that of each derivative which the original has evaluated before (the
+ * first evaluation of each compiles it).
  */
-pc_status pc_system_clone(const pc_system *system,
-                          pc_system **copy,
-                          pc_error **error);
+pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
 
 /**
- * Frees a system. Null is allowed. In a function that is called by a call of this system it does nothing.
+ * Frees a system. Null is allowed. In a function that is called by a call of this system it does
+ * nothing.
  */
 void pc_system_free(pc_system *system);
 
 /**
- * The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of NULL.
+ * The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of
+ * NULL.
  */
 size_t pc_system_dim(const pc_system *system);
 
@@ -1075,7 +1112,8 @@ size_t pc_system_parameter_count(const pc_system *system);
 size_t pc_system_observable_count(const pc_system *system);
 
 /**
- * The number of observables, the first ones, that should stay constant: integrals and energy. 0 of NULL.
+ * The number of observables, the first ones, that should stay constant: integrals and energy. 0
+ * of NULL.
  */
 size_t pc_system_conserved_count(const pc_system *system);
 
@@ -1117,16 +1155,24 @@ const char *pc_system_reaction_name(const pc_system *system, size_t index);
 /**
  * The time and state from which the model starts. `t` may be NULL.
  */
-pc_status pc_system_start(const pc_system *system, double *t, double *y, size_t y_length, pc_error **error);
+pc_status pc_system_start(const pc_system *system,
+                          double *t,
+                          double *y,
+                          size_t y_length,
+                          pc_error **error);
 
 /**
  * The values of all parameters.
  */
-pc_status pc_system_parameters(const pc_system *system, double *values, size_t length, pc_error **error);
+pc_status pc_system_parameters(const pc_system *system,
+                               double *values,
+                               size_t length,
+                               pc_error **error);
 
 /**
- * Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels made before
- * keep their values. Inputs come after the parameters; those with a table are read from it whatever they are set to.
+ * Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels
+ * made before keep their values. Inputs come after the parameters; those with a table are read
+ * from it whatever they are set to.
  */
 pc_status pc_system_set_parameters(pc_system *system,
                                    const double *values,
@@ -1134,22 +1180,18 @@ pc_status pc_system_set_parameters(pc_system *system,
                                    pc_error **error);
 
 /**
- * Sets one parameter, by its place; those that are expressions in it follow, unless they have been set themselves. Otherwise
- * as pc_system_set_parameters.
+ * Sets one parameter, by its place; those that are expressions in it follow, unless they have
+ * been set themselves. Otherwise as pc_system_set_parameters.
  */
-pc_status pc_system_set_parameter(pc_system *system,
-                                  size_t index,
-                                  double value,
-                                  pc_error **error);
+pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
- * Declares that a force which a function of yours computes acts on a quasi-velocity; on a coordinate if the
- * model declares no quasi-velocities. It adds to what else acts there. The function belongs to the system, not
- * to the model: pc_system_set_force. An unknown name is found by pc_model_check and pc_system_new.
+ * Declares that a force which a function of yours computes acts on a quasi-velocity; on a
+ * coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
+ * function belongs to the system, not to the model: pc_system_set_force. An unknown name is
+ * found by pc_model_check and pc_system_new.
  */
-pc_status pc_model_add_external_force(pc_model *model,
-                                      const char *on,
-                                      pc_error **error);
+pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
 /**
  * The number of external forces. 0 of NULL.
@@ -1162,17 +1204,18 @@ size_t pc_system_force_count(const pc_system *system);
 const char *pc_system_force_name(const pc_system *system, size_t index);
 
 /**
- * Sets the function that computes the external forces, all at once: the Q_s of the declared quasi-velocities.
- * Until then nothing that needs them can be evaluated. `jacobian` may be NULL: the derivatives of the forces,
- * and only these, are then difference quotients.
+ * Sets the function that computes the external forces, all at once: the Q_s of the declared
+ * quasi-velocities. Until then nothing that needs them can be evaluated. `jacobian` may be NULL:
+ * the derivatives of the forces, and only these, are then difference quotients.
  *
- * Copies, kernels and solvers made from the system afterwards share the functions and `user`; those made before
- * keep what they had. The functions are called by whichever thread evaluates, so by several at the same time if
- * several use copies. They may call any function on other handles, and of the same system pc_system_..._name and
- * sizes.
+ * Copies, kernels and solvers made from the system afterwards share the functions and `user`;
+ * those made before keep what they had. The functions are called by whichever thread evaluates,
+ * so by several at the same time if several use copies. They may call any function on other
+ * handles, and of the same system pc_system_..._name and sizes.
  *
- * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when the last handle
- * that shares it is freed or given another function. It must not use a handle that is being freed.
+ * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
+ * when the last handle that shares it is freed or given another function. It must not use a
+ * handle that is being freed.
  */
 pc_status pc_system_set_force(pc_system *system,
                               pc_force_function function,
@@ -1184,10 +1227,11 @@ pc_status pc_system_set_force(pc_system *system,
 /**
  * Writes the rate f(t, y) of the state to ydot.
  *
- * After the first call it takes no lock where f is one piece of machine code: where no function of the program computes
- * forces, M is not factorised in numbers, and no velocities are solved for. Any number of threads may then call it at the
- * same time and get its rates, those of the parameters before or after where another one sets them. It is PC_BUSY, with
- * anything in ydot, only where that happens during its evaluation, and where it fails while the handle is in use.
+ * After the first call it takes no lock where f is one piece of machine code: where no function
+ * of the program computes forces, M is not factorised in numbers, and no velocities are solved
+ * for. Any number of threads may then call it at the same time and get its rates, those of the
+ * parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
+ * only where that happens during its evaluation, and where it fails while the handle is in use.
  */
 pc_status pc_system_rhs(pc_system *system,
                         double t,
@@ -1209,10 +1253,10 @@ pc_status pc_system_jacobian(pc_system *system,
                              pc_error **error);
 
 /**
- * Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j, ascending,
- * are the numbers of row_indices from place column_starts(j) up to but without place column_starts(j + 1).
- * Gives pointers to dim + 1 and `entries` numbers that belong to the system and its copies. Each of the three
- * places may be NULL.
+ * Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column
+ * j, ascending, are the numbers of row_indices from place column_starts(j) up to but without
+ * place column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the
+ * system and its copies. Each of the three places may be NULL.
  */
 pc_status pc_system_jacobian_pattern(const pc_system *system,
                                      size_t *entries,
@@ -1245,9 +1289,9 @@ pc_status pc_system_jvp(pc_system *system,
                         pc_error **error);
 
 /**
- * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the integrals of
- * pc_model_keep to their values at the start of the model, or where pc_system_keep_from said. Where there is nothing to
- * be kept it stays.
+ * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
+ * the integrals of pc_model_keep to their values at the start of the model, or where
+ * pc_system_keep_from said. Where there is nothing to be kept it stays.
  */
 pc_status pc_system_project(pc_system *system,
                             double t,
@@ -1256,8 +1300,8 @@ pc_status pc_system_project(pc_system *system,
                             pc_error **error);
 
 /**
- * Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to the constraints, also
- * after the parameters are set. Solvers keep those at their own start.
+ * Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to
+ * the constraints, also after the parameters are set. Solvers keep those at their own start.
  */
 pc_status pc_system_keep_from(pc_system *system,
                               double t,
@@ -1266,10 +1310,11 @@ pc_status pc_system_keep_from(pc_system *system,
                               pc_error **error);
 
 /**
- * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the energy, the outputs.
+ * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
+ * energy, the outputs.
  *
- * An observable is not finite where the model has no value for it; one with accelerations in it, also where external
- * forces cannot be computed.
+ * An observable is not finite where the model has no value for it; one with accelerations in it,
+ * also where external forces cannot be computed.
  */
 pc_status pc_system_observe(pc_system *system,
                             double t,
@@ -1280,8 +1325,8 @@ pc_status pc_system_observe(pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should stay constant, which
- * are the first of the observables.
+ * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what
+ * should stay constant, which are the first of the observables.
  */
 pc_status pc_system_integrals(pc_system *system,
                               double t,
@@ -1302,8 +1347,8 @@ pc_status pc_system_energy(pc_system *system,
                            pc_error **error);
 
 /**
- * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what they add to the
- * forces Q_s is the sum of each times the derivative of its constraint by η_s.
+ * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
+ * they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
  */
 pc_status pc_system_reactions(pc_system *system,
                               double t,
@@ -1314,7 +1359,8 @@ pc_status pc_system_reactions(pc_system *system,
                               pc_error **error);
 
 /**
- * Writes what should be zero of each constraint that is kept by projection, as many as pc_system_constraint_count.
+ * Writes what should be zero of each constraint that is kept by projection, as many as
+ * pc_system_constraint_count.
  */
 pc_status pc_system_constraint_residuals(pc_system *system,
                                          double t,
@@ -1325,8 +1371,9 @@ pc_status pc_system_constraint_residuals(pc_system *system,
                                          pc_error **error);
 
 /**
- * Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A `terminal` one, not
- * 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in the order in which they were added.
+ * Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
+ * `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
+ * the order in which they were added.
  */
 pc_status pc_model_add_event(pc_model *model,
                              const char *name,
@@ -1336,8 +1383,9 @@ pc_status pc_model_add_event(pc_model *model,
                              pc_error **error);
 
 /**
- * Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or velocity `x'` that
- * is called `variable` takes the value of the expression. All resets of an event take effect together, from the state before it.
+ * Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
+ * velocity `x'` that is called `variable` takes the value of the expression. All resets of an
+ * event take effect together, from the state before it.
  */
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
@@ -1356,8 +1404,8 @@ size_t pc_system_event_count(const pc_system *system);
 const char *pc_system_event_name(const pc_system *system, size_t index);
 
 /**
- * The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that CVODE's
- * CVodeSetRootDirection takes.
+ * The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
+ * CVODE's CVodeSetRootDirection takes.
  */
 int pc_system_event_direction(const pc_system *system, size_t index);
 
@@ -1372,8 +1420,9 @@ int pc_system_event_is_terminal(const pc_system *system, size_t index);
 int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
- * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs where its own
- * passes through zero. They are not finite where the model has no value for them.
+ * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
+ * occurs where its own passes through zero. They are not finite where the model has no value for
+ * them.
  */
 pc_status pc_system_events(pc_system *system,
                            double t,
@@ -1384,8 +1433,8 @@ pc_status pc_system_events(pc_system *system,
                            pc_error **error);
 
 /**
- * Turns the state y before an event, number `event` from 0, into the state after it. One that resets nothing
- * leaves it as it is.
+ * Turns the state y before an event, number `event` from 0, into the state after it. One that
+ * resets nothing leaves it as it is.
  */
 pc_status pc_system_event_reset(pc_system *system,
                                 size_t event,
@@ -1395,10 +1444,10 @@ pc_status pc_system_event_reset(pc_system *system,
                                 pc_error **error);
 
 /**
- * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so `length` is
- * k*k; k is pc_system_dim less pc_system_coordinate_count and
- * pc_system_state_count. With multipliers their rows are not among it. The
- * first call derives, as pc_system_new does.
+ * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
+ * so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
+ * pc_system_state_count. With multipliers their rows are not among it. The first call derives,
+ * as pc_system_new does.
  */
 pc_status pc_system_mass_matrix(pc_system *system,
                                 double t,
@@ -1409,16 +1458,16 @@ pc_status pc_system_mass_matrix(pc_system *system,
                                 pc_error **error);
 
 /**
- * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one for each
- * quasi-velocity of the state, then those that constraints say vanish, if any. The first call derives, as
- * pc_system_new does.
+ * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
+ * for each quasi-velocity of the state, then those that constraints say vanish, if any. The
+ * first call derives, as pc_system_new does.
  */
 pc_status pc_system_operator_count(pc_system *system, size_t *operators, pc_error **error);
 
 /**
- * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 … K, with 0 for
- * time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K + 1)*K. The first call derives,
- * as pc_system_new does.
+ * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
+ * K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
+ * 1)*K. The first call derives, as pc_system_new does.
  */
 pc_status pc_system_structure_coefficients(pc_system *system,
                                            double t,
@@ -1429,10 +1478,10 @@ pc_status pc_system_structure_coefficients(pc_system *system,
                                            pc_error **error);
 
 /**
- * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) = 0 take it: ẋ − b
- * η − b_0, then M η̇ − r, where nothing is divided by M. With multipliers, whose reactions are eliminated, the
- * second part is M times the difference of η̇ from what it should be; in the canonical form all is ẏ − f. The
- * first call derives, as pc_system_new does.
+ * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) = 0
+ * take it: ẋ − b η − b_0, then M η̇ − r, where nothing is divided by M. With multipliers, whose
+ * reactions are eliminated, the second part is M times the difference of η̇ from what it should
+ * be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
  */
 pc_status pc_system_residual(pc_system *system,
                              double t,
@@ -1449,10 +1498,10 @@ pc_status pc_system_residual(pc_system *system,
  *
  *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
  *
- * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no forces. The functions are
- * expressions of the model, of coordinates and velocities; the momenta y_s = ∂L/∂η_s are put in. Under
- * nonholonomic constraints it is the almost-Poisson bracket of the independent momenta. Each call derives, as
- * pc_system_new does.
+ * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
+ * forces. The functions are expressions of the model, of coordinates and velocities; the momenta
+ * y_s = ∂L/∂η_s are put in. Under nonholonomic constraints it is the almost-Poisson bracket of
+ * the independent momenta. Each call derives, as pc_system_new does.
  */
 pc_status pc_system_bracket(pc_system *system,
                             const char *f,
@@ -1464,8 +1513,8 @@ pc_status pc_system_bracket(pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call derives, as
- * pc_system_new does.
+ * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
+ * derives, as pc_system_new does.
  */
 pc_status pc_system_to_momenta(pc_system *system,
                                double t,
@@ -1476,8 +1525,8 @@ pc_status pc_system_to_momenta(pc_system *system,
                                pc_error **error);
 
 /**
- * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives, as
- * pc_system_new does.
+ * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
+ * as pc_system_new does.
  */
 pc_status pc_system_to_quasi_velocities(pc_system *system,
                                         double t,
@@ -1488,25 +1537,24 @@ pc_status pc_system_to_quasi_velocities(pc_system *system,
                                         pc_error **error);
 
 /**
- * Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets, equations, energy
- * and reactions, or momenta and Hamiltonian, and the operations of one right-hand side. Where multipliers hold
- * constraints, those of independent velocities are shown. `format` is a pc_format. Parameters have the values
- * of the model. Free the text with pc_string_free.
+ * Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+ * equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
+ * right-hand side. Where multipliers hold constraints, those of independent velocities are
+ * shown. `format` is a pc_format. Parameters have the values of the model. Free the text with
+ * pc_string_free.
  */
-pc_status pc_system_print(const pc_system *system,
-                          int format,
-                          char **text,
-                          pc_error **error);
+pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
 
 /**
- * Writes the equations as C source that depends on nothing of this library: the text of NAME.h and of NAME.c,
- * where NAME is `name`, spelt as an identifier: Greek letters by their names, other signs as `_`, one at a time and
- * not at the ends, `n_` before a digit at the beginning, `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass
- * matrix, the energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
- * system, and says at its head how it is used. External forces are parameters of it, after the others, called
- * `Q_` and the name of their quasi-velocity, and stay zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
- * capitals) to a program that integrates from the start of the model to that time. Free both texts with
- * pc_string_free.
+ * Writes the equations as C source that depends on nothing of this library: the text of NAME.h
+ * and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
+ * other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
+ * `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+ * energy, the integrals and the outputs of independent quasi-velocities, whatever the form of
+ * the system, and says at its head how it is used. External forces are parameters of it, after
+ * the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
+ * set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+ * integrates from the start of the model to that time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1516,17 +1564,16 @@ pc_status pc_system_emit_c(const pc_system *system,
                            pc_error **error);
 
 /**
- * Derives the model a second time, by a route that shares only its text with the first, and compares both at `states`
- * random states on the constraints, for the parameters as they are now: velocities, accelerations or rates of momenta,
- * reactions, the energy and its rate, integrals and outputs. 0 states are 100. `text` says how closely they agree and what was
- * not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are taken for 0.
- * PC_DISAGREEMENT, with the quantity and both its values, if one of the two is wrong, which is a defect of the library;
- * PC_UNSUPPORTED if the second cannot be made of this model. It takes as long as pc_system_new.
+ * Derives the model a second time, by a route that shares only its text with the first, and
+ * compares both at `states` random states on the constraints, for the parameters as they are
+ * now: velocities, accelerations or rates of momenta, reactions, the energy and its rate,
+ * integrals and outputs. 0 states are 100. `text` says how closely they agree and what was not
+ * compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are
+ * taken for 0. PC_DISAGREEMENT, with the quantity and both its values, if one of the two is
+ * wrong, which is a defect of the library; PC_UNSUPPORTED if the second cannot be made of this
+ * model. It takes as long as pc_system_new.
  */
-pc_status pc_system_verify(const pc_system *system,
-                           size_t states,
-                           char **text,
-                           pc_error **error);
+pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
 /**
  * A kernel of the system with the parameters as they are now.
@@ -1541,25 +1588,29 @@ void pc_kernel_free(pc_kernel *kernel);
 /**
  * Sets all parameters of a kernel, in the order of pc_system_parameter_name.
  */
-pc_status pc_kernel_set_parameters(pc_kernel *kernel, const double *values, size_t length, pc_error **error);
+pc_status pc_kernel_set_parameters(pc_kernel *kernel,
+                                   const double *values,
+                                   size_t length,
+                                   pc_error **error);
 
 /**
- * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no memory. `kernel` is
- * a pc_kernel of this thread's.
+ * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no
+ * memory. `kernel` is a pc_kernel of this thread's.
  *
- * Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step helps.
- * pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes, with the kernel as
- * `params`.
+ * Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step
+ * helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes,
+ * with the kernel as `params`.
  */
-int pc_kernel_rhs(double t,
-                  const double *y,
-                  double *ydot,
-                  void *kernel);
+int pc_kernel_rhs(double t, const double *y, double *ydot, void *kernel);
 
 /**
- * Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles it.
+ * Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
+ * it.
  */
-int pc_kernel_jacobian(double t, const double *y, double *jacobian, void *kernel);
+int pc_kernel_jacobian(double t,
+                       const double *y,
+                       double *jacobian,
+                       void *kernel);
 
 /**
  * The dimension of a kernel's state. 0 of NULL.
@@ -1567,11 +1618,12 @@ int pc_kernel_jacobian(double t, const double *y, double *jacobian, void *kernel
 size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
- * An integration of the system from the state y at the time t, with the parameters as they are now; from the
- * start of the model if y is NULL, of length 0, and then t is not looked at. `options` may be NULL. States stay on the
- * constraints, and keep what pc_model_keep says, by projection after each step; what is kept then are the
- * values at this start. The events of the model are followed: where one occurs, the state is reset as the model
- * says, and a terminal one ends the call with PC_EVENT.
+ * An integration of the system from the state y at the time t, with the parameters as they are
+ * now; from the start of the model if y is NULL, of length 0, and then t is not looked at.
+ * `options` may be NULL. States stay on the constraints, and keep what pc_model_keep says, by
+ * projection after each step; what is kept then are the values at this start. The events of the
+ * model are followed: where one occurs, the state is reset as the model says, and a terminal one
+ * ends the call with PC_EVENT.
  */
 pc_status pc_solver_new(const pc_system *system,
                         const pc_solver_options *options,
@@ -1587,18 +1639,18 @@ pc_status pc_solver_new(const pc_system *system,
 void pc_solver_free(pc_solver *solver);
 
 /**
- * Has a solver go on with the parameters and inputs of the system as they are now, from where it stands: it begins anew there,
- * at order 1. So inputs are changed between two calls of pc_solver_advance. The system is that of the solver, or one of the
- * same model. PC_UNSUPPORTED with events of pc_solver_add_event.
+ * Has a solver go on with the parameters and inputs of the system as they are now, from where it
+ * stands: it begins anew there, at order 1. So inputs are changed between two calls of
+ * pc_solver_advance. The system is that of the solver, or one of the same model. PC_UNSUPPORTED
+ * with events of pc_solver_add_event.
  */
-pc_status pc_solver_take_parameters(pc_solver *solver,
-                                    const pc_system *system,
-                                    pc_error **error);
+pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
 
 /**
- * Integrates to the time t, in the direction of the first step, and writes the state there. With PC_EVENT and
- * PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the next call goes on from there.
- * After a failure pc_solver_time and pc_solver_state tell what was reached.
+ * Integrates to the time t, in the direction of the first step, and writes the state there. With
+ * PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
+ * next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
+ * reached.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -1607,8 +1659,8 @@ pc_status pc_solver_advance(pc_solver *solver,
                             pc_error **error);
 
 /**
- * Takes one internal step in the direction of `towards`, or the part of it before an event, and writes its end,
- * which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
+ * Takes one internal step in the direction of `towards`, or the part of it before an event, and
+ * writes its end, which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -1618,9 +1670,10 @@ pc_status pc_solver_step(pc_solver *solver,
                          pc_error **error);
 
 /**
- * Integrates through the times, which go one way, and calls `observer` at each with the state, which is valid
- * during the call, and with `user`. PC_STOPPED if the observer stops it. At the time of an event it is given the
- * state after it; a terminal event is the last thing it is given, at the time of that, and PC_EVENT is returned.
+ * Integrates through the times, which go one way, and calls `observer` at each with the state,
+ * which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
+ * time of an event it is given the state after it; a terminal event is the last thing it is
+ * given, at the time of that, and PC_EVENT is returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -1640,8 +1693,8 @@ pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
 
 /**
- * Has an observer told of each event from now on, instead of the one before; of none if it is NULL. `user` has to live
- * until there is another one, or the solver is freed. It is called
+ * Has an observer told of each event from now on, instead of the one before; of none if it is
+ * NULL. `user` has to live until there is another one, or the solver is freed. It is called
  * within the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
@@ -1650,10 +1703,10 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_error **error);
 
 /**
- * Follows an event of the program's own, after those of the model and those added before: `function` passes
- * through zero in a direction, a pc_direction. There `reset`, unless NULL, changes the state, which is then
- * projected to the constraints; a `terminal` event, not 0, ends the call with PC_EVENT. Comes before the first
- * step. `name` is for messages.
+ * Follows an event of the program's own, after those of the model and those added before:
+ * `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
+ * changes the state, which is then projected to the constraints; a `terminal` event, not 0, ends
+ * the call with PC_EVENT. Comes before the first step. `name` is for messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
  * pc_solver_free. It must not use the solver.
@@ -1687,8 +1740,9 @@ pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       pc_error **error);
 
 /**
- * Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not occurred. Only
- * the last occurrence is kept; an observer sees all. `before` and `after` may be NULL, of length 0.
+ * Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has
+ * not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
+ * be NULL, of length 0.
  */
 pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     size_t event,
@@ -1700,16 +1754,16 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND if none did.
+ * Writes the number of the terminal event that ended the last call which integrated;
+ * PC_NOT_FOUND if none did.
  */
-pc_status pc_solver_terminal_event(const pc_solver *solver,
-                                   size_t *event,
-                                   pc_error **error);
+pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
 
 /**
- * Writes the derivative of the start of the model by parameter number `parameter`, from 0: its start values may be expressions
- * in parameters. It derives the equations twice. PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input
- * with a table, and for a parameter in whose expression others are.
+ * Writes the derivative of the start of the model by parameter number `parameter`, from 0: its
+ * start values may be expressions in parameters. It derives the equations twice.
+ * PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input with a
+ * table, and for a parameter in whose expression others are.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -1718,11 +1772,13 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Has a solver integrate one more sensitivity with the motion, before the first step: the derivative of the state by parameter
- * number `parameter`, from 0, of a start with the derivative `start`, as pc_system_start_by_parameter gives it for that of the
- * model; NULL, of length 0, for a start that does not depend on the parameter. The model has to be one of pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an event of the program does. By an
- * input with a table they are the change when all its values are raised alike.
+ * Has a solver integrate one more sensitivity with the motion, before the first step: the
+ * derivative of the state by parameter number `parameter`, from 0, of a start with the
+ * derivative `start`, as pc_system_start_by_parameter gives it for that of the model; NULL, of
+ * length 0, for a start that does not depend on the parameter. The model has to be one of
+ * pc_model_differentiate. Sensitivities jump where an event of the model resets the state;
+ * PC_INVALID_ARGUMENT where an event of the program does. By an input with a table they are the
+ * change when all its values are raised alike.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -1731,8 +1787,8 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes sensitivity number `number`, from 0 in the order in which they were added, where the integration stands, as long as the
- * state.
+ * Writes sensitivity number `number`, from 0 in the order in which they were added, where the
+ * integration stands, as long as the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
@@ -1741,10 +1797,11 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 pc_error **error);
 
 /**
- * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal step, from the
- * polynomial of the method, whose degree is the order of that step. The step reaches from
- * step_time − last_step to step_time of pc_statistics, but not beyond an event; there is none before the first, nor after
- * a reset. y is on the constraints, its derivatives are those of the polynomial.
+ * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
+ * step, from the polynomial of the method, whose degree is the order of that step. The step
+ * reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
+ * there is none before the first, nor after a reset. y is on the constraints, its derivatives
+ * are those of the polynomial.
  */
 pc_status pc_solver_interpolate(pc_solver *solver,
                                 double t,
@@ -1754,17 +1811,16 @@ pc_status pc_solver_interpolate(pc_solver *solver,
                                 pc_error **error);
 
 /**
- * Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps the motion from where it stood: (order + 2) × dim
- * numbers for each internal step. `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+ * Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and
+ * keeps the motion from where it stood: (order + 2) × dim numbers for each internal step.
+ * `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
  */
-pc_status pc_solver_run_dense(pc_solver *solver,
-                              double t,
-                              pc_dense **dense,
-                              pc_error **error);
+pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
 /**
- * Writes y(t). At an event that is the state after it, but at the very end the limit from before. Between the ends of
- * steps it is off the constraints by the error of a step; pc_system_project moves it there.
+ * Writes y(t). At an event that is the state after it, but at the very end the limit from
+ * before. Between the ends of steps it is off the constraints by the error of a step;
+ * pc_system_project moves it there.
  */
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
@@ -1775,7 +1831,11 @@ pc_status pc_dense_eval(const pc_dense *dense,
 /**
  * Writes the rate of y at t, which may jump by the error of a step from one step to the next.
  */
-pc_status pc_dense_rate(const pc_dense *dense, double t, double *ydot, size_t ydot_length, pc_error **error);
+pc_status pc_dense_rate(const pc_dense *dense,
+                        double t,
+                        double *ydot,
+                        size_t ydot_length,
+                        pc_error **error);
 
 /**
  * The length of the state. 0 of NULL.
@@ -1798,12 +1858,13 @@ double pc_dense_t_end(const pc_dense *dense);
 void pc_dense_free(pc_dense *dense);
 
 /**
- * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by pc_solver_restore,
- * in another run of the program if you like. `label` says what it is a checkpoint of; NULL for the empty text.
+ * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by
+ * pc_solver_restore, in another run of the program if you like. `label` says what it is a
+ * checkpoint of; NULL for the empty text.
  *
- * A method rests on the steps before, so that this solver, too, begins anew there, at order 1: from a checkpoint on,
- * it and those restored go through the same numbers to the last bit. Events of the model
- * are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
+ * A method rests on the steps before, so that this solver, too, begins anew there, at order 1:
+ * from a checkpoint on, it and those restored go through the same numbers to the last bit.
+ * Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
@@ -1812,9 +1873,10 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
                                pc_error **error);
 
 /**
- * An integration from a checkpoint, with the parameters of the system as they are now. It goes on as the one did that
- * was written if system, parameters and options are the same. `options` may be NULL. PC_INVALID_CHECKPOINT unless
- * the bytes are all that pc_solver_checkpoint wrote, unchanged. The work of the solver is counted from there.
+ * An integration from a checkpoint, with the parameters of the system as they are now. It goes
+ * on as the one did that was written if system, parameters and options are the same. `options`
+ * may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
+ * unchanged. The work of the solver is counted from there.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
@@ -1824,12 +1886,10 @@ pc_status pc_solver_restore(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as pc_solver_restore.
+ * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
+ * pc_solver_restore.
  */
-pc_status pc_checkpoint_label(const void *data,
-                              size_t length,
-                              char **label,
-                              pc_error **error);
+pc_status pc_checkpoint_label(const void *data, size_t length, char **label, pc_error **error);
 
 /**
  * Frees bytes that a function of this library has written to be freed. Null is allowed.
@@ -1845,15 +1905,17 @@ pc_status pc_solver_statistics(const pc_solver *solver,
                                pc_error **error);
 
 /**
- * Integrates many members through the times, each from its own state, with its own parameters, as a solver of its
- * own would: the numbers are the same for any number of threads. The events of the model are followed.
+ * Integrates many members through the times, each from its own state, with its own parameters,
+ * as a solver of its own would: the numbers are the same for any number of threads. The events
+ * of the model are followed.
  *
- * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the model, and then t is
- * not looked at. `parameters` has members × pc_system_parameter_count numbers; NULL for those of the system as they
- * are now. A length is 0 with NULL. `options` may be NULL. `threads` is the number of threads, 0 for one on each core;
- * they have ended when this returns. A member that fails is told as any other, with what it reached, and the others go on.
- * What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops it. The system may be
- * used meanwhile.
+ * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the
+ * model, and then t is not looked at. `parameters` has members × pc_system_parameter_count
+ * numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may
+ * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
+ * returns. A member that fails is told as any other, with what it reached, and the others go on.
+ * What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
+ * stops it. The system may be used meanwhile.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

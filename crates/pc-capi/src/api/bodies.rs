@@ -99,8 +99,8 @@ pub unsafe extern "C" fn pc_model_set_body_inertia(
     unsafe { draft(model, error, "pc_model_set_body_inertia", write) }
 }
 
-/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those of
-/// space, row by row.
+/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those
+/// of space, row by row.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_rotation(
     model: *mut pc_model,

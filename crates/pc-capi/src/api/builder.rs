@@ -12,11 +12,11 @@ use crate::ffi::pointer::{clear, finite, numbers, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
 
-/// A model without anything, to be built by the calls below, in any order between sorts of entries;
-/// the order of coordinates, quasi-velocities, parameters and so on is that of their calls.
-/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x, and `t`
-/// the time. What is said is understood as a whole by pc_model_check and pc_system_new, whose
-/// errors name the entry and show its expression.
+/// A model without anything, to be built by the calls below, in any order between sorts of
+/// entries; the order of coordinates, quasi-velocities, parameters and so on is that of their
+/// calls. Expressions are those of the text model, where `x'` is the velocity of the coordinate
+/// x, and `t` the time. What is said is understood as a whole by pc_model_check and
+/// pc_system_new, whose errors name the entry and show its expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_new(
     name: *const c_char,
@@ -160,8 +160,9 @@ pub unsafe extern "C" fn pc_model_add_input_table(
 }
 
 /// Adds an input whose table is a column of a file of numbers with commas between them, below a
-/// line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
-/// NULL for "t" or else the first. The path is taken from the working directory as it is now.
+/// line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of
+/// times, NULL for "t" or else the first. The path is taken from the working directory as it is
+/// now.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_file(
     model: *mut pc_model,
@@ -286,8 +287,8 @@ pub unsafe extern "C" fn pc_model_add_coordinate(
 
 /// Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in
 /// the velocities x', or NULL where the kinematics are given the other way round, by
-/// pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves; `name`
-/// may then be `x'`, to give one its value at the start.
+/// pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves;
+/// `name` may then be `x'`, to give one its value at the start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     model: *mut pc_model,

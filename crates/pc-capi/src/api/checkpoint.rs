@@ -20,8 +20,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// checkpoint of; NULL for the empty text.
 ///
 /// A method rests on the steps before, so that this solver, too, begins anew there, at order 1:
-/// from a checkpoint on, it and those restored go through the same numbers to the last bit. Events
-/// of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
+/// from a checkpoint on, it and those restored go through the same numbers to the last bit.
+/// Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -53,10 +53,10 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
     }
 }
 
-/// An integration from a checkpoint, with the parameters of the system as they are now. It goes on
-/// as the one did that was written if system, parameters and options are the same. `options` may be
-/// NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote, unchanged.
-/// The work of the solver is counted from there.
+/// An integration from a checkpoint, with the parameters of the system as they are now. It goes
+/// on as the one did that was written if system, parameters and options are the same. `options`
+/// may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
+/// unchanged. The work of the solver is counted from there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,

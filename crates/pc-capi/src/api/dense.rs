@@ -12,8 +12,8 @@ use crate::ffi::pointer::{clear, free, handle, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 
-/// A motion as a function of time. It never changes, so that any number of threads may use it. Free
-/// it with pc_dense_free.
+/// A motion as a function of time. It never changes, so that any number of threads may use it.
+/// Free it with pc_dense_free.
 pub struct pc_dense {
     motion: DenseOutput,
     dim: usize,
@@ -21,9 +21,9 @@ pub struct pc_dense {
 
 /// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
 /// step, from the polynomial of the method, whose degree is the order of that step. The step
-/// reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
-/// is none before the first, nor after a reset. y is on the constraints, its derivatives are those
-/// of the polynomial.
+/// reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
+/// there is none before the first, nor after a reset. y is on the constraints, its derivatives
+/// are those of the polynomial.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_interpolate(
     solver: *mut pc_solver,
@@ -43,9 +43,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
     unsafe { integrate(solver, error, interpolate) }
 }
 
-/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and keeps
-/// the motion from where it stood: (order + 2) × dim numbers for each internal step. `dense` is
-/// made also with PC_EVENT and PC_STOPPED, and then ends there.
+/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and
+/// keeps the motion from where it stood: (order + 2) × dim numbers for each internal step.
+/// `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,
@@ -78,7 +78,8 @@ type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
 /// Writes what `value` gives at t.
 ///
 /// # Safety
-/// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a place for a pointer.
+/// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a
+/// place for a pointer.
 unsafe fn at(
     dense: *const pc_dense,
     value: Value,
@@ -99,9 +100,9 @@ unsafe fn at(
     unsafe { entry(error, evaluate) }
 }
 
-/// Writes y(t). At an event that is the state after it, but at the very end the limit from before.
-/// Between the ends of steps it is off the constraints by the error of a step; pc_system_project
-/// moves it there.
+/// Writes y(t). At an event that is the state after it, but at the very end the limit from
+/// before. Between the ends of steps it is off the constraints by the error of a step;
+/// pc_system_project moves it there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,

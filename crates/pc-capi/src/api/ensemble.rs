@@ -31,11 +31,11 @@ pub struct pc_member {
     pub status: pc_status,
     /// Why it failed, else NULL.
     pub message: *const c_char,
-    /// The output times that it reached, as many as `rows`; the time of a terminal event is the last
-    /// one.
+    /// The output times that it reached, as many as `rows`; the time of a terminal event is the
+    /// last one.
     pub times: *const f64,
-    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where there
-    /// are none.
+    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where
+    /// there are none.
     pub states: *const f64,
     /// How many these are, also if it failed.
     pub rows: usize,
@@ -43,8 +43,8 @@ pub struct pc_member {
     pub dim: usize,
 }
 
-/// Is given each member in order, on the thread of the call; what it points to is valid during the
-/// call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
+/// Is given each member in order, on the thread of the call; what it points to is valid during
+/// the call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
 /// pc_observer.
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
@@ -156,17 +156,17 @@ impl Plan<'_> {
     }
 }
 
-/// Integrates many members through the times, each from its own state, with its own parameters, as
-/// a solver of its own would: the numbers are the same for any number of threads. The events of the
-/// model are followed.
+/// Integrates many members through the times, each from its own state, with its own parameters,
+/// as a solver of its own would: the numbers are the same for any number of threads. The events
+/// of the model are followed.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the
 /// model, and then t is not looked at. `parameters` has members × pc_system_parameter_count
-/// numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may be
-/// NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
+/// numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may
+/// be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
 /// returns. A member that fails is told as any other, with what it reached, and the others go on.
-/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer stops
-/// it. The system may be used meanwhile.
+/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
+/// stops it. The system may be used meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,

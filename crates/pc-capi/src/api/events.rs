@@ -123,8 +123,9 @@ fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -
     inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
 }
 
-/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event occurs
-/// where its own passes through zero. They are not finite where the model has no value for them.
+/// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
+/// occurs where its own passes through zero. They are not finite where the model has no value for
+/// them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *mut pc_system,

@@ -14,10 +14,10 @@ use crate::machinery::controller::Controller;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
-/// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it has
-/// momenta. Returns 0; a positive number where the forces are not defined, so that a smaller step
-/// may help; a negative one to give up. What is left unwritten is not a number, and treated as a
-/// positive answer. It must return: no exceptions, no longjmp.
+/// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
+/// has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
+/// step may help; a negative one to give up. What is left unwritten is not a number, and treated
+/// as a positive answer. It must return: no exceptions, no longjmp.
 pub type pc_force_function = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -29,8 +29,9 @@ pub type pc_force_function = Option<
     ) -> c_int,
 >;
 
-/// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j to
-/// `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as pc_force_function.
+/// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j
+/// to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as
+/// pc_force_function.
 pub type pc_force_jacobian = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -44,8 +45,8 @@ pub type pc_force_jacobian = Option<
 
 /// Declares that a force which a function of yours computes acts on a quasi-velocity; on a
 /// coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
-/// function belongs to the system, not to the model: pc_system_set_force. An unknown name is found
-/// by pc_model_check and pc_system_new.
+/// function belongs to the system, not to the model: pc_system_set_force. An unknown name is
+/// found by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -81,13 +82,13 @@ pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: u
 /// the derivatives of the forces, and only these, are then difference quotients.
 ///
 /// Copies, kernels and solvers made from the system afterwards share the functions and `user`;
-/// those made before keep what they had. The functions are called by whichever thread evaluates, so
-/// by several at the same time if several use copies. They may call any function on other handles,
-/// and of the same system pc_system_..._name and sizes.
+/// those made before keep what they had. The functions are called by whichever thread evaluates,
+/// so by several at the same time if several use copies. They may call any function on other
+/// handles, and of the same system pc_system_..._name and sizes.
 ///
-/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else when
-/// the last handle that shares it is freed or given another function. It must not use a handle that
-/// is being freed.
+/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
+/// when the last handle that shares it is freed or given another function. It must not use a
+/// handle that is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_force(
     system: *mut pc_system,

@@ -18,8 +18,8 @@ use crate::machinery::system::{Inner, holding, pc_system};
 /// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
 /// Free it with pc_kernel_free.
 ///
-/// It has room to compute in, so each thread needs its own, and two calls at the same time are not
-/// safe; in return there are no locks.
+/// It has room to compute in, so each thread needs its own, and two calls at the same time are
+/// not safe; in return there are no locks.
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
@@ -130,8 +130,8 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
 }
 
 /// # Safety
-/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its state, `target` null or as long as
-/// `len` says.
+/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its
+/// state, `target` null or as long as `len` says.
 #[inline]
 unsafe fn evaluate(
     y: *const f64,

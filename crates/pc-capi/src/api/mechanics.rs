@@ -36,9 +36,10 @@ impl Inner {
     }
 }
 
-/// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state, so
-/// `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and pc_system_state_count.
-/// With multipliers their rows are not among it. The first call derives, as pc_system_new does.
+/// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
+/// so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
+/// pc_system_state_count. With multipliers their rows are not among it. The first call derives,
+/// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
     system: *mut pc_system,
@@ -63,8 +64,8 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
 }
 
 /// Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
-/// for each quasi-velocity of the state, then those that constraints say vanish, if any. The first
-/// call derives, as pc_system_new does.
+/// for each quasi-velocity of the state, then those that constraints say vanish, if any. The
+/// first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_operator_count(
     system: *mut pc_system,
@@ -80,9 +81,9 @@ pub unsafe extern "C" fn pc_system_operator_count(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 … K,
-/// with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K + 1)*K.
-/// The first call derives, as pc_system_new does.
+/// Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
+/// K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
+/// 1)*K. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_structure_coefficients(
     system: *mut pc_system,

@@ -78,8 +78,8 @@ fn of_document(document: Document) -> *mut pc_model {
     boxed(Origin::Text(Box::new(Model::new(document))))
 }
 
-/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how messages
-/// call it; NULL for "model".
+/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how
+/// messages call it; NULL for "model".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_parse(
     text: *const c_char,
@@ -224,8 +224,8 @@ pub unsafe extern "C" fn pc_model_set(
     unsafe { change(model, error, set) }
 }
 
-/// Has states projected to the value that this integral, or "energy", has at the start: after each
-/// step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
+/// Has states projected to the value that this integral, or "energy", has at the start: after
+/// each step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_keep(
     model: *mut pc_model,
@@ -258,8 +258,9 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
-/// Has a start that is moved to where the constraints are satisfied keep the value of this coordinate or quasi-velocity: the others
-/// follow. Without pc_model_project_start it says nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+/// Has a start that is moved to where the constraints are satisfied keep the value of this
+/// coordinate or quasi-velocity: the others follow. Without pc_model_project_start it says
+/// nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_hold_start(
     model: *mut pc_model,
@@ -276,8 +277,8 @@ pub unsafe extern "C" fn pc_model_hold_start(
     unsafe { change(model, error, hold) }
 }
 
-/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its constraint. Not 0
-/// is yes.
+/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its
+/// constraint. Not 0 is yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_observe_reactions(
     model: *mut pc_model,
@@ -292,8 +293,8 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
     unsafe { change(model, error, observe) }
 }
 
-/// Whether systems of the model are derived with their derivatives by parameters, which pc_solver_add_sensitivity takes. Not 0
-/// is yes.
+/// Whether systems of the model are derived with their derivatives by parameters, which
+/// pc_solver_add_sensitivity takes. Not 0 is yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_differentiate(
     model: *mut pc_model,
@@ -308,10 +309,11 @@ pub unsafe extern "C" fn pc_model_differentiate(
     unsafe { change(model, error, differentiate) }
 }
 
-/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the text that these
-/// wrote; lines and columns of errors are counted in it. What no text says is not in it: pc_model_set of parameters,
-/// pc_model_set_start of a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
-/// pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force.
+/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the
+/// text that these wrote; lines and columns of errors are counted in it. What no text says is not
+/// in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
+/// pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
+/// pc_model_differentiate, pc_model_add_external_force.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

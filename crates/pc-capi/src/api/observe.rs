@@ -41,8 +41,8 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     }
 }
 
-/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what should
-/// stay constant, which are the first of the observables.
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what
+/// should stay constant, which are the first of the observables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
     system: *mut pc_system,

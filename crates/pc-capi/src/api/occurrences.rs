@@ -17,9 +17,10 @@ use crate::machinery::engine::{Integration, Observer};
 use crate::machinery::event_set::Own;
 
 /// Is given each event where it occurs, by its number among the events of the solver, with the
-/// states before and after it, which are valid during the call. Of simultaneous events each has the
-/// state that it found and the one that it left. Returns 0 to go on; anything else ends the call
-/// with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as pc_observer.
+/// states before and after it, which are valid during the call. Of simultaneous events each has
+/// the state that it found and the one that it left. Returns 0 to go on; anything else ends the
+/// call with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as
+/// pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
         event: usize,
@@ -31,9 +32,9 @@ pub type pc_event_observer = Option<
     ) -> c_int,
 >;
 
-/// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else ends
-/// the integration with PC_INTEGRATION, as a value does that is not finite or not written. It
-/// should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
+/// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
+/// ends the integration with PC_INTEGRATION, as a value does that is not finite or not written.
+/// It should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
 /// longjmp.
 pub type pc_event_function = Option<
     unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
@@ -44,8 +45,8 @@ pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
 /// Has an observer told of each event from now on, instead of the one before; of none if it is
-/// NULL. `user` has to live until there is another one, or the solver is freed. It is called within
-/// the calls that integrate, on their thread.
+/// NULL. `user` has to live until there is another one, or the solver is freed. It is called
+/// within the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
     solver: *mut pc_solver,
@@ -137,9 +138,9 @@ fn no_such(event: usize, count: usize) -> CallError {
     CallError::Index { what: "the events", index: event, count }
 }
 
-/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has not
-/// occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may be
-/// NULL, of length 0.
+/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has
+/// not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
+/// be NULL, of length 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_last_occurrence(
     solver: *const pc_solver,
@@ -179,8 +180,8 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
     unsafe { integrate(solver, error, read) }
 }
 
-/// Writes the number of the terminal event that ended the last call which integrated; PC_NOT_FOUND
-/// if none did.
+/// Writes the number of the terminal event that ended the last call which integrated;
+/// PC_NOT_FOUND if none did.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_terminal_event(
     solver: *const pc_solver,

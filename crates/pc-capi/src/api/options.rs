@@ -11,8 +11,8 @@ use crate::ffi::pointer::{aligned, numbers};
 /// Which equations of motion; values of pc_system_options.form.
 #[repr(C)]
 pub enum pc_form {
-    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others vanish,
-    /// all of them with multipliers otherwise.
+    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others
+    /// vanish, all of them with multipliers otherwise.
     PC_POINCARE = 0,
     /// Chetaev's canonical equations, of momenta.
     PC_CANONICAL = 1,
@@ -119,8 +119,8 @@ pub struct pc_solver_options {
     pub samples_per_step: u32,
     /// 0: room for a choice to come.
     pub reserved: u32,
-    /// Events that follow each other ever faster are an error once what is left of the first of their
-    /// distances is this part, from 0, for never, to less than 1; 1e-5 by default.
+    /// Events that follow each other ever faster are an error once what is left of the first of
+    /// their distances is this part, from 0, for never, to less than 1; 1e-5 by default.
     pub accumulation: f64,
 }
 
@@ -182,8 +182,8 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
 /// them if it is null.
 ///
 /// # Safety
-/// `T` is plain data that any bytes of the caller's are valid for, and begins with a size; `place` is null or has as many bytes as
-/// that size says.
+/// `T` is plain data that any bytes of the caller's are valid for, and begins with a size;
+/// `place` is null or has as many bytes as that size says.
 pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, CallError> {
     let mut options = T::default();
     if place.is_null() {

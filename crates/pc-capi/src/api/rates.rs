@@ -67,9 +67,9 @@ unsafe fn misfits<'a>(
 
 /// Writes the rate f(t, y) of the state to ydot.
 ///
-/// After the first call it takes no lock where f is one piece of machine code: where no function of
-/// the program computes forces, M is not factorised in numbers, and no velocities are solved for.
-/// Any number of threads may then call it at the same time and get its rates, those of the
+/// After the first call it takes no lock where f is one piece of machine code: where no function
+/// of the program computes forces, M is not factorised in numbers, and no velocities are solved
+/// for. Any number of threads may then call it at the same time and get its rates, those of the
 /// parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
 /// only where that happens during its evaluation, and where it fails while the handle is in use.
 #[unsafe(no_mangle)]
@@ -144,10 +144,10 @@ pub unsafe extern "C" fn pc_system_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j,
-/// ascending, are the numbers of row_indices from place column_starts(j) up to but without place
-/// column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the system
-/// and its copies. Each of the three places may be NULL.
+/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column
+/// j, ascending, are the numbers of row_indices from place column_starts(j) up to but without
+/// place column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the
+/// system and its copies. Each of the three places may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jacobian_pattern(
     system: *const pc_system,
@@ -240,8 +240,8 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and the
-/// integrals of pc_model_keep to their values at the start of the model, or where
+/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
+/// the integrals of pc_model_keep to their values at the start of the model, or where
 /// pc_system_keep_from said. Where there is nothing to be kept it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(

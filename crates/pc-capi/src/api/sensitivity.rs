@@ -10,9 +10,10 @@ use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the derivative of the start of the model by parameter number `parameter`, from 0: its start values may be expressions
-/// in parameters. It derives the equations twice. PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input
-/// with a table, and for a parameter in whose expression others are.
+/// Writes the derivative of the start of the model by parameter number `parameter`, from 0: its
+/// start values may be expressions in parameters. It derives the equations twice.
+/// PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input with a
+/// table, and for a parameter in whose expression others are.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_start_by_parameter(
     system: *const pc_system,
@@ -45,11 +46,13 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
     unsafe { inside(system, error, derive) }
 }
 
-/// Has a solver integrate one more sensitivity with the motion, before the first step: the derivative of the state by parameter
-/// number `parameter`, from 0, of a start with the derivative `start`, as pc_system_start_by_parameter gives it for that of the
-/// model; NULL, of length 0, for a start that does not depend on the parameter. The model has to be one of pc_model_differentiate.
-/// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an event of the program does. By an
-/// input with a table they are the change when all its values are raised alike.
+/// Has a solver integrate one more sensitivity with the motion, before the first step: the
+/// derivative of the state by parameter number `parameter`, from 0, of a start with the
+/// derivative `start`, as pc_system_start_by_parameter gives it for that of the model; NULL, of
+/// length 0, for a start that does not depend on the parameter. The model has to be one of
+/// pc_model_differentiate. Sensitivities jump where an event of the model resets the state;
+/// PC_INVALID_ARGUMENT where an event of the program does. By an input with a table they are the
+/// change when all its values are raised alike.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,
@@ -70,8 +73,8 @@ pub unsafe extern "C" fn pc_solver_add_sensitivity(
     unsafe { integrate(solver, error, add) }
 }
 
-/// Writes sensitivity number `number`, from 0 in the order in which they were added, where the integration stands, as long as the
-/// state.
+/// Writes sensitivity number `number`, from 0 in the order in which they were added, where the
+/// integration stands, as long as the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_sensitivity(
     solver: *const pc_solver,

@@ -190,8 +190,8 @@ pub unsafe extern "C" fn pc_solver_step(
 
 /// Integrates through the times, which go one way, and calls `observer` at each with the state,
 /// which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
-/// time of an event it is given the state after it; a terminal event is the last thing it is given,
-/// at the time of that, and PC_EVENT is returned.
+/// time of an event it is given the state after it; a terminal event is the last thing it is
+/// given, at the time of that, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,

@@ -27,8 +27,8 @@ pub enum pc_format {
 
 /// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
-/// right-hand side. Where multipliers hold constraints, those of independent velocities are shown.
-/// `format` is a pc_format. Parameters have the values of the model. Free the text with
+/// right-hand side. Where multipliers hold constraints, those of independent velocities are
+/// shown. `format` is a pc_format. Parameters have the values of the model. Free the text with
 /// pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
@@ -65,14 +65,14 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
     Ok(pc_print::page(form, page, model.title(), &assembly)?)
 }
 
-/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h and
-/// of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names, other
-/// signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning, `_`
-/// behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
-/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of the
-/// system, and says at its head how it is used. External forces are parameters of it, after the
-/// others, called `Q_` and the name of their quasi-velocity, and stay zero until they are set. If
-/// `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h
+/// and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
+/// other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
+/// `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of
+/// the system, and says at its head how it is used. External forces are parameters of it, after
+/// the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
+/// set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
 /// integrates from the start of the model to that time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(

@@ -38,8 +38,8 @@ pub struct pc_statistics {
     pub next_step: f64,
     /// End of the last step, which may lie beyond the time of the solver.
     pub step_time: f64,
-    /// Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
-    /// does not let expect: the beginning of a pulse, a jump.
+    /// Steps that were to end no later than where the explicit dependence on time shows something
+    /// that the motion up to there does not let expect: the beginning of a pulse, a jump.
     pub limited_steps: u64,
 }
 

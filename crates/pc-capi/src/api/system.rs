@@ -37,9 +37,9 @@ pub unsafe extern "C" fn pc_system_new(
     unsafe { entry(error, new) }
 }
 
-/// A copy for another thread, with the parameters as they are now. It shares the machine code there
-/// is: that of f, and that of each derivative which the original has evaluated before (the first
-/// evaluation of each compiles it).
+/// A copy for another thread, with the parameters as they are now. It shares the machine code
+/// there is: that of f, and that of each derivative which the original has evaluated before (the
+/// first evaluation of each compiles it).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_clone(
     system: *const pc_system,
@@ -101,8 +101,8 @@ pub unsafe extern "C" fn pc_system_observable_count(system: *const pc_system) ->
     count(system, |inventory| inventory.observables.len())
 }
 
-/// The number of observables, the first ones, that should stay constant: integrals and energy. 0 of
-/// NULL.
+/// The number of observables, the first ones, that should stay constant: integrals and energy. 0
+/// of NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_conserved_count(system: *const pc_system) -> usize {
     count(system, |inventory| inventory.conserved)
@@ -216,8 +216,8 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     unsafe { holding(system, error, set) }
 }
 
-/// Sets one parameter, by its place; those that are expressions in it follow, unless they have been
-/// set themselves. Otherwise as pc_system_set_parameters.
+/// Sets one parameter, by its place; those that are expressions in it follow, unless they have
+/// been set themselves. Otherwise as pc_system_set_parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameter(
     system: *mut pc_system,

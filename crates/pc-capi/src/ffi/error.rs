@@ -8,8 +8,8 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::free;
 use crate::ffi::status::pc_status;
 
-/// Why a call failed: status, message and, for a model, the place in its text. Never changes; free
-/// it with pc_error_free.
+/// Why a call failed: status, message and, for a model, the place in its text. Never changes;
+/// free it with pc_error_free.
 pub struct pc_error {
     status: pc_status,
     message: CString,
@@ -58,8 +58,8 @@ pub unsafe extern "C" fn pc_error_status(error: *const pc_error) -> pc_status {
     unsafe { error.as_ref() }.map_or(pc_status::PC_OK, |error| error.status)
 }
 
-/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the line
-/// at fault and what would be right, over several lines of text. The empty text of null.
+/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
+/// line at fault and what would be right, over several lines of text. The empty text of null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_message(error: *const pc_error) -> *const c_char {
     // SAFETY: null or a live error, as the preamble demands.
@@ -98,8 +98,8 @@ pub unsafe extern "C" fn pc_error_integrator_code(error: *const pc_error) -> c_i
     unsafe { error.as_ref() }.map_or(0, |error| error.integrator_code)
 }
 
-/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator should
-/// try a smaller step; else 0, as of null.
+/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator
+/// should try a smaller step; else 0, as of null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_int {
     // SAFETY: null or a live error, as the preamble demands.

@@ -33,7 +33,8 @@ pub(crate) unsafe fn numbers<'a>(
     Ok(unsafe { slice::from_raw_parts(data, expected) })
 }
 
-/// Room for `expected` numbers at `data`, all set to NaN; the caller says there is room for `found`.
+/// Room for `expected` numbers at `data`, all set to NaN; the caller says there is room for
+/// `found`.
 ///
 /// # Safety
 /// Null, or room for `found` numbers that nobody else uses during the call.
@@ -165,7 +166,8 @@ pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Re
     Ok(())
 }
 
-/// Refuses a null place for a result before the work is done, and writes null there for the case that it fails.
+/// Refuses a null place for a result before the work is done, and writes null there for the case
+/// that it fails.
 ///
 /// # Safety
 /// Null, or a place for a pointer.
@@ -182,7 +184,8 @@ pub(crate) fn finite(value: f64, what: &'static str) -> Result<f64, CallError> {
 /// The texts of an array of C strings.
 ///
 /// # Safety
-/// Null, or `length` pointers, each null or zero-terminated text that nobody changes during the call.
+/// Null, or `length` pointers, each null or zero-terminated text that nobody changes during the
+/// call.
 pub(crate) unsafe fn texts<'a>(
     list: *const *const c_char,
     length: usize,

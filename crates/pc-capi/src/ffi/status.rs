@@ -9,8 +9,8 @@ use std::ffi::{c_char, c_int};
 pub enum pc_status {
     /// All went well.
     PC_OK = 0,
-    /// The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that is
-    /// not finite, an unknown choice.
+    /// The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that
+    /// is not finite, an unknown choice.
     PC_INVALID_ARGUMENT = 1,
     /// The text of the model is wrong, or not UTF-8; the error has the place.
     PC_INVALID_MODEL = 2,
@@ -29,11 +29,11 @@ pub enum pc_status {
     PC_INTEGRATION = 8,
     /// An observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,
-    /// The handle is in use: by another thread, or by the call that called the observer or the force
-    /// function.
+    /// The handle is in use: by another thread, or by the call that called the observer or the
+    /// force function.
     PC_BUSY = 10,
-    /// A fault of the library, after which the handle can only be freed; or threads or memory for a
-    /// solver are not to be had, and the handle is as it was.
+    /// A fault of the library, after which the handle can only be freed; or threads or memory for
+    /// a solver are not to be had, and the handle is as it was.
     PC_INTERNAL = 11,
     /// A terminal event ended the integration. This is no failure, and there is no pc_error.
     PC_EVENT = 12,
