@@ -77,6 +77,7 @@ pub(crate) enum SolverCall {
     Run(Vec<f64>, bool),
     Step(f64, u8),
     AddEvent { direction: i8, function: u8, good: u8 },
+    AddSensitivity(u8, u8),
     Observe(u8),
     Occurrences(u8, u8, u8),
     Interpolate(f64, u8, u8),
@@ -165,6 +166,7 @@ fn of_solver() -> impl Strategy<Value = SolverCall> {
         2 => (numbers(), 0u8..8).prop_map(|(t, n)| Step(t, n)),
         3 => (-2i8..3, any::<u8>(), any::<u8>())
             .prop_map(|(direction, function, good)| AddEvent { direction, function, good }),
+        1 => (any::<u8>(), any::<u8>()).prop_map(|(parameter, length)| AddSensitivity(parameter, length)),
         1 => any::<u8>().prop_map(Observe),
         1 => (0u8..4, 0u8..8, 0u8..8).prop_map(|(e, n, m)| Occurrences(e, n, m)),
         1 => (numbers(), 0u8..8, any::<u8>()).prop_map(|(t, n, k)| Interpolate(t, n, k)),

@@ -119,7 +119,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 57 {
+        match function % 59 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -170,6 +170,8 @@ unsafe fn say(
             53 => pc_model_set_gravity(model, b, z, b, error),
             54 => pc_model_add_parameter_expression(model, a, b, error),
             55 => pc_model_set_event_search(model, count, x, error),
+            56 => pc_model_hold_start(model, a, error),
+            57 => pc_model_differentiate(model, yes, error),
             _ => pc_model_set(model, a, x, error),
         }
     }

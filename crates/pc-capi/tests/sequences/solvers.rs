@@ -69,6 +69,17 @@ impl Handles {
                         )
                     })
                 }
+                SolverCall::AddSensitivity(parameter, length) => {
+                    let mut start = self.state(*length);
+                    let (data, len) = if parameter % 3 == 0 {
+                        (ptr::null(), 0)
+                    } else {
+                        (start.data().cast_const(), start.len())
+                    };
+                    self.call(|error| {
+                        pc_solver_add_sensitivity(solver, usize::from(*parameter) / 64, data, len, error)
+                    })
+                }
                 SolverCall::Observe(which) => {
                     let observer: pc_event_observer = if which % 3 == 0 { None } else { Some(observe_event) };
                     self.call(|error| pc_solver_observe_events(solver, observer, flag(which % 2 == 0), error))
@@ -91,7 +102,8 @@ impl Handles {
                 SolverCall::Read(which) => {
                     let (mut t, mut y, mut work) = (0.0, self.state(which / 4), pc_statistics::default());
                     let (data, len) = (y.data(), y.len());
-                    self.call(|error| match which % 3 {
+                    self.call(|error| match which % 4 {
+                        3 => pc_solver_sensitivity(solver, usize::from(*which) / 64, data, len, error),
                         0 => pc_solver_time(solver, &raw mut t, error),
                         1 => pc_solver_state(solver, data, len, error),
                         // One of an older header is shorter.

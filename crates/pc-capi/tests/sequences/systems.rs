@@ -135,7 +135,7 @@ impl Handles {
             let (y, y_length, v, v_length) = (y.data(), y.len(), v.data(), v.len());
             let (out, length) = (result.data(), result.len());
             let mut number = 0.0;
-            self.call(|error| match function % 8 {
+            self.call(|error| match function % 9 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -144,6 +144,7 @@ impl Handles {
                 // In the place of its own input, which is refused.
                 5 => pc_system_jvp(system, t, y, y_length, v, v_length, v, v_length, error),
                 6 => pc_system_verify(system, 1 + index, ptr::null_mut(), error),
+                7 => pc_system_start_by_parameter(system, index, out, length, error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
             })
         }

@@ -12,7 +12,7 @@ type Reset<'a> = Box<dyn FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a>;
 /// Events given by closures.
 ///
 /// ```
-/// use pc_solve::{Event, FnEvents, Options, from_fn, solve_with_events};
+/// use pc_solve::{Event, FnEvents, Solve, from_fn};
 ///
 /// // A ball falls on the floor and loses half of its speed there.
 /// let ball = from_fn(2, |_t, y, ydot| {
@@ -28,7 +28,7 @@ type Reset<'a> = Box<dyn FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a>;
 ///         Ok(())
 ///     },
 /// );
-/// let motion = solve_with_events(ball, 0.0, &[1.0, 0.0], &[0.5, 0.8], &Options::default(), bounce)?;
+/// let motion = Solve::new(ball, 0.0, &[1.0, 0.0]).events(bounce).run(&[0.5, 0.8])?;
 /// assert!((motion.occurrences[0].time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -108,10 +108,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 break;
             }
             self.check_steps(steps, t)?;
+            // It stands where it has come to, also if the field or the observer panics.
+            self.engine.stand_at(self.front.t);
             self.go_on(end)?;
+            self.engine.stand_at(self.front.t);
             steps += 1;
             if observer.step(self.front.t, &self.front_state).is_break() {
-                self.engine.stand_at(self.front.t);
                 return Ok(Some(Ending::Stopped));
             }
         }
