@@ -12,7 +12,7 @@
 //! | (27)–(33) | nonholonomic constraints | `equations_27_33_constraints.rs` |
 //! | (30)–(35) | forms of the nonholonomic equations, on many systems | `equations_30_35_nonholonomic.rs` |
 //!
-//! `cargo test -p pc-tests --test rumyantsev equation_12` runs the tests of one equation. Where the paper has a misprint, the
+//! `cargo test --workspace --test rumyantsev equation_12` runs the tests of one equation. Where the paper has a misprint, the
 //! corrected equation is tested, and the test says what is printed.
 //!
 //! Most of them are identities between expressions. These are decided by `Expr::is_zero`, which needs no tolerance.
