@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | (1)–(7) | frames of operators and their structure coefficients | `equations_01_07_frames.rs` |
 //! | (8), (9) | generalised forces, Poincaré's equations | `equations_08_09_poincare.rs` |
+//! | (9) | the same in random frames, against Lagrange's | `equation_09_random_frames.rs` |
 //! | (10)–(13) | Chetaev's canonical equations, the Poisson bracket | `equations_10_13_chetaev.rs` |
 //! | (14)–(17) | redundant coordinates | `equations_14_17_redundant_coordinates.rs` |
 //! | (18), (19) | quasi-coordinates | `equations_18_19_quasi_coordinates.rs` |
@@ -19,6 +20,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "../tests/holonomic/definition.rs"]
+mod definition;
+mod equation_09_random_frames;
 mod equations_01_07_frames;
 mod equations_08_09_poincare;
 mod equations_10_13_chetaev;
@@ -27,6 +31,7 @@ mod equations_18_19_quasi_coordinates;
 mod equations_20_26_heavy_top;
 mod equations_27_33_constraints;
 mod equations_30_35_nonholonomic;
+mod jet;
 
 use pc_mech::{Equations, Expr};
 
