@@ -1,8 +1,6 @@
 //! Frames that determine their brackets, and frames that do not.
 
-use pc_mech::{
-    AlgebraError, Expr, Frame, Graph, LieAlgebra, Matrix, MechError, Neighbourhood, System, VectorField,
-};
+use pc_mech::{AlgebraError, Expr, Frame, Graph, LieAlgebra, MechError, Neighbourhood, System, VectorField};
 use pc_tests::classical::{SplitMix64, classical};
 
 fn cross<'g>(u: &[Expr<'g>], v: &[Expr<'g>]) -> [Expr<'g>; 3] {
@@ -86,62 +84,4 @@ fn a_given_algebra_is_checked_against_the_frame() {
     let commutative = LieAlgebra::commutative(2).structure_coefficients();
     let error = frame.check(&commutative, &Neighbourhood::default()).unwrap_err();
     assert!(matches!(error, AlgebraError::Contradiction { pair: (1, 2), .. }), "{error}");
-}
-
-/// b and a = b⁻¹ give the same frame, drift and c_0s included.
-#[test]
-fn a_frame_from_definitions_is_the_frame_from_kinematics() {
-    let graph = Graph::new();
-    let [t, x, y, u, v, dx, dy] = graph.symbols(["t", "x", "y", "u", "v", "x'", "y'"]);
-    let rates = [u * t.cos() - v * t.sin() - y, u * t.sin() + v * t.cos() + x];
-    let by_rates = Frame::from_velocities(&graph, t, vec![x, y], &[u, v], &rates).unwrap();
-    let definitions = [(dx + y) * t.cos() + (dy - x) * t.sin(), (dy - x) * t.cos() - (dx + y) * t.sin()];
-    let by_definitions = Frame::from_definitions(&graph, t, vec![x, y], &[dx, dy], &definitions).unwrap();
-    assert_eq!(by_rates.b(), by_definitions.b());
-    assert_eq!(by_rates.b0(), by_definitions.b0());
-    let near = Neighbourhood::default();
-    let c = by_rates.structure_coefficients(&near).unwrap();
-    assert!(c.are_constant());
-    assert_eq!(by_rates.closure_residual(&c, &near), 0.0);
-    assert_eq!(by_rates.jacobi_residual(&c, &near), 0.0);
-}
-
-/// c_rs^m(6) in its two forms: from the commutators, and from the derivatives of a = b⁻¹ with index 0 included.
-#[test]
-fn both_forms_of_the_structure_coefficients_agree() {
-    let graph = Graph::new();
-    let [t, x, y, z, u, v, w] = graph.symbols(["t", "x", "y", "z", "u", "v", "w"]);
-    let symbols = [x, y, z];
-    let rates =
-        [u * (x * y).exp() + v * t, v * (2.0 + z.sin()) + x * w + t * y, w * (3.0 + (t * x).cos()) + u * y];
-    let frame = Frame::from_velocities(&graph, t, symbols.to_vec(), &[u, v, w], &rates).unwrap();
-    let near = Neighbourhood::default();
-    let c = frame.structure_coefficients(&near).unwrap();
-    let a = pc_algebra::inverse(&graph, frame.b()).unwrap();
-    // Extended by time: x_0 = t, b_00 = 1, b_i0 the drift, a_00 = 1, a_m0 = −a_mi b_i0.
-    let extended = [t, x, y, z];
-    let b = Matrix::from_fn(4, 4, |i, s| match (i, s) {
-        (0, 0) => Expr::ONE,
-        (0, _) => Expr::ZERO,
-        (_, 0) => frame.b0()[i - 1],
-        _ => frame.b()[(i - 1, s - 1)],
-    });
-    let a = Matrix::from_fn(4, 4, |m, i| match (m, i) {
-        (0, 0) => Expr::ONE,
-        (0, _) => Expr::ZERO,
-        (_, 0) => -graph.dot(a.row(m - 1).iter().copied(), frame.b0().iter().copied()),
-        _ => a[(m - 1, i - 1)],
-    });
-    for r in 0..4 {
-        for s in 0..4 {
-            for m in 1..4 {
-                let second = graph.sum((0..4).flat_map(|i| (0..4).map(move |j| (i, j))).map(|(i, j)| {
-                    (a[(m, j)].derivative(extended[i]) - a[(m, i)].derivative(extended[j]))
-                        * b[(j, r)]
-                        * b[(i, s)]
-                }));
-                assert!((c.get(r, s, m) - second).is_zero(), "c_{r}{s}^{m}");
-            }
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! Holonomic systems of many forms, described by closures: derived against classical equations and against
-//! their definition, end states against references of 16 digits, integrals, structure coefficients.
+//! their definition, end states against references of 16 digits, integrals, structure coefficients; the same motion in two
+//! frames, and in any gauge.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -14,4 +15,5 @@ mod holonomic {
     mod rheonomic;
     mod rigid_body;
     mod shared;
+    mod two_frames;
 }

@@ -46,16 +46,6 @@ fn the_chaplygin_sleigh_turns_round() {
     reaches(&equations, &[0.0, 0.0, 0.0, 0.0, 1.0], 5.0, &reference, &["energy"]);
 }
 
-/// The classical mistake: with the constraint in L before differentiation the sleigh does not turn.
-#[test]
-fn a_constraint_put_into_the_lagrangian_gives_the_wrong_motion() {
-    let graph = Graph::new();
-    let right = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
-    let wrong = sleigh(&graph, |_| Expr::ZERO).unwrap().poincare_constrained(2).unwrap();
-    assert!(wrong.right_hand_side().iter().all(|r| r.is_zero()));
-    assert!(right.right_hand_side().iter().all(|r| !r.is_zero()));
-}
-
 #[test]
 fn the_tilted_disk_rolls_as_in_the_book() {
     let graph = Graph::new();

@@ -1,11 +1,10 @@
-//! Poincaré's equations of random frames and Lagrangians against Lagrange's, which need no frame.
+//! Poincaré's equations (9) of random frames and Lagrangians against Lagrange's, which need no frame.
 
-use pc_mech::{Expr, Folding, Frame, Graph, Motion, System};
+use pc_mech::{Expr, Folding, Frame, Graph, Motion, System, VectorField};
 use pc_tests::classical::SplitMix64;
 
-use super::definition::assert_definition;
-use super::harness::{compiled, rates};
-use super::jet::{Jet, VARIABLES, solve};
+use crate::definition::assert_definition;
+use crate::jet::{Jet, VARIABLES, solve};
 
 /// Sums of some dozens of terms and the solution of two systems of condition below 10: at most a few thousand units
 /// of rounding of the largest term. A forgotten or turned term makes an error of order one.
@@ -230,7 +229,8 @@ impl<'g> Sample<'g> {
             state.push(self.at(&[self.constraint], &point, &[])[0].value);
         }
         state.extend(self.quasi_velocities(&point).iter().map(|eta| eta.value));
-        let derived = rates(motion, place[0], &state);
+        let mut derived = vec![f64::NAN; state.len()];
+        motion.rhs(place[0], &state, &mut derived).unwrap_or_else(|error| panic!("{error}"));
         let (expected, size) = self.lagrange(&place);
         let (velocities, accelerations) = derived.split_at(state.len() - k);
         let kinematics = velocities.iter().zip(&place[1 + k..]);
@@ -250,7 +250,7 @@ fn assert_lagrange(seeds: std::ops::Range<u64>, k: usize, form: Form, folding: F
         let brackets: Vec<_> = sample.system.structure().nonzero().collect();
         drifting += usize::from(brackets.iter().any(|&(r, ..)| r == 0));
         varying += usize::from(brackets.iter().any(|&(r, _, _, c)| r > 0 && c.constant().is_none()));
-        let mut motion = compiled(&sample.system);
+        let mut motion = sample.system.poincare().unwrap().compile().unwrap();
         let mut random = SplitMix64::new(1000 + seed);
         for _ in 0..POINTS {
             sample.assert_lagrange(&mut motion, &mut random, &format!("{form:?}, k = {k}, seed {seed}"));
@@ -264,32 +264,32 @@ fn assert_lagrange(seeds: std::ops::Range<u64>, k: usize, form: Form, folding: F
 }
 
 #[test]
-fn two_velocities_in_a_random_frame() {
+fn equation_9_of_two_velocities_in_a_random_frame() {
     assert_lagrange(0..64, 2, Form::Velocities, Folding::ByValue);
 }
 
 #[test]
-fn three_velocities_in_a_random_frame() {
+fn equation_9_of_three_velocities_in_a_random_frame() {
     assert_lagrange(100..164, 3, Form::Velocities, Folding::ByValue);
 }
 
 #[test]
-fn two_velocities_by_random_definitions() {
+fn equation_9_of_two_velocities_by_random_definitions() {
     assert_lagrange(200..264, 2, Form::Definitions, Folding::ByValue);
 }
 
 #[test]
-fn three_velocities_by_random_definitions() {
+fn equation_9_of_three_velocities_by_random_definitions() {
     assert_lagrange(300..332, 3, Form::Definitions, Folding::ByValue);
 }
 
 #[test]
-fn two_velocities_and_a_redundant_coordinate() {
+fn equation_9_of_two_velocities_and_a_redundant_coordinate() {
     assert_lagrange(400..464, 2, Form::Redundant, Folding::ByValue);
 }
 
 #[test]
-fn without_folding_by_value() {
+fn equation_9_without_folding_by_value() {
     assert_lagrange(0..16, 2, Form::Velocities, Folding::Structural);
     assert_lagrange(100..104, 3, Form::Velocities, Folding::Structural);
     assert_lagrange(200..208, 2, Form::Definitions, Folding::Structural);
@@ -297,7 +297,7 @@ fn without_folding_by_value() {
 }
 
 #[test]
-fn random_systems_are_those_of_the_definition() {
+fn equation_9_of_random_frames_is_that_of_the_definition() {
     let kinds = [(0, 2, Form::Velocities), (100, 3, Form::Velocities), (200, 2, Form::Definitions)];
     for (first, k, form) in kinds.into_iter().chain([(400, 2, Form::Redundant)]) {
         for seed in first..first + 6 {

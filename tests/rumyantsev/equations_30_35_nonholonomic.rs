@@ -1,11 +1,9 @@
 //! Equations (30) and their reactions against Lagrange's multipliers, and against the forms (32), (34) and (35).
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_mech::{Constraint, Expr, Graph, Multipliers, System, VectorField};
 use pc_nonholo::{Constrained, Voronets};
 use pc_tests::classical::SplitMix64;
-use pc_tests::nonholonomic::{Nonholonomic, SYSTEMS};
+use pc_tests::nonholonomic::{Nonholonomic, SYSTEMS, sleigh};
 
 const STATES: usize = 1000;
 
@@ -140,7 +138,7 @@ fn compare_in_velocities(described: &Nonholonomic) {
 
 /// (32): mass matrix and right-hand side are the same functions.
 #[test]
-fn the_constrained_lagrangian_gives_equations_30() {
+fn equation_32_with_the_constrained_energy_is_equation_30() {
     for described in SYSTEMS {
         let graph = Graph::new();
         let case = Case::new(described, &graph);
@@ -156,7 +154,7 @@ fn the_constrained_lagrangian_gives_equations_30() {
 
 /// (34): ẏ_s is the rate of ∂θ/∂η_s by (30).
 #[test]
-fn the_canonical_form_gives_equations_30() {
+fn equation_34_in_momenta_is_equation_30() {
     for described in SYSTEMS {
         let graph = Graph::new();
         let case = Case::new(described, &graph);
@@ -195,7 +193,7 @@ const CHAPLYGIN: [&str; 7] = [
 
 /// (35): the ẍ_i of Voronets' equations, which are Chaplygin's for some systems.
 #[test]
-fn voronets_equations_give_equations_30() {
+fn equation_35_of_voronets_is_equation_30() {
     for described in SYSTEMS.iter().filter(square) {
         let graph = Graph::new();
         let case = Case::new(described, &graph);
@@ -245,7 +243,7 @@ fn voronets_equations_give_equations_30() {
 }
 
 #[test]
-fn equations_30_are_those_with_multipliers() {
+fn equation_30_is_that_with_multipliers() {
     for described in SYSTEMS {
         compare(described);
     }
@@ -253,8 +251,18 @@ fn equations_30_are_those_with_multipliers() {
 
 /// All but the balls and Suslov's body, whose attitude is a quaternion.
 #[test]
-fn equations_30_are_those_with_multipliers_in_velocities() {
+fn equation_30_is_that_with_multipliers_in_velocities() {
     let compared: Vec<&Nonholonomic> = SYSTEMS.iter().filter(square).collect();
     assert_eq!(compared.len(), SYSTEMS.len() - 4);
     compared.into_iter().for_each(compare_in_velocities);
+}
+
+/// The classical mistake: with the constraint in L before differentiation the sleigh does not turn.
+#[test]
+fn equation_30_forbids_to_put_the_constraint_into_the_lagrangian() {
+    let graph = Graph::new();
+    let right = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
+    let wrong = sleigh(&graph, |_| Expr::ZERO).unwrap().poincare_constrained(2).unwrap();
+    assert!(wrong.right_hand_side().iter().all(|r| r.is_zero()));
+    assert!(right.right_hand_side().iter().all(|r| !r.is_zero()));
 }
