@@ -3,7 +3,7 @@
 use pc_mech::{Constraint, Expr, Graph, Multipliers, System, VectorField};
 use pc_nonholo::{Constrained, Voronets};
 use pc_tests::classical::SplitMix64;
-use pc_tests::nonholonomic::{Nonholonomic, SYSTEMS, sleigh};
+use pc_tests::nonholonomic::{Nonholonomic, SYSTEMS};
 
 const STATES: usize = 1000;
 
@@ -255,14 +255,4 @@ fn equation_30_is_that_with_multipliers_in_velocities() {
     let compared: Vec<&Nonholonomic> = SYSTEMS.iter().filter(square).collect();
     assert_eq!(compared.len(), SYSTEMS.len() - 4);
     compared.into_iter().for_each(compare_in_velocities);
-}
-
-/// The classical mistake: with the constraint in L before differentiation the sleigh does not turn.
-#[test]
-fn equation_30_forbids_to_put_the_constraint_into_the_lagrangian() {
-    let graph = Graph::new();
-    let right = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
-    let wrong = sleigh(&graph, |_| Expr::ZERO).unwrap().poincare_constrained(2).unwrap();
-    assert!(wrong.right_hand_side().iter().all(|r| r.is_zero()));
-    assert!(right.right_hand_side().iter().all(|r| !r.is_zero()));
 }

@@ -11,6 +11,7 @@
 //! | (18), (19) | quasi-coordinates | `equations_18_19_quasi_coordinates.rs` |
 //! | (20)–(26) | the heavy top | `equations_20_26_heavy_top.rs` |
 //! | (27)–(33) | nonholonomic constraints | `equations_27_33_constraints.rs` |
+//! | (30) | motions of nonholonomic systems, against references of 16 digits | `equation_30_motions.rs` |
 //! | (30)–(35) | forms of the nonholonomic equations, on many systems | `equations_30_35_nonholonomic.rs` |
 //!
 //! `cargo test --workspace --test rumyantsev equation_12` runs the tests of one equation. Where the paper has a misprint, the
@@ -23,6 +24,7 @@
 #[path = "../tests/holonomic/definition.rs"]
 mod definition;
 mod equation_09_random_frames;
+mod equation_30_motions;
 mod equations_01_07_frames;
 mod equations_08_09_poincare;
 mod equations_10_13_chetaev;

@@ -1,4 +1,5 @@
 //! The text model: TOML to a mechanical system, with spans in every error.
+//! `docs/model-format.md` explains the format.
 //!
 //! A [`Document`] is what stands in the text, section by section. A [`Model`] is one with the values of its parameters;
 //! [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a [`System`](pc_mech::System) in quasi-velocities with

@@ -255,7 +255,7 @@ fn over_events_the_adjoint_agrees_with_forward_sensitivities() {
         .unwrap();
     assert!(occurred[0] >= 2 && occurred[1] >= 2, "{occurred:?}");
     let y = hybrid.state().to_vec();
-    let matrix = hybrid.sensitivities().unwrap().to_vec();
+    let matrix = hybrid.sensitivities().unwrap();
     let functional = Mixed { density: 1.0, end: 1.0, p: p[0] };
     let expected: Vec<f64> = matrix
         .chunks_exact(3)
@@ -433,7 +433,7 @@ fn large_systems_take_no_dense_matrix() {
             .unwrap();
     forward.state_at(t).unwrap();
     let u = forward.state().to_vec();
-    let matrix = forward.sensitivities().unwrap().to_vec();
+    let matrix = forward.sensitivities().unwrap();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let expected: Vec<f64> = matrix.chunks_exact(n).map(|s| dot(&u, s)).collect();
     for offer in [Offer::Sparse, Offer::Colours, Offer::Products, Offer::Both] {

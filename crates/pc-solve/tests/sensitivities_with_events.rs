@@ -124,7 +124,7 @@ fn many_bounces() {
         })
         .unwrap();
     assert!(bounces > 5);
-    let matrix = hybrid.sensitivities().unwrap().to_vec();
+    let matrix = hybrid.sensitivities().unwrap();
     let d = 1e-5;
     for (column, (ahead, behind)) in [
         (0, (motion(1.0 + d, 9.81, 0.9), motion(1.0 - d, 9.81, 0.9))),

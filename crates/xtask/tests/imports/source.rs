@@ -55,7 +55,7 @@ impl Crate {
                         }
                     }
                 }
-                Item::Use(import) => module.import(&path, Vec::new(), &import.tree),
+                Item::Use(import) => module.import(&path, &[], &import.tree),
                 _ => {
                     module.defined.extend(name_of(item));
                     let mut paths = Paths { here: &path, found: Vec::new() };
@@ -85,7 +85,7 @@ impl Crate {
         assert!(depth < 32, "a re-export leads to itself: {}", path.join("::"));
         let inside = (0..=path.len()).rev().find(|&n| self.modules.contains_key(&path[..n]))?;
         let module = &self.modules[&path[..inside]];
-        let Some(name) = path.get(inside) else { return None };
+        let name = path.get(inside)?;
         if module.defined.contains(name) {
             return Some(module.file.clone());
         }
@@ -101,16 +101,16 @@ impl Crate {
 }
 
 impl Module {
-    fn import(&mut self, here: &[String], prefix: ModulePath, tree: &UseTree) {
-        let with = |name: &syn::Ident| [prefix.as_slice(), &[name.to_string()]].concat();
+    fn import(&mut self, here: &[String], prefix: &[String], tree: &UseTree) {
+        let with = |name: &syn::Ident| [prefix, &[name.to_string()]].concat();
         match tree {
-            UseTree::Path(path) => self.import(here, with(&path.ident), &path.tree),
+            UseTree::Path(path) => { self.import(here, &with(&path.ident), &path.tree); }
             UseTree::Group(group) => {
-                group.items.iter().for_each(|tree| self.import(here, prefix.clone(), tree))
+                group.items.iter().for_each(|tree| self.import(here, prefix, tree))
             }
-            UseTree::Glob(_) => self.globs.extend(absolute(here, &prefix)),
-            UseTree::Name(name) if name.ident == "self" => self.bring(here, &prefix, prefix.last().cloned()),
-            UseTree::Name(name) => self.bring(here, &with(&name.ident), Some(name.ident.to_string())),
+            UseTree::Glob(_) => { self.globs.extend(absolute(here, prefix)); }
+            UseTree::Name(name) if name.ident == "self" => self.bring(here, prefix, prefix.last().cloned()),
+            UseTree::Name(name) => { self.bring(here, &with(&name.ident), Some(name.ident.to_string())); }
             UseTree::Rename(rename) => {
                 self.bring(here, &with(&rename.ident), Some(rename.rename.to_string()))
             }

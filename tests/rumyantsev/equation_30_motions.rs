@@ -1,7 +1,5 @@
 //! Equations (30): constraints η_α = 0 put in after differentiation.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use pc_mech::{Equations, Expr, Graph};
 use pc_model::{Builtin, Model};
 use pc_solve::{Options, solve};
@@ -34,7 +32,7 @@ fn reaches(equations: &Equations<'_>, start: &[f64], t_end: f64, reference: &[f6
 }
 
 #[test]
-fn the_chaplygin_sleigh_turns_round() {
+fn equation_30_turns_the_chaplygin_sleigh_round() {
     let graph = Graph::new();
     let equations = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
     assert_eq!(
@@ -46,8 +44,18 @@ fn the_chaplygin_sleigh_turns_round() {
     reaches(&equations, &[0.0, 0.0, 0.0, 0.0, 1.0], 5.0, &reference, &["energy"]);
 }
 
+/// The classical mistake: with the constraint in L before differentiation the sleigh does not turn.
 #[test]
-fn the_tilted_disk_rolls_as_in_the_book() {
+fn equation_30_forbids_to_put_the_constraint_into_the_lagrangian() {
+    let graph = Graph::new();
+    let right = sleigh(&graph, |u| u).unwrap().poincare_constrained(2).unwrap();
+    let wrong = sleigh(&graph, |_| Expr::ZERO).unwrap().poincare_constrained(2).unwrap();
+    assert!(wrong.right_hand_side().iter().all(|r| r.is_zero()));
+    assert!(right.right_hand_side().iter().all(|r| !r.is_zero()));
+}
+
+#[test]
+fn equation_30_rolls_the_tilted_disk_as_in_the_book() {
     let graph = Graph::new();
     let equations = disk(&graph).unwrap().poincare_constrained(3).unwrap();
     let mass: Vec<String> = (0..3).map(|s| equations.mass_matrix()[(s, s)].to_string()).collect();
@@ -66,7 +74,7 @@ fn the_tilted_disk_rolls_as_in_the_book() {
 }
 
 #[test]
-fn the_equations_of_the_disk_are_short() {
+fn equation_30_of_the_disk_is_short() {
     let graph = Graph::new();
     let equations = disk(&graph).unwrap().poincare_constrained(3).unwrap();
     let free = equations.compile().unwrap().cost();
@@ -77,7 +85,7 @@ fn the_equations_of_the_disk_are_short() {
 
 /// An affine constraint whose coefficients depend on the dependent coordinate and on time.
 #[test]
-fn the_rheonomic_voronets_system_reaches_its_reference() {
+fn equation_30_leads_the_rheonomic_voronets_system_to_its_reference() {
     let graph = Graph::new();
     let cases = [
         (
@@ -111,7 +119,7 @@ fn the_rheonomic_voronets_system_reaches_its_reference() {
 
 /// A ball on a turntable, redundant quaternion, affine slip constraints, b_0 ≠ 0 and c_0s ≠ 0.
 #[test]
-fn the_ball_on_a_turntable_reaches_its_references() {
+fn equation_30_leads_the_ball_on_a_turntable_to_its_references() {
     let cases = [
         (
             false,
@@ -151,7 +159,7 @@ fn the_ball_on_a_turntable_reaches_its_references() {
 }
 
 #[test]
-fn the_equations_are_those_of_the_definition() {
+fn equation_30_is_that_of_the_definition() {
     for described in SYSTEMS {
         let vanishing = described.vanishing.len();
         let build = described.system;
@@ -163,7 +171,7 @@ fn the_equations_are_those_of_the_definition() {
 
 /// Constants in disguise of quaternion and angle: the brackets of the ball in the cylinder, in a and R alone.
 #[test]
-fn brackets_forget_the_place() {
+fn equation_30_has_brackets_that_forget_the_place() {
     let model = Model::new(Builtin::named("ball-in-cylinder").unwrap().document().unwrap());
     let graph = Graph::new();
     let assembly = model.assemble(&graph).unwrap();
