@@ -18,7 +18,9 @@ fn oscillator() -> impl VectorField {
 }
 
 fn oscillating(length: f64) -> Integration<RungeKutta4<impl VectorField>> {
-    Integration::of(RungeKutta4::new(oscillator(), 0.0, &[1.0, 0.0], &FixedStep::new(length)).expect("valid input"))
+    Integration::of(
+        RungeKutta4::new(oscillator(), 0.0, &[1.0, 0.0], &FixedStep::new(length)).expect("valid input"),
+    )
 }
 
 fn slope(error: impl Fn(f64) -> f64) -> f64 {

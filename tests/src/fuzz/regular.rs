@@ -27,14 +27,14 @@ pub(super) fn stays_regular(specimen: &Specimen, start: &Start, twin: &Motion) -
         for (x, &place) in specimen.chart.iter().zip(&places) {
             values.insert(x.name.clone(), Dual64::from(row[place]));
         }
-        determinant(specimen, definitions, values)
+        determinant(specimen, definitions, &values)
     });
     let first = determinants.next().unwrap_or(f64::NAN);
     positive && determinants.all(|determinant| determinant / first > DETERMINANT)
 }
 
 /// The determinant of the coefficients of ẋ in the definitions and in the constraints that complete these.
-fn determinant(specimen: &Specimen, definitions: &[(String, Expression)], values: Values) -> f64 {
+fn determinant(specimen: &Specimen, definitions: &[(String, Expression)], values: &Values) -> f64 {
     let n = specimen.chart.len();
     let column = |i: usize| -> Vec<f64> {
         let mut moving = values.clone();

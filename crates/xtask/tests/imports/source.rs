@@ -104,22 +104,18 @@ impl Module {
     fn import(&mut self, here: &[String], prefix: &[String], tree: &UseTree) {
         let with = |name: &syn::Ident| [prefix, &[name.to_string()]].concat();
         match tree {
-            UseTree::Path(path) => { self.import(here, &with(&path.ident), &path.tree); }
-            UseTree::Group(group) => {
-                group.items.iter().for_each(|tree| self.import(here, prefix, tree))
-            }
-            UseTree::Glob(_) => { self.globs.extend(absolute(here, prefix)); }
-            UseTree::Name(name) if name.ident == "self" => self.bring(here, prefix, prefix.last().cloned()),
-            UseTree::Name(name) => { self.bring(here, &with(&name.ident), Some(name.ident.to_string())); }
-            UseTree::Rename(rename) => {
-                self.bring(here, &with(&rename.ident), Some(rename.rename.to_string()))
-            }
+            UseTree::Path(path) => self.import(here, &with(&path.ident), &path.tree),
+            UseTree::Group(group) => group.items.iter().for_each(|tree| self.import(here, prefix, tree)),
+            UseTree::Glob(_) => self.globs.extend(absolute(here, prefix)),
+            UseTree::Name(name) if name.ident == "self" => self.bring(here, prefix, prefix.last()),
+            UseTree::Name(name) => self.bring(here, &with(&name.ident), Some(&name.ident)),
+            UseTree::Rename(rename) => self.bring(here, &with(&rename.ident), Some(&rename.rename)),
         }
     }
 
-    fn bring(&mut self, here: &[String], path: &[String], name: Option<String>) {
+    fn bring(&mut self, here: &[String], path: &[String], name: Option<&impl ToString>) {
         if let (Some(path), Some(name)) = (absolute(here, path), name) {
-            self.imported.insert(name, path);
+            self.imported.insert(name.to_string(), path);
         }
     }
 }

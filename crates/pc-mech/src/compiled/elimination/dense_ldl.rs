@@ -25,7 +25,7 @@ pub(crate) struct DenseLdl {
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
     /// The factors with complete pivoting, where M has none without.
-    pivoted: Option<FullPivLu<f64>>,
+    pivoted: Option<Box<FullPivLu<f64>>>,
 }
 
 impl DenseLdl {
@@ -94,7 +94,7 @@ impl DenseLdl {
         if !pivots().all(|pivot| pivot > DEPENDENT * largest) {
             return Err(failure);
         }
-        self.pivoted = Some(factors);
+        self.pivoted = Some(Box::new(factors));
         Ok(())
     }
 
