@@ -32,38 +32,50 @@ mod ensemble;
 mod error;
 mod events;
 mod integration;
-mod linear;
 mod lyapunov;
 mod runge_kutta;
 mod sensitivity;
+mod settings;
+mod solve;
 
-pub use checkpoint::checkpoint::{Checkpoint, CheckpointError, solve_checkpointed};
+pub use checkpoint::checkpoint::Checkpoint;
+pub use checkpoint::encoding::CheckpointError;
+pub use checkpoint::legs::solve_checkpointed;
 pub use cvode::cvode::Cvode;
-pub use cvode::return_code::Code;
-pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
-pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
+pub use cvode::forward::sensitivities::{Correction, Sensitivities, SensitivityStatistics};
+pub use cvode::integrals::Integrals;
+pub use cvode::linear::krylov::{Krylov, Side};
+pub use cvode::linear::preconditioner::Preconditioner;
+pub use cvode::linear::solver::LinearSolver;
+pub use cvode::options::Options;
+pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};
+pub use ensemble::random::member_stream;
+pub use ensemble::stop::Stop;
+pub use error::{Code, InputError, IntegrationError, NonFinite, Reason, SolveError};
 pub use events::events::{Accumulation, FnEvents, NoEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};
-pub use integration::inequality::Inequality;
-pub use integration::integrals::{Integrals, solve_with_integrals};
 pub use integration::integration::{Ending, Integration};
 pub use integration::limits::Limits;
+pub use integration::method::IntegrationMethod;
 pub use integration::observer::{Observed, Observer};
-pub use integration::options::{Method, NonlinearSolver, Options, Tolerance};
-pub use integration::solve::{IntegrationMethod, Solution, Solve, solve};
 pub use integration::statistics::Statistics;
 pub use integration::stepper::{LastStep, Stepper};
 pub use integration::trajectory::Trajectory;
-pub use linear::linear::{Krylov, LinearSolver, Preconditioner, Side};
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
 pub use runge_kutta::{FixedStep, RungeKutta4};
-pub use sensitivity::adjoint::{
-    AdjointOptions, Functional, Gradient, adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events,
-};
-pub use sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
+pub use sensitivity::adjoint::{adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events};
+pub use sensitivity::adjoint_options::AdjointOptions;
+pub use sensitivity::functional::{Functional, Gradient};
 pub use sensitivity::trajectory::{
     SensitivitySolution, SensitivityTrajectory, solve_dense_with_sensitivities, solve_with_sensitivities,
     solve_with_sensitivities_and_events,
 };
+pub use settings::inequality::Inequality;
+pub use settings::method::{Method, NonlinearSolver};
+pub use settings::tolerance::Tolerance;
+pub use solve::failure::SolveFailure;
+pub use solve::integrals::solve_with_integrals;
+pub use solve::solution::Solution;
+pub use solve::solve::{Solve, solve};

@@ -2,9 +2,9 @@
 
 use pc_expr::VectorField;
 
+use crate::cvode::forward::linearisation::Linearisation;
 use crate::error::InputError;
-use crate::integration::options::{check_length, finite, positive};
-use crate::sensitivity::linearisation::Linearisation;
+use crate::integration::checks::{check_length, finite, positive};
 
 /// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
 ///

@@ -1,72 +1,13 @@
-//! How to integrate.
+//! How to integrate by CVODES.
 
-use std::fmt;
-
-use pc_expr::VectorField;
-
+use crate::cvode::linear::solver::LinearSolver;
 use crate::error::InputError;
 use crate::events::events::Accumulation;
-use crate::integration::inequality::Inequality;
+use crate::integration::checks::{check_length, finite, positive};
 use crate::integration::limits::Limits;
-use crate::linear::linear::LinearSolver;
-
-/// A family of linear multistep methods of variable order and step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
-    Bdf,
-    /// Adams–Moulton formulas of orders 1 to 12, for systems that are not stiff.
-    Adams,
-}
-
-impl Method {
-    /// The highest order of the family.
-    pub fn highest_order(self) -> u32 {
-        match self {
-            Method::Bdf => 5,
-            Method::Adams => 12,
-        }
-    }
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Method::Bdf => "BDF",
-            Method::Adams => "Adams",
-        })
-    }
-}
-
-/// How the implicit equation of a step is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum NonlinearSolver {
-    /// Newton's iteration, with a [`LinearSolver`].
-    Newton,
-    /// Fixed-point iteration, which needs no matrix but contracts only for small steps of a stiff system.
-    FixedPoint,
-}
-
-/// Absolute tolerance: one for all components, or one for each.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Tolerance {
-    /// The same for all components.
-    Scalar(f64),
-    /// One for each component, in order.
-    Vector(Vec<f64>),
-}
-
-impl From<f64> for Tolerance {
-    fn from(tolerance: f64) -> Self {
-        Tolerance::Scalar(tolerance)
-    }
-}
-
-impl From<Vec<f64>> for Tolerance {
-    fn from(tolerances: Vec<f64>) -> Self {
-        Tolerance::Vector(tolerances)
-    }
-}
+use crate::settings::inequality::Inequality;
+use crate::settings::method::{Method, NonlinearSolver};
+use crate::settings::tolerance::Tolerance;
 
 /// Method, tolerances and limits of an integration.
 ///
@@ -251,30 +192,4 @@ impl Options {
         }
         Ok(())
     }
-}
-
-pub(crate) fn finite(what: &str, value: f64) -> Result<(), InputError> {
-    if value.is_finite() { Ok(()) } else { Err(InputError::NotFinite { what: what.to_owned(), value }) }
-}
-
-pub(crate) fn positive(what: &str, value: f64) -> Result<(), InputError> {
-    finite(what, value)?;
-    if value > 0.0 { Ok(()) } else { Err(InputError::NotPositive { what: what.to_owned(), value }) }
-}
-
-pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), InputError> {
-    if found == expected { Ok(()) } else { Err(InputError::Length { what, expected, found }) }
-}
-
-/// Checks that a motion of the field can begin at y(t0) = y0.
-pub(crate) fn check_start(field: &impl VectorField, t0: f64, y0: &[f64]) -> Result<(), InputError> {
-    if field.dim() == 0 {
-        return Err(InputError::NoComponents);
-    }
-    finite("the start time", t0)?;
-    check_length("the start", y0.len(), field.dim())?;
-    for (i, &value) in y0.iter().enumerate() {
-        finite(&format!("{} at the start", field.component_name(i)), value)?;
-    }
-    Ok(())
 }

@@ -9,42 +9,17 @@ use std::ptr;
 use pc_expr::{Pattern, VectorField};
 use sundials_sys as sys;
 
-pub use crate::linear::choice::LinearSolver;
-pub(crate) use crate::linear::choice::choose;
-pub use crate::linear::krylov::{Krylov, Side};
-pub use crate::linear::preconditioner::Preconditioner;
-
 use crate::cvode::callback::UserData;
 use crate::cvode::context::Context;
 use crate::cvode::handles::{Memory, Vector};
+use crate::cvode::linear::gmres;
+use crate::cvode::linear::handles::{Matrix, Solver};
+use crate::cvode::linear::quotients::Quotients;
+use crate::cvode::linear::solver::LinearSolver;
+use crate::cvode::linear::sparse::Places;
+use crate::cvode::linear::work::Work;
 use crate::error::SolveError;
-use crate::integration::inequality::Inequality;
-use crate::linear::handles::{Matrix, Solver};
-use crate::linear::quotients::Quotients;
-use crate::linear::sparse::Places;
-
-/// What the callbacks of the linear solver read and write, beside the vector field.
-#[derive(Default)]
-pub(crate) struct Work {
-    /// The entries of ∂f/∂y, in the order of the field's pattern.
-    pub(super) entries: Vec<f64>,
-    pub(super) quotients: Option<Quotients>,
-    pub(super) preconditioner: Option<Box<dyn Preconditioner + Send>>,
-}
-
-impl Work {
-    /// Counts from the beginning, as CVODES does after a new start.
-    pub(crate) fn forget_counts(&mut self) {
-        if let Some(quotients) = &mut self.quotients {
-            quotients.forget_evaluations();
-        }
-    }
-
-    /// Evaluations of f for difference quotients of ours, which CVODES does not count.
-    pub(crate) fn quotient_evaluations(&self) -> u64 {
-        self.quotients.as_ref().map_or(0, Quotients::evaluations)
-    }
-}
+use crate::settings::inequality::Inequality;
 
 /// A linear solver with its matrix, if it has one.
 pub(crate) struct Linear {
@@ -55,7 +30,7 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    /// The solver of `choice`, which has been [checked](choose), for vectors like `y`.
+    /// The solver of `choice`, which has been [checked](crate::cvode::linear::choice::choose), for vectors like `y`.
     pub(crate) fn new(
         context: &mut Context,
         y: &Vector,
@@ -66,7 +41,7 @@ impl Linear {
         let (solver, matrix) = match &choice {
             LinearSolver::Dense => {
                 let matrix = Matrix::dense(context, dim)?;
-                (crate::linear::dense::solver(context, y, &matrix)?, Some(matrix))
+                (crate::cvode::linear::dense::solver(context, y, &matrix)?, Some(matrix))
             }
             LinearSolver::Band { lower, upper } => {
                 let matrix = Matrix::band(context, dim, *lower, *upper)?;
@@ -74,10 +49,10 @@ impl Linear {
             }
             LinearSolver::Sparse => {
                 let places = Places::new(&pattern(field));
-                let matrix = crate::linear::sparse::matrix(context, &places)?;
-                (crate::linear::sparse_lu::solver(context, &matrix, places.pattern())?, Some(matrix))
+                let matrix = crate::cvode::linear::sparse::matrix(context, &places)?;
+                (crate::cvode::linear::sparse_lu::solver(context, &matrix, places.pattern())?, Some(matrix))
             }
-            LinearSolver::Krylov(krylov) => (krylov.solver(context, y)?, None),
+            LinearSolver::Krylov(krylov) => (gmres::solver(krylov, context, y)?, None),
         };
         Ok(Linear { solver, matrix, choice })
     }
@@ -105,21 +80,22 @@ impl Linear {
         let entries = field.sparsity().map_or(0, Pattern::len);
         let mut work = Work::default();
         let jacobian: sys::CVLsJacFn = match &self.choice {
-            LinearSolver::Dense => has_jacobian.then_some(crate::linear::dense::jacobian::<F>),
+            LinearSolver::Dense => has_jacobian.then_some(crate::cvode::linear::dense::jacobian::<F>),
             LinearSolver::Band { .. } => {
                 work.entries = vec![0.0; entries];
-                (has_jacobian && field.sparsity().is_some()).then_some(crate::linear::band::jacobian::<F>)
+                (has_jacobian && field.sparsity().is_some())
+                    .then_some(crate::cvode::linear::band::jacobian::<F>)
             }
             LinearSolver::Sparse if has_jacobian => {
                 work.entries = vec![0.0; entries];
-                Some(crate::linear::sparse::jacobian::<F>)
+                Some(crate::cvode::linear::sparse::jacobian::<F>)
             }
             LinearSolver::Sparse => {
                 work.quotients = Some(Quotients::new(memory, &pattern(field), inequalities));
-                Some(crate::linear::quotients::jacobian::<F>)
+                Some(crate::cvode::linear::quotient_jacobian::jacobian::<F>)
             }
             LinearSolver::Krylov(krylov) => {
-                work.preconditioner = krylov.attach::<F>(memory, context, field.has_jvp())?;
+                work.preconditioner = gmres::attach::<F>(krylov, memory, context, field.has_jvp())?;
                 None
             }
         };

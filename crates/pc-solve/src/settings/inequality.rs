@@ -2,9 +2,6 @@
 
 use std::fmt;
 
-use crate::error::InputError;
-use pc_expr::VectorField;
-
 /// What a component of y must satisfy at the end of every step, so that f is not evaluated far from where it makes sense.
 ///
 /// A step whose end does not satisfy it is corrected if it errs by little, and else tried again, shorter. Inside a step
@@ -59,21 +56,4 @@ impl fmt::Display for Inequality {
             Inequality::Negative => "negative",
         })
     }
-}
-
-/// Checks that the start satisfies the inequalities, of which there are as many as components or none.
-pub(crate) fn check(
-    field: &impl VectorField,
-    y0: &[f64],
-    inequalities: &[Inequality],
-) -> Result<(), InputError> {
-    if !inequalities.is_empty() && field.has_projection() {
-        return Err(InputError::InequalitiesOfProjected);
-    }
-    for (i, (&value, &inequality)) in y0.iter().zip(inequalities).enumerate() {
-        if !inequality.holds(value) {
-            return Err(InputError::Inequality { component: field.component_name(i), inequality, value });
-        }
-    }
-    Ok(())
 }

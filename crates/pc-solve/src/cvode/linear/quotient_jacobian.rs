@@ -3,61 +3,13 @@
 use std::ffi::{c_int, c_void};
 use std::slice;
 
-use pc_expr::{Pattern, VectorField};
+use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use super::sparse;
 use crate::cvode::callback::{Callbacks, FATAL, SUCCESS};
-use crate::cvode::handles::{Memory, numbers_of};
-use crate::integration::inequality::Inequality;
-
-/// Difference quotients of f in the directions of sums of unit vectors, columns of one colour at once, with CVODE's
-/// increments.
-pub(super) struct Quotients {
-    /// To ask for the error weights and for γ.
-    memory: *mut c_void,
-    pattern: Pattern,
-    /// The columns of each colour.
-    colours: Vec<Vec<usize>>,
-    inequalities: Vec<Inequality>,
-    moved: Vec<f64>,
-    rates: Vec<f64>,
-    evaluations: u64,
-}
-
-impl Quotients {
-    /// For the CVODES of `memory`, which outlives them.
-    pub(super) fn new(memory: &Memory, pattern: &Pattern, inequalities: &[Inequality]) -> Self {
-        let colouring = pattern.colouring();
-        let colours = (0..colouring.len()).map(|colour| colouring.columns(colour).collect()).collect();
-        let dim = pattern.columns();
-        Quotients {
-            memory: memory.raw(),
-            pattern: pattern.clone(),
-            colours,
-            inequalities: inequalities.to_vec(),
-            moved: vec![0.0; dim],
-            rates: vec![0.0; dim],
-            evaluations: 0,
-        }
-    }
-
-    pub(super) fn forget_evaluations(&mut self) {
-        self.evaluations = 0;
-    }
-
-    pub(super) fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), so that no inequality is left, and returns by how much.
-    fn shift(&mut self, j: usize, z: &[f64], weight: f64, least: f64) -> f64 {
-        let length = (f64::EPSILON.sqrt() * z[j].abs()).max(least / weight);
-        let forwards = self.inequalities.get(j).is_none_or(|inequality| inequality.holds(z[j] + length));
-        self.moved[j] = if forwards { z[j] + length } else { z[j] - length };
-        self.moved[j] - z[j]
-    }
-}
+use crate::cvode::handles::numbers_of;
+use crate::cvode::linear::quotients::Quotients;
+use crate::cvode::linear::sparse;
 
 /// What an increment must be at least, times the error weight: so that the change of f is more than its rounding,
 /// 1000 |γ| ε n ‖f‖ in the norm of the error test, or 1 if f is 0.

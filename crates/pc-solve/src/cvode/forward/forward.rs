@@ -5,35 +5,16 @@ use std::ffi::{c_int, c_long, c_void};
 use pc_expr::VectorField;
 use sundials_sys as sys;
 
-use crate::checkpoint::checkpoint::Checkpoint;
 use crate::cvode::cvode::Cvode;
+use crate::cvode::forward::columns::Forward;
+use crate::cvode::forward::equations;
+use crate::cvode::forward::linearisation::Linearisation;
+use crate::cvode::forward::sensitivities::{Correction, Sensitivities, SensitivityStatistics};
+use crate::cvode::forward::variation::Variation;
 use crate::cvode::handles::{NonlinearIteration, Vector};
-use crate::error::{InputError, Reason, SolveError};
-use crate::integration::options::{NonlinearSolver, Options, finite};
-use crate::sensitivity::linearisation::Linearisation;
-use crate::sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
-use crate::sensitivity::variation;
-use crate::sensitivity::variation::Variation;
-
-/// What an integration with sensitivities has besides.
-pub(crate) struct Forward {
-    /// Referred to by CVODES.
-    _nonlinear_iteration: NonlinearIteration,
-    /// Where CVODES writes the columns.
-    pub(crate) columns: Vec<Vector>,
-    /// S at the last start, column-major.
-    matrix: Vec<f64>,
-    correction: Correction,
-    /// The work before the last restart.
-    earlier: SensitivityStatistics,
-}
-
-impl Forward {
-    /// The vectors as CVODES takes them.
-    pub(crate) fn raw(&self) -> Vec<sys::N_Vector> {
-        self.columns.iter().map(Vector::raw).collect()
-    }
-}
+use crate::cvode::options::Options;
+use crate::error::{Reason, SolveError};
+use crate::settings::method::NonlinearSolver;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with derivatives of the motion.
@@ -69,29 +50,6 @@ impl<F: VectorField> Cvode<F> {
         self.callbacks.set_variation(Variation::new(linearisation, sensitivities.parameters()));
         self.begin_sensitivities(sensitivities, options.nonlinear_solver, start, scales)?;
         Ok(self)
-    }
-
-    /// Begins at a checkpoint with the columns that it has.
-    ///
-    /// # Errors
-    /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if the checkpoint has another
-    /// number of columns.
-    pub(crate) fn begin_at(
-        field: F,
-        checkpoint: &Checkpoint,
-        options: &Options,
-        sensitivities: &Sensitivities,
-    ) -> Result<Self, SolveError> {
-        let (found, dim) = (checkpoint.sensitivities.len(), checkpoint.state.len());
-        if found != dim * sensitivities.len() {
-            let (expected, found) = (sensitivities.len(), found / dim.max(1));
-            return Err(InputError::Sensitivities { expected, found }.into());
-        }
-        for &value in &checkpoint.sensitivities {
-            finite("a sensitivity of the checkpoint", value)?;
-        }
-        let cvode = Cvode::new(field, checkpoint.time, &checkpoint.state, options)?;
-        cvode.and_sensitivities(sensitivities, options, checkpoint.sensitivities.clone())
     }
 
     fn begin_sensitivities(
@@ -130,7 +88,7 @@ impl<F: VectorField> Cvode<F> {
         // SAFETY: the memory is initialised and has its user data, whose variation has `count` columns; CVODES copies
         // the `count` vectors.
         let code =
-            unsafe { sys::CVodeSensInit(mem, count, method, Some(variation::rates::<F>), raw.as_mut_ptr()) };
+            unsafe { sys::CVodeSensInit(mem, count, method, Some(equations::rates::<F>), raw.as_mut_ptr()) };
         context.check("CVodeSensInit", code)?;
         // SAFETY: sensitivities are initialised; CVODES copies one size for each column, and needs no parameters, since their
         // equations are ours.

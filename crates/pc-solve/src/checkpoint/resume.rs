@@ -3,13 +3,10 @@
 use pc_expr::{Events, VectorField};
 
 use crate::checkpoint::checkpoint::{Checkpoint, EventPast, Past};
-use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, SolveError};
 use crate::events::root_finding::Sides;
 use crate::integration::integration::{Integration, directions};
-use crate::integration::options::Options;
 use crate::integration::stepper::Stepper;
-use crate::sensitivity::options::Sensitivities;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Time, state, sensitivities and work where the integration stands, and what is known of its events, to be gone on from
@@ -89,34 +86,5 @@ impl<S: Stepper> Integration<S> {
         }
         integration.sides_before = integration.sides.clone();
         Ok(integration)
-    }
-}
-
-impl<F: VectorField> Integration<Cvode<F>> {
-    /// Begins anew at a checkpoint, which may be the start of a motion, without its events:
-    /// [`with_events_of`](Integration::with_events_of) adds them.
-    ///
-    /// Both the motion that was interrupted there and the one that was not go on from here with the same numbers, if
-    /// `field`, events and `options` are the same; fields and events that remember earlier evaluations must be as they were
-    /// when made.
-    ///
-    /// # Errors
-    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has sensitivities.
-    pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
-        Integration::resume_with_sensitivities(field, checkpoint, options, &Sensitivities::new())
-    }
-
-    /// Begins anew at a checkpoint as [`resume`](Integration::resume) does, with the sensitivities that it has. Their columns
-    /// are those of `sensitivities`, whose starts do not matter.
-    ///
-    /// # Errors
-    /// As there; [`InputError::Sensitivities`] if the checkpoint has another number of columns.
-    pub fn resume_with_sensitivities(
-        field: F,
-        checkpoint: &Checkpoint,
-        options: &Options,
-        sensitivities: &Sensitivities,
-    ) -> Result<Self, SolveError> {
-        Ok(Integration::resumed(Cvode::begin_at(field, checkpoint, options, sensitivities)?, checkpoint))
     }
 }

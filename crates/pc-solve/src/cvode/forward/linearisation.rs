@@ -2,8 +2,9 @@
 
 use pc_expr::{Failure, VectorField};
 
+use crate::cvode::options::Options;
 use crate::error::NonFinite;
-use crate::integration::options::{Options, Tolerance};
+use crate::settings::tolerance::Tolerance;
 
 /// Where products (∂f/∂y) v come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

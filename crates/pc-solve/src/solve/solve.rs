@@ -4,15 +4,16 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::cvode::Cvode;
-use crate::error::{SolveError, SolveFailure};
+use crate::cvode::options::Options;
+use crate::error::SolveError;
 use crate::events::events::{NoEvents, Occurrence};
 use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
+use crate::integration::method::IntegrationMethod;
 use crate::integration::observer::Observed;
-use crate::integration::options::Options;
-use crate::integration::stepper::Stepper;
 use crate::integration::trajectory::Trajectory;
+use crate::solve::failure::SolveFailure;
+use crate::solve::solution::Solution;
 
 /// Integrates ẏ = f(t, y) from y(t0) = y0 by CVODES and returns the states at `times`: [`Solve`] has more to choose from.
 ///
@@ -31,36 +32,6 @@ pub fn solve<F: VectorField>(
     match Solve::new(field, t0, y0).method(options).run(times) {
         Ok(solution) => Ok(solution.trajectory),
         Err(failure) => Err(Box::new(failure.map(|reached| reached.trajectory))),
-    }
-}
-
-/// A method with its options, which can begin at a state.
-pub trait IntegrationMethod<F: VectorField> {
-    /// The method at work.
-    type Stepper: Stepper<Field = F>;
-
-    /// Begins at y(t0) = y0; the field is never to be evaluated beyond `stop`, nor beyond the stop time of the method.
-    ///
-    /// # Errors
-    /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges.
-    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Self::Stepper, SolveError>;
-}
-
-impl<F: VectorField> IntegrationMethod<F> for Options {
-    type Stepper = Cvode<F>;
-
-    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Cvode<F>, SolveError> {
-        let mut options = self.clone();
-        options.stop_time = options.stop_time.or(stop.filter(|t| t.is_finite()));
-        Cvode::new(field, t0, y0, &options)
-    }
-}
-
-impl<F: VectorField, M: IntegrationMethod<F>> IntegrationMethod<F> for &M {
-    type Stepper = M::Stepper;
-
-    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<M::Stepper, SolveError> {
-        (**self).begin(field, t0, y0, stop)
     }
 }
 
@@ -182,22 +153,5 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         };
         self.start_towards(Some(end))?.run_dense(end, keep, |_| ControlFlow::Continue(()))?;
         Ok(motion)
-    }
-}
-
-/// A motion as far as it was integrated.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// The states at the output times, y⁺ at those of events; a terminal event is the last.
-    pub trajectory: Trajectory,
-    /// What occurred, in order.
-    pub occurrences: Vec<Occurrence>,
-    /// How it ended; none if it failed.
-    pub ending: Option<Ending>,
-}
-
-impl Solution {
-    pub(crate) fn new(dim: usize) -> Solution {
-        Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }
     }
 }

@@ -1,0 +1,8 @@
+//! Integration in one call.
+//!
+//! `solve` by any method, with a `solution` or a `failure` coming out; `integrals` along the motion.
+
+pub(crate) mod failure;
+pub(crate) mod integrals;
+pub(crate) mod solution;
+pub(crate) mod solve;
