@@ -7,4 +7,5 @@ pub(crate) mod checkpoint;
 pub(crate) mod encoding;
 pub(crate) mod legs;
 pub(crate) mod resume;
+#[cfg(feature = "cvode")]
 pub(crate) mod resume_cvode;

@@ -89,8 +89,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// The integrals from the start to [`time`](Integration::time), over what occurred, in the order of their integrands.
     ///
     /// # Errors
-    /// [`InputError::NoIntegrals`] unless they were asked for; [`SolveError::Integration`] if one has grown beyond the largest
-    /// number.
+    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were asked for; [`SolveError::Integration`] if
+    /// one has grown beyond the largest number.
     pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
         self.engine.integrals_here()
     }

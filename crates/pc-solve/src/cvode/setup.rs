@@ -117,7 +117,7 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
         }
     }
     if options.inequalities.iter().any(|&inequality| inequality != Inequality::Free) {
-        let numbers: Vec<f64> = options.inequalities.iter().map(|inequality| inequality.number()).collect();
+        let numbers: Vec<f64> = options.inequalities.iter().copied().map(number).collect();
         let numbers = Vector::new(context, &numbers)?;
         // SAFETY: the memory is initialised; CVODES copies the vector, which has its dimension.
         let code = unsafe { sys::CVodeSetConstraints(memory.raw(), numbers.raw()) };
@@ -133,4 +133,15 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
         memory.set(context, "CVodeSetMaxOrd", sys::CVodeSetMaxOrd, order as c_int)?;
     }
     Ok(())
+}
+
+/// The number that stands for an inequality in `CVodeSetConstraints`.
+fn number(inequality: Inequality) -> f64 {
+    match inequality {
+        Inequality::Free => 0.0,
+        Inequality::NotNegative => 1.0,
+        Inequality::NotPositive => -1.0,
+        Inequality::Positive => 2.0,
+        Inequality::Negative => -2.0,
+    }
 }

@@ -10,7 +10,8 @@ pub struct Stop<'a> {
 }
 
 impl Stop<'_> {
-    /// Whether to end now: the consumer has broken off, or the flag of [`Ensemble::stopped_by`](crate::Ensemble::stopped_by) is set.
+    /// Whether to end now: the consumer has broken off, or the flag of
+    /// [`Ensemble::stopped_by`](crate::Ensemble::stopped_by) is set.
     pub fn requested(&self) -> bool {
         self.own.load(Ordering::Relaxed) || self.flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }

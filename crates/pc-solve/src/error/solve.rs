@@ -63,7 +63,8 @@ pub struct IntegrationError {
     pub time: f64,
     /// The state at [`time`](IntegrationError::time); as many numbers as the field has components.
     pub state: Vec<f64>,
-    /// The last failure of the vector field there: what it reported, or [`NonFinite`](crate::NonFinite) if it wrote such a number.
+    /// The last failure of the vector field there: what it reported, or [`NonFinite`](crate::NonFinite) if it wrote such a
+    /// number.
     pub failure: Option<Failure>,
 }
 

@@ -63,6 +63,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
     /// ```
     /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied by λ⁺ from the left.
+    #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn transposed_jump(
         &mut self,
         event: usize,

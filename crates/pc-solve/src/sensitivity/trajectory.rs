@@ -63,7 +63,7 @@ impl SensitivityTrajectory {
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::integration::solve()) does, and derivatives of the motion with it.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, and derivatives of the motion with it.
 ///
 /// # Errors
 /// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.

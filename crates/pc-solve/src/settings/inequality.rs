@@ -32,17 +32,6 @@ impl Inequality {
             Inequality::Negative => value < 0.0,
         }
     }
-
-    /// The number that stands for it in `CVodeSetConstraints`.
-    pub(crate) fn number(self) -> f64 {
-        match self {
-            Inequality::Free => 0.0,
-            Inequality::NotNegative => 1.0,
-            Inequality::NotPositive => -1.0,
-            Inequality::Positive => 2.0,
-            Inequality::Negative => -2.0,
-        }
-    }
 }
 
 impl fmt::Display for Inequality {

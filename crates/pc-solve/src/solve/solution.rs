@@ -15,6 +15,7 @@ pub struct Solution {
     pub ending: Option<Ending>,
 }
 
+#[cfg(feature = "cvode")]
 impl Solution {
     pub(crate) fn new(dim: usize) -> Solution {
         Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }
