@@ -1,19 +1,28 @@
 //! SUNDIALS CVODES, safe to hold and to call.
 //!
-//! `context`, `handles`, `return_code` and `callback` are the boundary to C: owned objects, codes as errors, vector
-//! fields as callbacks. `cvode` is the integration step by step, made by `setup`, with `interpolation`, `dense` and
-//! `quadrature` inside its steps, `breaks` and `foresight` where the field is not smooth in time, `restart` and
-//! `checkpoint` to go on.
+//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as callbacks. `options` say how,
+//! `cvode` is the integration step by step, made by `setup`, with `interpolation`, `projection` and `quadrature_callbacks`
+//! inside its steps, the `integrals` being kept as `quadrature`; `breaks` and `foresee`, by `foresight`, where the field is
+//! not smooth in time; `restart` to go on; `statistics` of the work. `stepper` makes it a method, `integration` begins one
+//! by it. `linear` are its linear systems, `forward` its sensitivities.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;
 pub(crate) mod context;
 pub(crate) mod cvode;
+pub(crate) mod foresee;
 pub(crate) mod foresight;
+pub(crate) mod forward;
 pub(crate) mod handles;
+pub(crate) mod integrals;
+pub(crate) mod integration;
 pub(crate) mod interpolation;
+pub(crate) mod linear;
+pub(crate) mod options;
+pub(crate) mod projection;
 pub(crate) mod quadrature;
+pub(crate) mod quadrature_callbacks;
 pub(crate) mod restart;
-pub(crate) mod return_code;
 pub(crate) mod setup;
+pub(crate) mod statistics;
 pub(crate) mod stepper;

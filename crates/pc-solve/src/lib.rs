@@ -23,47 +23,83 @@
 //!
 //! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
 //! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
+//!
+//! Without the feature `cvode`, which is on unless left out, the crate builds without SUNDIALS and a C compiler. Left are
+//! [`Integration`] by any [`Stepper`], such as [`RungeKutta4`], with events, dense output and checkpoints.
 
-#![expect(unsafe_code, reason = "calls of the C library SUNDIALS")]
+#![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 
 mod checkpoint;
+#[cfg(feature = "cvode")]
 mod cvode;
+#[cfg(feature = "cvode")]
 mod ensemble;
 mod error;
 mod events;
 mod integration;
-mod linear;
+#[cfg(feature = "cvode")]
 mod lyapunov;
 mod runge_kutta;
+#[cfg(feature = "cvode")]
 mod sensitivity;
+mod settings;
+mod solve;
 
-pub use checkpoint::checkpoint::{Checkpoint, CheckpointError, solve_checkpointed};
+pub use checkpoint::checkpoint::Checkpoint;
+pub use checkpoint::encoding::CheckpointError;
+pub use checkpoint::legs::solve_checkpointed;
+#[cfg(feature = "cvode")]
 pub use cvode::cvode::Cvode;
-pub use cvode::return_code::Code;
-pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked, Stop, member_stream};
-pub use error::{InputError, IntegrationError, NonFinite, Reason, SolveError, SolveFailure};
+#[cfg(feature = "cvode")]
+pub use cvode::forward::sensitivities::{Correction, Sensitivities, SensitivityStatistics};
+#[cfg(feature = "cvode")]
+pub use cvode::integrals::Integrals;
+#[cfg(feature = "cvode")]
+pub use cvode::linear::krylov::{Krylov, Side};
+#[cfg(feature = "cvode")]
+pub use cvode::linear::preconditioner::Preconditioner;
+#[cfg(feature = "cvode")]
+pub use cvode::linear::solver::LinearSolver;
+#[cfg(feature = "cvode")]
+pub use cvode::options::Options;
+#[cfg(feature = "cvode")]
+pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};
+#[cfg(feature = "cvode")]
+pub use ensemble::random::member_stream;
+#[cfg(feature = "cvode")]
+pub use ensemble::stop::Stop;
+pub use error::{Code, InputError, IntegrationError, NonFinite, Reason, SolveError};
 pub use events::events::{Accumulation, FnEvents, NoEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};
-pub use integration::inequality::Inequality;
-pub use integration::integrals::{Integrals, solve_with_integrals};
 pub use integration::integration::{Ending, Integration};
 pub use integration::limits::Limits;
+pub use integration::method::IntegrationMethod;
 pub use integration::observer::{Observed, Observer};
-pub use integration::options::{Method, NonlinearSolver, Options, Tolerance};
-pub use integration::solve::{IntegrationMethod, Solution, Solve, solve};
 pub use integration::statistics::Statistics;
 pub use integration::stepper::{LastStep, Stepper};
 pub use integration::trajectory::Trajectory;
-pub use linear::linear::{Krylov, LinearSolver, Preconditioner, Side};
+#[cfg(feature = "cvode")]
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
 pub use runge_kutta::{FixedStep, RungeKutta4};
-pub use sensitivity::adjoint::{
-    AdjointOptions, Functional, Gradient, adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events,
-};
-pub use sensitivity::options::{Correction, Sensitivities, SensitivityStatistics};
+#[cfg(feature = "cvode")]
+pub use sensitivity::adjoint::{adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events};
+#[cfg(feature = "cvode")]
+pub use sensitivity::adjoint_options::AdjointOptions;
+#[cfg(feature = "cvode")]
+pub use sensitivity::functional::{Functional, Gradient};
+#[cfg(feature = "cvode")]
 pub use sensitivity::trajectory::{
     SensitivitySolution, SensitivityTrajectory, solve_dense_with_sensitivities, solve_with_sensitivities,
     solve_with_sensitivities_and_events,
 };
+pub use settings::inequality::Inequality;
+pub use settings::method::{Method, NonlinearSolver};
+pub use settings::tolerance::Tolerance;
+pub use solve::failure::SolveFailure;
+#[cfg(feature = "cvode")]
+pub use solve::integrals::solve_with_integrals;
+pub use solve::solution::Solution;
+#[cfg(feature = "cvode")]
+pub use solve::solve::{Solve, solve};

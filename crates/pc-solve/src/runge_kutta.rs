@@ -11,10 +11,9 @@ use pc_expr::{Failure, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::integration::breaks::{are_close, following};
-use crate::integration::inequality;
+use crate::integration::checks::{check_inequalities, check_start, finite, positive};
 use crate::integration::limits::Limits;
-use crate::integration::options::{check_start, finite, positive};
-use crate::integration::solve::IntegrationMethod;
+use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
@@ -103,7 +102,7 @@ impl<F: VectorField> RungeKutta4<F> {
         positive("the length of steps", steps.length)?;
         positive("the number of steps", steps.limits.max_steps as f64)?;
         positive("the number of samples in a step", f64::from(steps.limits.samples_per_step))?;
-        inequality::check(&field, y0, &steps.limits.inequalities)?;
+        check_inequalities(&field, y0, &steps.limits.inequalities)?;
         let node = Node { t: t0, y: y0.to_vec(), rates: vec![f64::NAN; y0.len()] };
         let mut stepper = RungeKutta4 {
             field,

@@ -1,32 +1,21 @@
 //! The comparison of the two derivations.
 
-use std::fmt;
-
 use pc_mech::{Folding, Graph};
 use pc_model::{Assembly, Flow, Model, Variables};
-use pc_print::Form;
 
-use crate::derivation::{Completing, Derivation, Derived, Place};
+use crate::agreement::{Agreement, Passed};
+use crate::equations::Derived;
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::first::First;
-use crate::linear::pseudo_inverse;
+use crate::here::Here;
+use crate::place::Place;
 use crate::printed::{FORMS, printed_name};
-use crate::projected::{DIRECTIONS, Layout};
-use crate::quantities::{Free, Quantity, Sized};
-use crate::resultants::Resultant;
-use crate::rounding::{Random, Rounding, UNIT, within};
-use crate::structure::Structure;
-use crate::text::{Text, Velocities};
-
-/// The largest difference of two values that agree, relative to the size of their terms.
-///
-/// Both routes sum some hundred terms in different orders and lead them through linear equations: some thousand roundings of
-/// the largest term, and how far rounding is amplified is measured at each state. A forgotten or turned term is an error of
-/// order one of its own size, which at random states is seldom below 1e-6 of the largest.
-pub const TOLERANCE: f64 = 1e-12;
-
-/// A difference that ordinary rounding makes. Where one is larger, it is measured how far rounding is amplified.
-pub(crate) const ORDINARY: f64 = 1e-14;
+use crate::projected::Layout;
+use crate::quantity::Quantity;
+use crate::rounding::{Rounding, UNIT, within};
+use crate::second::{LONG, Second};
+use crate::sized::Sized;
+use crate::tolerance::{ORDINARY, TOLERANCE};
 
 /// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
 const OTHER: f64 = 1e-9;
@@ -44,50 +33,6 @@ impl Default for Options {
     /// 100 states.
     fn default() -> Options {
         Options { states: 100, seed: 0 }
-    }
-}
-
-/// That, and how closely, two derivations agree.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Agreement {
-    /// States at which all forms were compared.
-    pub states: usize,
-    /// The number of these at which equations were only compared along random virtual velocities, the model being large.
-    pub projected: usize,
-    /// States that were passed over since the equations are singular or not defined there.
-    pub skipped: usize,
-    /// Why the last of these was.
-    pub reason: Option<String>,
-    /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`].
-    pub error: f64,
-    /// What differs by it.
-    pub quantity: String,
-    /// The forms compared: `poincare`, `canonical`, `emit`.
-    pub forms: Vec<String>,
-    /// What was not compared, each with the reason.
-    pub not_compared: Vec<String>,
-}
-
-impl fmt::Display for Agreement {
-    /// `agrees to 3e-15 at 97 states, 3 not comparable: the equations for the accelerations are singular`
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let plural = if self.states == 1 { "" } else { "s" };
-        if self.error == 0.0 {
-            write!(f, "agrees to the last digit at {} state{plural}", self.states)?;
-        } else {
-            write!(f, "agrees to {:.0e} at {} state{plural}", self.error, self.states)?;
-        }
-        match self.projected {
-            0 => {}
-            all if all == self.states => write!(f, " along {DIRECTIONS} random virtual velocities")?,
-            some => write!(f, ", at {some} of them along {DIRECTIONS} random virtual velocities")?,
-        }
-        match (self.skipped, &self.reason) {
-            (0, _) => Ok(()),
-            (skipped, reason) => {
-                write!(f, ", {skipped} not comparable: {}", reason.as_deref().unwrap_or("not regular"))
-            }
-        }
     }
 }
 
@@ -149,16 +94,6 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     agreement.finished(&firsts, number)
 }
 
-/// Terms that are evaluated in some milliseconds.
-const LONG: usize = 100_000;
-
-/// Terms that are evaluated for all states together, in a second or so.
-const ALL_STATES: usize = 5_000_000;
-
-/// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
-/// a second, and ten times that with each two more.
-const MOST_INVERTED: usize = 9;
-
 /// A large model in quasi-velocities.
 struct Projection {
     flow: Flow,
@@ -168,49 +103,7 @@ struct Projection {
 /// States that are tried for each that is to be compared.
 const TRIES: usize = 3;
 
-/// Why a state gave no comparison.
-enum Passed {
-    /// It is not regular.
-    Irregular(Irregular),
-    /// The derivations differ.
-    Error(VerifyError),
-}
-
-impl From<Irregular> for Passed {
-    fn from(irregular: Irregular) -> Passed {
-        match irregular {
-            Irregular::Unable(unable) => Passed::Error(unable.into()),
-            irregular => Passed::Irregular(irregular),
-        }
-    }
-}
-
 impl Agreement {
-    /// A difference, relative to the size of its terms.
-    fn note(&mut self, error: f64, label: &str) {
-        if error > self.error || self.quantity.is_empty() {
-            (self.error, self.quantity) = (error, label.to_owned());
-        }
-    }
-
-    pub(crate) fn leave_out(&mut self, what: &str, reason: &str) {
-        let line = format!("{what}: {reason}");
-        if !self.not_compared.contains(&line) {
-            self.not_compared.push(line);
-        }
-    }
-
-    fn pass_over(&mut self, passed: Passed) -> Result<(), VerifyError> {
-        match passed {
-            Passed::Error(error) => Err(error),
-            Passed::Irregular(irregular) => {
-                self.skipped += 1;
-                self.reason = Some(irregular.to_string());
-                Ok(())
-            }
-        }
-    }
-
     fn finished(mut self, firsts: &[First<'_>], tried: usize) -> Result<Agreement, VerifyError> {
         if self.states == 0 {
             let reason = self.reason.unwrap_or_else(|| "none was tried".to_owned());
@@ -232,79 +125,7 @@ impl Agreement {
     }
 }
 
-/// The second derivation of a model.
-#[derive(Clone, Debug)]
-pub struct Second {
-    pub(crate) derivation: Derivation,
-    /// What the columns of a table are called.
-    columns: Vec<String>,
-    pub(crate) start: Place,
-    external: Vec<String>,
-}
-
-/// Points at which ranks are looked at.
-const RANK_POINTS: usize = 6;
-
 impl Second {
-    /// The second derivation of a model, at the start of the first.
-    ///
-    /// # Errors
-    /// [`VerifyError::Unable`].
-    pub fn new(model: &Model, assembly: &Assembly<'_>) -> Result<Second, VerifyError> {
-        let text = Text::new(model)?;
-        let n = text.coordinates();
-        let columns = match text.names.quasi_velocities.as_slice() {
-            [] => text.names.coordinates.iter().map(|x| format!("{x}'")).collect(),
-            declared => declared.to_vec(),
-        };
-        let mut derivation = Derivation {
-            on_positions: text.on_positions()?,
-            kept: Vec::new(),
-            completing: Vec::new(),
-            structure: Structure::Frame,
-            text,
-        };
-        // Which velocities the energy is one of is the first derivation's choice.
-        let all = assembly.system.quasi_velocities().iter().skip(columns.len());
-        derivation.completing =
-            all.filter_map(|eta| completing(&derivation.text, &eta.to_string())).collect();
-        let (x, eta) = assembly.start.split_at(n);
-        let stated = Passed::from;
-        let refused = |passed: Passed| match passed {
-            Passed::Error(error) => error,
-            Passed::Irregular(irregular) => {
-                VerifyError::NothingCompared { tried: 1, reason: irregular.to_string() }
-            }
-        };
-        let w = derivation.velocities_of(assembly.t_start, x, &eta[..columns.len()]);
-        let w = w.map_err(|irregular| refused(stated(irregular)))?;
-        let z = eta[eta.len() - derivation.text.state_rates.len()..].to_vec();
-        let start = Place { t: assembly.t_start, x: x.to_vec(), w, z };
-        if let Velocities::Quasi(_) = derivation.text.velocities {
-            derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
-        }
-        if !derivation.on_positions.is_empty() {
-            // Of constraints that follow from each other any may be dropped: the first derivation says which. That they do
-            // is looked at here, and that the motion follows them.
-            let dropped = |a: &usize| {
-                let name = &derivation.text.names.constraints[*a];
-                assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
-            };
-            let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
-            let mut kept = derivation.independent(&start, &last).unwrap_or_default();
-            for number in 0..RANK_POINTS {
-                let place = derivation.random(&start, number);
-                let found = place.and_then(|place| derivation.independent(&place, &last)).unwrap_or_default();
-                if found.len() > kept.len() {
-                    kept = found;
-                }
-            }
-            derivation.kept = kept;
-        }
-        derivation.find_force_functions(&start);
-        Ok(Second { derivation, columns, start, external: model.external_forces() })
-    }
-
     /// Compares what is integrated, here called `form`, with the second derivation at one of its states.
     ///
     /// # Errors
@@ -331,14 +152,6 @@ impl Second {
             Err(passed) => agreement.pass_over(passed)?,
         }
         agreement.finished(&firsts, 1)
-    }
-
-    /// The place of coordinates, columns and first-order states.
-    fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
-        let (x, eta) = row.split_at(self.start.x.len());
-        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
-        let w = self.derivation.velocities_of(t, x, eta)?;
-        Ok(Place { t, x: x.to_vec(), w, z: z.to_vec() })
     }
 
     /// The same as [`agrees`](Second::agrees) along random virtual velocities.
@@ -391,113 +204,6 @@ impl Second {
         }
         agreement.projected += 1;
         Ok(())
-    }
-
-    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
-    pub fn is_long(&self, flow: &Flow) -> bool {
-        self.cost() > LONG && flow.has_momenta()
-    }
-
-    /// Why a printed form is not derived only to be compared.
-    fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
-        if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
-            return None; // the same as Lagrange's, and not derived
-        }
-        if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {
-            return Some("the mass matrix would be inverted in symbols");
-        }
-        (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
-    }
-
-    /// At how many of so many states all equations are compared.
-    fn wholly(&self, states: usize) -> usize {
-        let affordable = ALL_STATES / self.cost().max(1);
-        states.min(affordable.max(1))
-    }
-
-    #[cfg(test)]
-    pub(crate) fn derivation(&self) -> &Derivation {
-        &self.derivation
-    }
-
-    #[cfg(test)]
-    pub(crate) fn start(&self) -> &Place {
-        &self.start
-    }
-
-    /// No state compared.
-    fn nothing_yet(&self) -> Agreement {
-        let mut agreement = Agreement {
-            states: 0,
-            projected: 0,
-            skipped: 0,
-            reason: None,
-            error: 0.0,
-            quantity: String::new(),
-            forms: Vec::new(),
-            not_compared: Vec::new(),
-        };
-        for force in &self.external {
-            agreement.leave_out(&format!("the force on {force} computed outside"), "taken for 0");
-        }
-        agreement
-    }
-
-    /// The quasi-velocity of this name: a column, what a constraint fixes at 0, or a velocity.
-    pub(crate) fn free(&self, name: &str) -> Option<Free> {
-        let column = self.columns.iter().position(|column| column == name).map(Free::Column);
-        column.or_else(|| {
-            completing(&self.derivation.text, name).map(|completing| match completing {
-                Completing::Velocity(i) => Free::Velocity(i),
-                Completing::Constraint(a) => Free::Constraint(a),
-            })
-        })
-    }
-
-    /// Its value.
-    pub(crate) fn velocity(&self, name: &str) -> Option<Quantity> {
-        self.free(name).map(|free| match free {
-            Free::Column(s) => Quantity::Column(s),
-            Free::Velocity(i) => Quantity::Velocity(i),
-            Free::Constraint(_) => Quantity::Zero,
-        })
-    }
-
-    /// The rate of a component of the state.
-    pub(crate) fn rate(&self, name: &str) -> Option<Quantity> {
-        let coordinates = &self.derivation.text.names.coordinates;
-        let coordinate = coordinates.iter().position(|x| x == name).map(Quantity::Velocity);
-        let states = &self.derivation.text.names.states;
-        let state = || states.iter().position(|z| z == name).map(Quantity::StateRate);
-        coordinate.or_else(state).or_else(|| {
-            self.velocity(name).map(|quantity| match quantity {
-                Quantity::Column(s) => Quantity::ColumnRate(s),
-                Quantity::Velocity(i) => Quantity::Acceleration(i),
-                other => other,
-            })
-        })
-    }
-
-    /// An observable.
-    pub(crate) fn observable(&self, name: &str) -> Option<Quantity> {
-        let text = &self.derivation.text;
-        if name == "energy" {
-            return Some(Quantity::Energy);
-        }
-        let observed = text.observed.iter().position(|(known, _)| known == name).map(Quantity::Observed);
-        let names = &text.names;
-        let reaction = || {
-            let constraint = name.strip_prefix("λ_")?;
-            names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
-        };
-        let resultant = || Resultant::named(name, &names.constraints, &names.bodies).map(Quantity::Resultant);
-        observed.or_else(reaction).or_else(resultant)
-    }
-
-    /// How many terms of the text are evaluated for the equations at one state, roughly.
-    pub fn cost(&self) -> usize {
-        let k = self.start.w.len();
-        (k * (k + 1) / 2 + 4 * k + 4).saturating_mul(self.derivation.text.terms())
     }
 
     /// Compares all forms with the second derivation at a place: at least one of them.
@@ -625,67 +331,10 @@ impl Second {
             !is_momentum || within((here.value - there.value).abs(), OTHER * here.size)
         }))
     }
-
-    fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
-        let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
-        let states = self.derivation.text.names.states.iter().zip(&at.z);
-        let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
-        all.map(|(name, &value)| (name.clone(), value)).collect()
-    }
-}
-
-/// The second derivation at a place.
-#[derive(Clone, Debug)]
-pub(crate) struct Here {
-    pub(crate) derived: Derived,
-    /// The columns there.
-    pub(crate) columns: Vec<f64>,
-}
-
-impl Here {
-    fn new(derivation: &Derivation, derived: Derived) -> Result<Here, Irregular> {
-        let exact = Rounding::none();
-        let columns = derivation.columns(&derivation.still(&derived.place, &exact))?;
-        Ok(Here { derived, columns })
-    }
-
-    /// The value of a quasi-velocity.
-    pub(crate) fn velocity(&self, velocity: Free) -> f64 {
-        match velocity {
-            Free::Column(s) => self.columns[s],
-            Free::Velocity(i) => self.derived.velocities[i],
-            Free::Constraint(_) => 0.0,
-        }
-    }
-}
-
-/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, made longer where it is that of something else.
-fn completing(text: &Text, name: &str) -> Option<Completing> {
-    let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
-    let velocity = name.strip_suffix('\'').and_then(|x| place(&text.names.coordinates, x));
-    let constraint = || place(&text.names.constraints, name.trim_end_matches('_'));
-    velocity.map(Completing::Velocity).or_else(|| constraint().map(Completing::Constraint))
 }
 
 /// The difference of two values relative to the size of their terms.
 fn error(one: f64, two: Sized) -> f64 {
     let difference = (one - two.value).abs();
     if difference == 0.0 { 0.0 } else { difference / two.size }
-}
-
-impl Derivation {
-    /// The rank of b, the largest of those at some points near a place.
-    fn rank(&self, near: &Place) -> usize {
-        let exact = Rounding::none();
-        let mut random = Random::new(0);
-        let mut largest = 0;
-        for number in 0..RANK_POINTS {
-            let scale = if number == 0 { 0.0 } else { 0.1 };
-            let x = near.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect();
-            let Ok(frame) = self.frame(&Place { x, ..near.clone() }, &exact) else { continue };
-            let b = nalgebra::DMatrix::from_fn(near.x.len(), near.w.len(), |i, s| frame[s][i]);
-            largest = pseudo_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
-        }
-        largest
-    }
 }

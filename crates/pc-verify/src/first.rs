@@ -5,11 +5,13 @@ use std::sync::Arc;
 use pc_mech::{Backend, Expr, Graph, Motion, Table, VectorField};
 use pc_model::{Assembly, Flow};
 
-use crate::compare::{Agreement, Here, Second};
+use crate::agreement::Agreement;
 use crate::derivation::Derivation;
 use crate::error::Irregular;
+use crate::here::Here;
 use crate::printed::Printed;
-use crate::quantities::{Free, Quantity};
+use crate::quantity::{Free, Quantity};
+use crate::second::Second;
 
 /// Equations of the first derivation.
 pub(crate) struct First<'g> {

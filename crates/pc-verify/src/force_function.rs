@@ -5,8 +5,9 @@
 //! Here this is looked at in numbers: the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at all places and
 //! also for other values of the parameters.
 
-use crate::derivation::{Derivation, Direction, Place};
+use crate::derivation::Derivation;
 use crate::error::Irregular;
+use crate::place::{Direction, Place};
 use crate::rounding::{Random, Rounding, within};
 
 /// Places at which the quotient is looked at, for the parameters as they are and for others.

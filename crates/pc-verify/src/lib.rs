@@ -20,19 +20,31 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod agreement;
+mod balance;
+mod brackets;
 mod compare;
+mod constants;
 mod derivation;
+mod equations;
 mod error;
 mod first;
 mod force_function;
+mod forces;
+mod here;
 mod linear;
 mod number;
+mod place;
 mod point;
 mod printed;
 mod projected;
 mod quantities;
+mod quantity;
+mod resultant;
 mod resultants;
 mod rounding;
+mod second;
+mod sized;
 mod states;
 mod structure;
 mod summands;
@@ -40,6 +52,11 @@ mod term;
 #[cfg(test)]
 mod tests;
 mod text;
+mod tolerance;
+mod velocities;
 
-pub use compare::{Agreement, Options, Second, TOLERANCE, verify};
+pub use agreement::Agreement;
+pub use compare::{Options, verify};
 pub use error::{Disagreement, Unable, VerifyError};
+pub use second::Second;
+pub use tolerance::TOLERANCE;

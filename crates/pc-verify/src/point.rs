@@ -4,7 +4,7 @@ use std::cell::{Cell, OnceCell};
 
 use crate::error::{Irregular, Unable};
 use crate::number::Number;
-use crate::resultants::Resultants;
+use crate::resultant::Resultants;
 use crate::rounding::Rounding;
 use crate::term::{Function, Term};
 use crate::text::{Body, Text, Turning, Velocities};

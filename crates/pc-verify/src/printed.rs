@@ -7,12 +7,13 @@ use pc_mech::{Canonical, Expr, Graph};
 use pc_model::Assembly;
 use pc_print::{Derived, Form};
 
-use crate::compare::{Here, Second};
 use crate::derivation::Derivation;
 use crate::error::Irregular;
+use crate::here::Here;
 use crate::linear::solve;
-use crate::quantities::{Free, Quantity};
+use crate::quantity::{Free, Quantity};
 use crate::rounding::Rounding;
+use crate::second::Second;
 
 /// The forms that are printed.
 pub(crate) const FORMS: [Form; 4] = [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Voronets];

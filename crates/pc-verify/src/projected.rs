@@ -12,13 +12,15 @@ use nalgebra::DMatrix;
 use pc_mech::VectorField;
 use pc_model::Flow;
 
-use crate::compare::ORDINARY;
-use crate::derivation::{Derivation, Direction, Place, Virtual};
+use crate::derivation::Derivation;
 use crate::error::Irregular;
 use crate::linear::{matrix, pseudo_inverse};
-use crate::quantities::{REPETITIONS, Sized};
+use crate::place::{Direction, Place, Virtual};
+use crate::quantities::REPETITIONS;
 use crate::rounding::{Random, Rounding, UNIT};
+use crate::sized::Sized;
 use crate::text::Velocities;
+use crate::tolerance::ORDINARY;
 
 /// How many virtual velocities are drawn.
 pub(crate) const DIRECTIONS: usize = 3;

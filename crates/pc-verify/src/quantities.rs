@@ -1,60 +1,15 @@
 //! What is compared, with the size of the rounding errors in it.
 
-use crate::compare::Here;
-use crate::derivation::{Derivation, Derived, Direction};
+use crate::derivation::Derivation;
+use crate::equations::Derived;
 use crate::error::Irregular;
+use crate::here::Here;
 use crate::linear::{matrix, solve};
-use crate::resultants::{Resultant, Resultants};
+use crate::place::Direction;
+use crate::quantity::{Free, Quantity};
+use crate::resultant::Resultants;
 use crate::rounding::{Rounding, UNIT, within};
-
-/// A quantity that both derivations have.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Quantity {
-    /// ẋ_i
-    Velocity(usize),
-    /// ẍ_i
-    Acceleration(usize),
-    /// ż_j
-    StateRate(usize),
-    /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
-    Column(usize),
-    /// η̇_s of the columns.
-    ColumnRate(usize),
-    /// What constraint number α fixes at 0, or its rate.
-    Zero,
-    /// λ_α by the number of the constraint.
-    Reaction(usize),
-    /// What a reaction is on a body.
-    Resultant(Resultant),
-    /// y·η − L of all velocities.
-    Energy,
-    /// y_f of the free quasi-velocities, by their place among these.
-    Momentum(usize),
-    MomentumRate(usize),
-    /// y_f η_f − L of the free quasi-velocities, and its rate.
-    FreeEnergy,
-    FreeEnergyRate,
-    /// An integral or output, by its place in the text.
-    Observed(usize),
-}
-
-/// A quasi-velocity that is free, or whose momentum is one of the state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Free {
-    /// That of a column.
-    Column(usize),
-    /// What a constraint fixes at 0.
-    Constraint(usize),
-    /// ẋ_i
-    Velocity(usize),
-}
-
-/// A value, and how large the terms are that it is made up of.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sized {
-    pub(crate) value: f64,
-    pub(crate) size: f64,
-}
+use crate::sized::Sized;
 
 /// Momenta of independent quasi-velocities, others following from the constraints.
 struct Momenta {

@@ -2,11 +2,13 @@
 
 use nalgebra::DMatrix;
 
-use crate::derivation::{Derivation, NEWTON, Place, SETTLED};
+use crate::derivation::Derivation;
 use crate::error::Irregular;
 use crate::linear::pseudo_inverse;
+use crate::place::Place;
 use crate::rounding::{Random, Rounding};
 use crate::text::Velocities;
+use crate::velocities::{NEWTON, SETTLED};
 
 /// Sizes of the random displacements, in turn.
 const SCALES: [f64; 4] = [1.0, 0.3, 0.05, 0.002];

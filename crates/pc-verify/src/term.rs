@@ -3,7 +3,7 @@
 use pc_expr::parse::{Ast, AstKind, Factor, Sign};
 
 use crate::error::Unable;
-use crate::resultants::Resultant;
+use crate::resultant::Resultant;
 
 /// An expression, names replaced by their places.
 #[derive(Clone, Debug)]

@@ -3,10 +3,12 @@
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 
-use crate::compare::{Options, Second, verify};
-use crate::derivation::{Derived, Place};
+use crate::compare::{Options, verify};
+use crate::equations::Derived;
 use crate::error::VerifyError;
+use crate::place::Place;
 use crate::rounding::Rounding;
+use crate::second::Second;
 
 fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())

@@ -17,6 +17,9 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
     stage("set-up", setup::everything)?;
     cargo_stage("format", &mut cargo(&["fmt", "--all", "--check"]))?;
     cargo_stage("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let without_sundials =
+        ["clippy", "-p", "pc-solve", "--lib", "--no-default-features", "--", "-D", "warnings"];
+    cargo_stage("lints without SUNDIALS", &mut cargo(&without_sundials))?;
     let counts = tests()?;
     if !quick {
         stage("C examples", c_examples::quick)?;

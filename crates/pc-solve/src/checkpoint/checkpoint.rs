@@ -21,9 +21,6 @@
 //! occurred last, and which are due. What a field keeps by projection, such as the energy, is what it kept when made, but
 //! after a [restart](crate::Integration::restart), by a reset say, what it is in the state of the checkpoint.
 
-pub use crate::checkpoint::encoding::CheckpointError;
-pub use crate::checkpoint::legs::solve_checkpointed;
-
 use crate::events::events::{History, Occurrence};
 use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
@@ -102,12 +99,12 @@ impl Checkpoint {
         &self.sensitivities
     }
 
-    /// The outputs of [`solve_checkpointed`] up to that time.
+    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
     pub fn outputs(&self) -> &Trajectory {
         &self.outputs
     }
 
-    /// What occurred up to that time in [`solve_checkpointed`].
+    /// What occurred up to that time in [`solve_checkpointed`](crate::solve_checkpointed).
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences
     }

@@ -7,15 +7,16 @@ use std::ops::ControlFlow;
 use pc_expr::{Events, VectorField};
 
 use crate::checkpoint::checkpoint::Checkpoint;
-use crate::cvode::return_code::Code;
-use crate::error::{InputError, IntegrationError, Reason, SolveError, SolveFailure};
+use crate::error::{Code, InputError, IntegrationError, Reason, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::integration::{Ending, Integration};
+use crate::integration::method::IntegrationMethod;
 use crate::integration::observer::Observed;
-use crate::integration::solve::{IntegrationMethod, Solution};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 use crate::integration::trajectory::Trajectory;
+use crate::solve::failure::SolveFailure;
+use crate::solve::solution::Solution;
 
 /// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint after `every` so many steps.
 ///

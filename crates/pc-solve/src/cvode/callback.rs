@@ -9,12 +9,12 @@ use std::slice;
 use pc_expr::{Failure, VectorField};
 use sundials_sys as sys;
 
+use crate::cvode::forward::variation::Variation;
 use crate::cvode::handles::numbers_of;
+use crate::cvode::integrals::Integrands;
+use crate::cvode::linear::work::Work;
+use crate::cvode::projection::Offset;
 use crate::error::NonFinite;
-use crate::integration::integrals::Integrands;
-use crate::integration::projection::Offset;
-use crate::linear::linear::Work;
-use crate::sensitivity::variation::Variation;
 
 pub(crate) const SUCCESS: c_int = 0;
 const RECOVERABLE: c_int = 1;

@@ -10,10 +10,11 @@ use sundials_sys as sys;
 use crate::cvode::callback::UserData;
 use crate::cvode::context::Context;
 use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
+use crate::cvode::linear::linear::Linear;
+use crate::cvode::linear::solver::LinearSolver;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
-use crate::linear::linear::{Linear, LinearSolver};
 
 /// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper), owning the vector field.
 ///
@@ -23,7 +24,7 @@ pub struct Cvode<F> {
     pub(crate) memory: Memory,
     pub(super) _nonlinear_iteration: NonlinearIteration,
     pub(super) linear: Option<Linear>,
-    pub(crate) sensitivity: Option<crate::sensitivity::forward::Forward>,
+    pub(crate) sensitivity: Option<crate::cvode::forward::columns::Forward>,
     pub(crate) quadrature: Option<crate::cvode::quadrature::Quadrature>,
     /// y(`step_time`).
     pub(crate) step_state: Vector,

@@ -1,64 +1,36 @@
-//! What an explicit dependence on time holds between here and the end of the next step.
-//!
-//! A multistep method sees f at the ends of its steps only. Before a step is tried, f is therefore evaluated where its
-//! explicit dependence on time has something to hide, at the state that the step would predict there: with p the polynomial
-//! through the last steps, the defect
-//! ```text
-//! δ = p′(t) − f(t, p(t))
-//! ```
-//! would change the state by about h δ over a step of length h. If that is large beside the tolerance, the step is to end
-//! no later than there, and the method meets it.
-//!
-//! Where the field shows its [profile](TimeDependence::Known), these places are the turns, jumps and corners of what
-//! contains t, however close they are; a step in which nothing turns twice needs none. Where only evaluations can tell, they
-//! are places evenly spaced over the whole integration.
+//! What is looked out for between here and the end of the next step, and the polynomial that tells what is expected.
 
-use pc_expr::{Surprises, TimeDependence, TimeProfile, VectorField};
-use sundials_sys as sys;
+use pc_expr::{TimeDependence, VectorField};
 
-use crate::cvode::cvode::Cvode;
-use crate::error::SolveError;
-use crate::integration::options::{Options, Tolerance};
+use crate::cvode::options::Options;
+use crate::settings::tolerance::Tolerance;
 
-/// Places at which a field that is known by its values alone is looked at, from the start to where it is to be integrated.
-const SAMPLES: f64 = 64.0;
-/// Most places of fast oscillations looked at in one step.
-const MOST: usize = 16;
-/// Twice as many may lie in a step for each one before it whose places were as foreseen, so many times.
-const DOUBLINGS: u32 = 20;
-/// After so many such steps an oscillation is taken to be too small to matter.
-const ENOUGH: u32 = 200;
-/// A defect matters if over the step it changes the state by more than this times the tolerance. The correction of a step
-/// that passes its error test may come to some ten times the tolerance, at the orders from 1 to 12.
-const SURPRISE: f64 = 100.0;
 /// The correction of a step is its local error times at most about this, at the orders at which steps grow.
 const NEXT_TERM: f64 = 20.0;
-/// The first step is at most this part of the way, as CVODE estimates it.
-const FIRST_STEP: f64 = 0.1;
 
 /// What is to be looked out for, and what that has taken.
 pub(super) struct Foresight {
-    dependence: TimeDependence,
+    pub(super) dependence: TimeDependence,
     /// When the integration began.
-    begin: f64,
+    pub(super) begin: f64,
     /// The least length of a step, if there is one.
-    min_step: f64,
-    relative_tolerance: f64,
-    absolute_tolerance: Tolerance,
+    pub(super) min_step: f64,
+    pub(super) relative_tolerance: f64,
+    pub(super) absolute_tolerance: Tolerance,
     /// Steps in sequence that were full of places, all as foreseen.
-    unsurprising: u32,
+    pub(super) unsurprising: u32,
     /// Evaluations and shortened steps since the last restart.
     pub(super) evaluations: u64,
     pub(super) limited: u64,
     /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, and work.
-    polynomial: Vec<Vec<f64>>,
-    state: Vec<f64>,
-    slope: Vec<f64>,
-    rates: Vec<f64>,
+    pub(super) polynomial: Vec<Vec<f64>>,
+    pub(super) state: Vec<f64>,
+    pub(super) slope: Vec<f64>,
+    pub(super) rates: Vec<f64>,
     /// The local errors of the last step, its length and order.
-    errors: Vec<f64>,
-    last_step: f64,
-    order: i32,
+    pub(super) errors: Vec<f64>,
+    pub(super) last_step: f64,
+    pub(super) order: i32,
 }
 
 impl Foresight {
@@ -110,7 +82,7 @@ impl Foresight {
     ///
     /// Of it what the next term of the polynomial would explain is no surprise: a method that has just raised its order has
     /// that term, and goes far with it.
-    fn defect(&self, since: f64) -> f64 {
+    pub(super) fn defect(&self, since: f64) -> f64 {
         let ratio = (since / self.last_step).abs();
         let growth = NEXT_TERM * f64::from(self.order + 1) * ratio.powi(self.order) / self.last_step.abs();
         let weighed = |i: usize| {
@@ -121,7 +93,7 @@ impl Foresight {
     }
 
     /// Writes p(t) and p′(t), the time counted from where the polynomial was made.
-    fn predict(&mut self, since: f64) {
+    pub(super) fn predict(&mut self, since: f64) {
         self.state.fill(0.0);
         self.slope.fill(0.0);
         for terms in self.polynomial.iter().rev() {
@@ -130,182 +102,5 @@ impl Foresight {
                 *state = *state * since + term;
             }
         }
-    }
-}
-
-impl<F: VectorField> Cvode<F> {
-    /// A time in the next step, tried in the direction of `towards`, at which the step is to end; none if nothing is
-    /// foreseen that it would not see.
-    pub(super) fn foresee(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
-        if matches!(self.foresight.dependence, TimeDependence::Absent) {
-            return Ok(None);
-        }
-        let t = self.step_time;
-        let end = self.stop_time.unwrap_or(towards);
-        let reach = self.planned_end(towards);
-        // CVODE cannot go to where rounding is felt.
-        let least = (1e-13 * t.abs().max(reach.abs())).max(self.foresight.min_step);
-        if (reach - t).abs() <= least {
-            return Ok(None);
-        }
-        let mut dependence = std::mem::replace(&mut self.foresight.dependence, TimeDependence::Absent);
-        let landing = self.foresee_in(&mut dependence, (t, reach, end), least);
-        self.foresight.dependence = dependence;
-        landing
-    }
-
-    fn foresee_in(
-        &mut self,
-        dependence: &mut TimeDependence,
-        (t, reach, end): (f64, f64, f64),
-        least: f64,
-    ) -> Result<Option<f64>, SolveError> {
-        let Surprises { mut few, mut many, until } = match dependence {
-            TimeDependence::Absent => Surprises::default(),
-            // A first step whose length is given is taken at the word.
-            TimeDependence::Unknown if self.direction.is_none() && self.initial_step.is_some() => {
-                Surprises::default()
-            }
-            TimeDependence::Unknown => Surprises { few: self.samples(t, reach, end), ..Surprises::default() },
-            TimeDependence::Known(profile) => {
-                let mut places = self.surprises(profile, (t, reach, end))?;
-                if profile.is_partial() {
-                    places.few.extend(self.samples(t, reach, end));
-                }
-                places
-            }
-        };
-        for places in [&mut few, &mut many] {
-            places.retain(|place| (place - t).abs() > least);
-        }
-        let crowd = many.len();
-        // Of fast oscillations not all are looked at, and a step holds no more than those before it let expect.
-        let allowed = MOST << self.foresight.unsurprising.min(DOUBLINGS);
-        let crowded = many.get(allowed).copied().or(until.filter(|until| (until - t).abs() > least));
-        many.truncate(allowed);
-        let stride = many.len().div_ceil(MOST).max(1);
-        few.extend(many.iter().skip(stride - 1).step_by(stride));
-        few.sort_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
-        if few.is_empty() && crowded.is_none() {
-            self.foresight.unsurprising = 0;
-            return Ok(None);
-        }
-        if self.direction.is_none() {
-            return Ok(few.first().copied().or(crowded)); // nothing is known yet, and the first step is short
-        }
-        self.read_polynomial()?;
-        for place in few {
-            if crowded.is_some_and(|crowded| (place - crowded) * (reach - t) > 0.0) {
-                break;
-            }
-            if self.surprises_at(place, (reach - t).abs()) {
-                self.foresight.unsurprising = 0;
-                self.foresight.limited += 1;
-                return Ok(Some(place));
-            }
-        }
-        self.foresight.unsurprising =
-            if crowd > MOST || until.is_some() { self.foresight.unsurprising + 1 } else { 0 };
-        self.foresight.limited += u64::from(crowded.is_some());
-        Ok(crowded)
-    }
-
-    /// Where the next step would end.
-    fn planned_end(&self, towards: f64) -> f64 {
-        let t = self.step_time;
-        let end = self.stop_time.unwrap_or(towards);
-        let direction = 1.0_f64.copysign(end - t);
-        let length = if self.direction.is_some() {
-            let mut length = 0.0;
-            // SAFETY: the memory is live and initialised; `length` is a place for the result.
-            unsafe { sys::CVodeGetCurrentStep(self.memory.raw(), &raw mut length) };
-            length.abs()
-        } else {
-            self.initial_step.unwrap_or(FIRST_STEP * (end - t).abs())
-        };
-        let reach = t + length.copysign(direction);
-        match self.stop_time {
-            Some(stop) if (reach - stop) * direction > 0.0 => stop,
-            _ => reach,
-        }
-    }
-
-    /// Places evenly spaced over the integration from its start to `end`, those of the next step.
-    fn samples(&self, t: f64, reach: f64, end: f64) -> Vec<f64> {
-        let begin = self.foresight.begin;
-        let spacing = (end - begin).abs().max((reach - begin).abs()) / SAMPLES;
-        let (from, to) = ((t - begin).abs() / spacing, (reach - begin).abs() / spacing);
-        let direction = 1.0_f64.copysign(reach - t);
-        let place = |k: f64| begin + (k * spacing).copysign(direction);
-        if (t - begin) * direction < 0.0 || !spacing.is_normal() {
-            return Vec::new(); // an integration that has turned round
-        }
-        // In the middle between whole multiples, which steps and switches tend to fall on.
-        let first = (from - 0.5).ceil().max(0.0);
-        let count = (to - 0.5 - first).ceil().clamp(0.0, 2.0 * SAMPLES);
-        (0..count as u32)
-            .map(|k| place(first + f64::from(k) + 0.5))
-            .filter(|s| (s - reach) * direction < 0.0)
-            .collect()
-    }
-
-    /// What the profile shows in the next step.
-    fn surprises(
-        &mut self,
-        profile: &mut TimeProfile,
-        (t, reach, end): (f64, f64, f64),
-    ) -> Result<Surprises, SolveError> {
-        if profile.follows_states() {
-            self.read_polynomial()?;
-            self.foresight.predict(0.0);
-        }
-        let Foresight { state, slope, .. } = &self.foresight;
-        Ok(profile.surprises((t, reach), (state, slope), end, self.foresight.unsurprising > ENOUGH))
-    }
-
-    /// Takes the polynomial of the last step; before the first, the tangent.
-    fn read_polynomial(&mut self) -> Result<(), SolveError> {
-        let t = self.step_time;
-        if self.direction.is_none() {
-            let y = self.step_state.as_slice().to_vec();
-            let mut rates = vec![0.0; y.len()];
-            self.foresight.evaluations += 1;
-            if !self.callbacks.look(t, &y, &mut rates) {
-                rates.fill(0.0); // CVODE will say so
-            }
-            self.foresight.polynomial = vec![y, rates];
-            return Ok(());
-        }
-        let mut order = 0;
-        // SAFETY: the memory is live and initialised; `order` is a place for the result.
-        unsafe { sys::CVodeGetLastOrder(self.memory.raw(), &raw mut order) };
-        self.foresight.polynomial.clear();
-        let mut factorial = 1.0;
-        for k in 0..=order {
-            factorial *= f64::from(k.max(1));
-            // SAFETY: memory and vector are live and of one context; a step has been taken.
-            let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, k, self.work.raw()) };
-            self.context.check("CVodeGetDky", code)?;
-            self.foresight
-                .polynomial
-                .push(self.work.as_slice().iter().map(|term| term / factorial).collect());
-        }
-        // SAFETY: as above; CVODES copies to the vector.
-        let code = unsafe { sys::CVodeGetEstLocalErrors(self.memory.raw(), self.work.raw()) };
-        self.context.check("CVodeGetEstLocalErrors", code)?;
-        self.foresight.errors.copy_from_slice(self.work.as_slice());
-        self.foresight.order = order;
-        // SAFETY: as above.
-        unsafe { sys::CVodeGetLastStep(self.memory.raw(), &raw mut self.foresight.last_step) };
-        Ok(())
-    }
-
-    /// Whether f does there what the polynomial does not let expect, for a step of this length.
-    fn surprises_at(&mut self, place: f64, length: f64) -> bool {
-        let since = place - self.step_time;
-        self.foresight.predict(since);
-        self.foresight.evaluations += 1;
-        let Foresight { state, rates, .. } = &mut self.foresight;
-        self.callbacks.look(place, state, rates) && length * self.foresight.defect(since) > SURPRISE
     }
 }

@@ -11,14 +11,16 @@ use crate::cvode::callback::UserData;
 use crate::cvode::context::Context;
 use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
+use crate::cvode::linear::choice::choose;
+use crate::cvode::linear::linear::Linear;
+use crate::cvode::options::Options;
 use crate::error::SolveError;
-use crate::integration::inequality;
-use crate::integration::inequality::Inequality;
-use crate::integration::options::{Method, Options, Tolerance, check_start, finite};
+use crate::integration::checks::{check_inequalities, check_start, finite};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
-use crate::linear::linear;
-use crate::linear::linear::Linear;
+use crate::settings::inequality::Inequality;
+use crate::settings::method::Method;
+use crate::settings::tolerance::Tolerance;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
@@ -29,8 +31,8 @@ impl<F: VectorField> Cvode<F> {
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         options.validate(y0.len())?;
-        inequality::check(&field, y0, &options.inequalities)?;
-        let linear_solver = linear::choose(&field, options)?;
+        check_inequalities(&field, y0, &options.inequalities)?;
+        let linear_solver = choose(&field, options)?;
         let foresight = Foresight::new(&field, t0, options);
 
         // Dropped in reverse order if one of them fails.
@@ -115,7 +117,7 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
         }
     }
     if options.inequalities.iter().any(|&inequality| inequality != Inequality::Free) {
-        let numbers: Vec<f64> = options.inequalities.iter().map(|inequality| inequality.number()).collect();
+        let numbers: Vec<f64> = options.inequalities.iter().copied().map(number).collect();
         let numbers = Vector::new(context, &numbers)?;
         // SAFETY: the memory is initialised; CVODES copies the vector, which has its dimension.
         let code = unsafe { sys::CVodeSetConstraints(memory.raw(), numbers.raw()) };
@@ -131,4 +133,15 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
         memory.set(context, "CVodeSetMaxOrd", sys::CVodeSetMaxOrd, order as c_int)?;
     }
     Ok(())
+}
+
+/// The number that stands for an inequality in `CVodeSetConstraints`.
+fn number(inequality: Inequality) -> f64 {
+    match inequality {
+        Inequality::Free => 0.0,
+        Inequality::NotNegative => 1.0,
+        Inequality::NotPositive => -1.0,
+        Inequality::Positive => 2.0,
+        Inequality::Negative => -2.0,
+    }
 }

@@ -1,14 +1,12 @@
 //! The methods of CVODES as a [`Stepper`].
 
-use pc_expr::{Events, VectorField};
+use pc_expr::VectorField;
 
 use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
-use crate::integration::integration::Integration;
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
-use crate::linear::linear::LinearSolver;
 
 impl<F: VectorField> Stepper for Cvode<F> {
     type Field = F;
@@ -101,29 +99,5 @@ impl<F: VectorField> Stepper for Cvode<F> {
 
     fn column_parameters(&self) -> &[Option<usize>] {
         self.callbacks.variation().parameters()
-    }
-}
-
-/// What only a method with error control and a linear solver has to tell.
-impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// As [`Cvode::linear_solver`].
-    pub fn linear_solver(&self) -> Option<&LinearSolver> {
-        self.engine.linear_solver()
-    }
-
-    /// As [`Cvode::error_weights`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn error_weights(&mut self) -> Result<&[f64], SolveError> {
-        self.engine.error_weights()
-    }
-
-    /// As [`Cvode::local_errors`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn local_errors(&mut self) -> Result<&[f64], SolveError> {
-        self.engine.local_errors()
     }
 }

@@ -33,20 +33,20 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use pc_expr::VectorField;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-pub use crate::ensemble::random::member_stream;
-
+use crate::cvode::options::Options;
 use crate::ensemble::ordered::Queue;
-use crate::error::SolveFailure;
+use crate::ensemble::stop::Stop;
 use crate::integration::integration::Ending;
-use crate::integration::options::Options;
-use crate::integration::solve::{Solution, Solve};
 use crate::integration::trajectory::Trajectory;
+use crate::solve::failure::SolveFailure;
+use crate::solve::solution::Solution;
+use crate::solve::solve::Solve;
 
 /// Members that may be ahead of the one that is consumed next, for each thread.
 const WINDOW: usize = 64;
@@ -94,7 +94,7 @@ impl<'a> Ensemble<'a> {
         Ensemble { flag: Some(flag), ..self }
     }
 
-    /// Integrates each member, as [`solve`](crate::integration::solve()) does, and gives the trajectories to `consume` in the order of
+    /// Integrates each member, as [`solve`](crate::solve()) does, and gives the trajectories to `consume` in the order of
     /// the members.
     ///
     /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
@@ -196,20 +196,6 @@ impl<'a> Ensemble<'a> {
             }
             Ok(ending)
         })
-    }
-}
-
-/// Whether the rest of an ensemble is wanted no longer.
-#[derive(Debug, Clone, Copy)]
-pub struct Stop<'a> {
-    pub(super) own: &'a AtomicBool,
-    flag: Option<&'a AtomicBool>,
-}
-
-impl Stop<'_> {
-    /// Whether to end now: the consumer has broken off, or the flag of [`Ensemble::stopped_by`] is set.
-    pub fn requested(&self) -> bool {
-        self.own.load(Ordering::Relaxed) || self.flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 }
 

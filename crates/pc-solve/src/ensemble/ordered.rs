@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use crate::ensemble::ensemble::Stop;
+use crate::ensemble::stop::Stop;
 
 /// Hands members out in order and takes their results in any; gives the results in order. No member is begun that is
 /// `window` or more ahead of the one to be taken next.

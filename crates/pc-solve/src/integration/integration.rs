@@ -5,12 +5,10 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Direction, Event, Events, Failure, VectorField};
 
-use crate::cvode::cvode::Cvode;
 use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::events::events::{Accumulation, History, NoEvents};
 use crate::events::root_finding::{Passage, Sample, Sides};
-use crate::integration::inequality;
-use crate::integration::options::{Options, check_length, finite};
+use crate::integration::checks::{check_inequalities, check_length, finite};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 
@@ -50,26 +48,26 @@ pub struct Integration<S, E = NoEvents> {
     /// Stands where this integration does.
     pub(crate) engine: S,
     pub(crate) events: E,
-    pub(super) histories: Vec<History>,
+    pub(crate) histories: Vec<History>,
     /// 1 or −1 since the first step.
-    pub(super) direction: Option<f64>,
+    pub(crate) direction: Option<f64>,
     /// Up to where it is known what occurs, the functions there, and y.
     pub(crate) front: Sample,
-    pub(super) front_state: Vec<f64>,
-    pub(super) sides: Sides,
+    pub(crate) front_state: Vec<f64>,
+    pub(crate) sides: Sides,
     /// The sides before the front moved there.
-    pub(super) sides_before: Sides,
+    pub(crate) sides_before: Sides,
     /// The events that occur at the front and have yet to be dealt with.
-    pub(super) due: Vec<usize>,
-    pub(super) noise: Vec<f64>,
+    pub(crate) due: Vec<usize>,
+    pub(crate) noise: Vec<f64>,
     /// The side of zero that each of those due goes on to.
-    pub(super) beyond: Vec<f64>,
+    pub(crate) beyond: Vec<f64>,
     /// y(`time`), unless `time` is the front.
-    pub(super) output: Vec<f64>,
+    pub(crate) output: Vec<f64>,
     /// Whether there has been no step since a new start on the way.
-    pub(super) restarted: bool,
+    pub(crate) restarted: bool,
     /// Whether the motion has been started anew from a state that it did not come to by itself.
-    pub(super) jumped: bool,
+    pub(crate) jumped: bool,
 }
 
 /// How a [`run`](Integration::run) ended.
@@ -94,16 +92,6 @@ impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
             .field("events", &self.events.events())
             .field("statistics", &self.statistics())
             .finish_non_exhaustive()
-    }
-}
-
-impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 by CVODES, where `y0` has as many numbers as `field` has components.
-    ///
-    /// # Errors
-    /// As for [`Cvode::new`].
-    pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
-        Ok(Integration::of(Cvode::new(field, t0, y0, options)?))
     }
 }
 
@@ -193,7 +181,7 @@ impl<S: Stepper> Integration<S> {
     }
 }
 
-pub(super) fn directions(events: &impl Events) -> Vec<Direction> {
+pub(crate) fn directions(events: &impl Events) -> Vec<Direction> {
     events.events().iter().map(Event::crosses).collect()
 }
 
@@ -288,7 +276,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             let what = format!("{} at the start", self.field().component_name(i));
             return Err(InputError::NotFinite { what, value: y[i] }.into());
         }
-        inequality::check(self.field(), y, &self.engine.limits().inequalities)?;
+        check_inequalities(self.field(), y, &self.engine.limits().inequalities)?;
         let values = self.evaluate(t, y)?;
         self.engine.restart(t, y, columns, None)?;
         (self.direction, self.restarted, self.jumped) = (None, true, true);
@@ -313,7 +301,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Moves the front to the next event or to the end of the next step.
-    pub(super) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
+    pub(crate) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
         let time = self.engine.time();
         if self.engine.last_step().end == self.front.t {
             if self.arrives(towards)? {
@@ -404,7 +392,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.stay(error)
     }
 
-    pub(super) fn stay(&mut self, mut error: SolveError) -> SolveError {
+    pub(crate) fn stay(&mut self, mut error: SolveError) -> SolveError {
         self.engine.stand_at(self.front.t);
         if let SolveError::Integration(error) = &mut error {
             error.time = self.front.t;

@@ -1,7 +1,7 @@
 //! What an integration keeps to, whatever the method.
 
 use crate::events::events::Accumulation;
-use crate::integration::inequality::Inequality;
+use crate::settings::inequality::Inequality;
 
 /// What an integration keeps to, whatever the method.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use pc_expr::{Events, Failure, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::events::Occurrence;
-use crate::integration::inequality;
+use crate::integration::checks::check_inequalities;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::stepper::Stepper;
 
@@ -140,7 +140,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             result = Err(Failure::fatal(NonFinite::Reset { event, component, value: state[i], t }));
         }
         if result.is_ok() {
-            let allowed = inequality::check(self.field(), state, &self.engine.limits().inequalities);
+            let allowed = check_inequalities(self.field(), state, &self.engine.limits().inequalities);
             result = allowed.map_err(Failure::fatal);
         }
         if let Err(failure) = result {

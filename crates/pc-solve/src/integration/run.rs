@@ -4,12 +4,11 @@ use std::ops::ControlFlow;
 
 use pc_expr::Events;
 
-use crate::cvode::return_code::Code;
-use crate::error::{InputError, Reason, SolveError};
+use crate::error::{Code, InputError, Reason, SolveError};
 use crate::events::events::Occurrence;
+use crate::integration::checks::finite;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::{Observed, Observer};
-use crate::integration::options::finite;
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -81,7 +80,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// That one more step may be taken after so many on the way to `t`.
-    pub(super) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
+    pub(crate) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.engine.limits().max_steps {
             return Ok(());
         }
@@ -148,7 +147,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Checks that the integration can go on to `t`.
-    pub(super) fn check_ahead(&self, t: f64) -> Result<(), InputError> {
+    pub(crate) fn check_ahead(&self, t: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         let current = self.time();
         if t == current {
@@ -167,7 +166,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Checks output times and returns the last.
-    pub(super) fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
+    pub(crate) fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
         let &end = times.last().ok_or(InputError::NoTimes)?;
         for (i, &t) in times.iter().enumerate() {
             finite(&format!("output time number {i} (from 0)"), t)?;

@@ -3,8 +3,8 @@
 use pc_expr::{Failure, VectorField};
 
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::checks::finite;
 use crate::integration::limits::Limits;
-use crate::integration::options::finite;
 use crate::integration::statistics::Statistics;
 
 /// A method that makes steps: what [`Integration`](crate::Integration) needs to know of it.

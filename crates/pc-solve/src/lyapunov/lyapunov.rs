@@ -2,11 +2,12 @@
 
 use pc_expr::VectorField;
 
+use crate::cvode::forward::sensitivities::Sensitivities;
+use crate::cvode::options::Options;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::checks::positive;
 use crate::integration::integration::Integration;
-use crate::integration::options::{Options, positive};
 use crate::lyapunov::orthonormal::{length, orthonormalise};
-use crate::sensitivity::options::Sensitivities;
 
 /// How many exponents, from how long a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,13 +4,14 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::error::{SolveError, SolveFailure};
+use crate::cvode::forward::sensitivities::Sensitivities;
+use crate::cvode::options::Options;
+use crate::error::SolveError;
 use crate::events::events::Occurrence;
 use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
-use crate::integration::options::Options;
 use crate::integration::trajectory::Trajectory;
-use crate::sensitivity::options::Sensitivities;
+use crate::solve::failure::SolveFailure;
 
 /// The states of a motion at its output times, and S(t) = ∂y(t)/∂(p, y₀) there.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +63,7 @@ impl SensitivityTrajectory {
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::integration::solve()) does, and derivatives of the motion with it.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, and derivatives of the motion with it.
 ///
 /// # Errors
 /// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.

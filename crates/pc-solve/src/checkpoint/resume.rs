@@ -1,0 +1,90 @@
+//! Where an integration can be taken up again.
+
+use pc_expr::{Events, VectorField};
+
+use crate::checkpoint::checkpoint::{Checkpoint, EventPast, Past};
+use crate::error::{InputError, SolveError};
+use crate::events::root_finding::Sides;
+use crate::integration::integration::{Integration, directions};
+use crate::integration::stepper::Stepper;
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// Time, state, sensitivities and work where the integration stands, and what is known of its events, to be gone on from
+    /// by [`resume`](Integration::resume).
+    ///
+    /// Events that are due where an observer has stopped it are dealt with after the checkpoint.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let at_front = self.time() == self.front.t;
+        // What the functions do between here and the front is not known here.
+        let sides = if at_front { &self.sides } else { &self.sides_before };
+        let known = sides.known().zip(&self.histories);
+        let due = if at_front { self.due.as_slice() } else { &[] };
+        let past = Past {
+            events: known
+                .map(|((side, noise), history)| EventPast { side, noise, history: history.clone() })
+                .collect(),
+            due: due
+                .iter()
+                .zip(&self.beyond)
+                .map(|(&event, &side)| (event, self.noise[event], side))
+                .collect(),
+        };
+        // Derivatives that cannot be had are not finite, and refused by whoever goes on from them.
+        let entries = self.field().dim() * self.engine.column_parameters().len();
+        Checkpoint {
+            statistics: self.statistics(),
+            jumped: self.jumped,
+            sensitivities: self.engine.columns().unwrap_or_else(|_| vec![f64::NAN; entries]),
+            past: Some(past),
+            ..Checkpoint::start(self.time(), self.state())
+        }
+    }
+}
+
+impl<S: Stepper> Integration<S> {
+    /// Goes on at a checkpoint by a method that has been begun there.
+    ///
+    /// If the motion was [restarted](Integration::restart) before the checkpoint, the field is told to go on from
+    /// [there](VectorField::restart), so that it keeps what it kept after the jump.
+    pub(crate) fn resumed(mut stepper: S, checkpoint: &Checkpoint) -> Self {
+        if checkpoint.jumped {
+            stepper.field_mut().restart(checkpoint.time, &checkpoint.state);
+        }
+        Integration { jumped: checkpoint.jumped, ..Integration::of(stepper) }
+    }
+
+    /// This integration, which has been resumed at a checkpoint, with the events that the checkpoint knows of.
+    ///
+    /// # Errors
+    /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the checkpoint is of a motion with
+    /// another number of events.
+    pub fn with_events_of<E: Events>(
+        self,
+        events: E,
+        checkpoint: &Checkpoint,
+    ) -> Result<Integration<S, E>, SolveError> {
+        let mut integration = self.with_events(events)?;
+        // As after a restart, the end may be too near for a step.
+        integration.restarted = checkpoint.past.is_some();
+        let Some(past) = &checkpoint.past else { return Ok(integration) };
+        let (found, expected) = (past.events.len(), integration.histories.len());
+        if found != expected {
+            return Err(InputError::EventCount { expected, found }.into());
+        }
+        integration.histories = past.events.iter().map(|event| event.history.clone()).collect();
+        let known = past.events.iter().map(|event| (event.side, event.noise));
+        integration.sides = Sides::from_known(directions(&integration.events), known);
+        if past.due.is_empty() {
+            integration.sides.pass(&integration.front.values);
+        } else {
+            integration.noise = vec![0.0; expected];
+            for &(event, noise, side) in &past.due {
+                integration.due.push(event);
+                integration.beyond.push(side);
+                integration.noise[event] = noise;
+            }
+        }
+        integration.sides_before = integration.sides.clone();
+        Ok(integration)
+    }
+}

@@ -1,0 +1,65 @@
+//! Where an integration by CVODES is taken up again.
+
+use pc_expr::VectorField;
+
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::cvode::cvode::Cvode;
+use crate::cvode::forward::sensitivities::Sensitivities;
+use crate::cvode::options::Options;
+use crate::error::{InputError, SolveError};
+use crate::integration::checks::finite;
+use crate::integration::integration::Integration;
+
+impl<F: VectorField> Cvode<F> {
+    /// Begins at a checkpoint with the columns that it has.
+    ///
+    /// # Errors
+    /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if the checkpoint has another
+    /// number of columns.
+    pub(crate) fn begin_at(
+        field: F,
+        checkpoint: &Checkpoint,
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        let (found, dim) = (checkpoint.sensitivities.len(), checkpoint.state.len());
+        if found != dim * sensitivities.len() {
+            let (expected, found) = (sensitivities.len(), found / dim.max(1));
+            return Err(InputError::Sensitivities { expected, found }.into());
+        }
+        for &value in &checkpoint.sensitivities {
+            finite("a sensitivity of the checkpoint", value)?;
+        }
+        let cvode = Cvode::new(field, checkpoint.time, &checkpoint.state, options)?;
+        cvode.and_sensitivities(sensitivities, options, checkpoint.sensitivities.clone())
+    }
+}
+
+impl<F: VectorField> Integration<Cvode<F>> {
+    /// Begins anew at a checkpoint, which may be the start of a motion, without its events:
+    /// [`with_events_of`](Integration::with_events_of) adds them.
+    ///
+    /// Both the motion that was interrupted there and the one that was not go on from here with the same numbers, if
+    /// `field`, events and `options` are the same; fields and events that remember earlier evaluations must be as they were
+    /// when made.
+    ///
+    /// # Errors
+    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has sensitivities.
+    pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
+        Integration::resume_with_sensitivities(field, checkpoint, options, &Sensitivities::new())
+    }
+
+    /// Begins anew at a checkpoint as [`resume`](Integration::resume) does, with the sensitivities that it has. Their columns
+    /// are those of `sensitivities`, whose starts do not matter.
+    ///
+    /// # Errors
+    /// As there; [`InputError::Sensitivities`] if the checkpoint has another number of columns.
+    pub fn resume_with_sensitivities(
+        field: F,
+        checkpoint: &Checkpoint,
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        Ok(Integration::resumed(Cvode::begin_at(field, checkpoint, options, sensitivities)?, checkpoint))
+    }
+}

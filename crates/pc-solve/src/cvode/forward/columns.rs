@@ -1,0 +1,26 @@
+//! The columns of an integration with sensitivities.
+
+use sundials_sys as sys;
+
+use crate::cvode::forward::sensitivities::{Correction, SensitivityStatistics};
+use crate::cvode::handles::{NonlinearIteration, Vector};
+
+/// What an integration with sensitivities has besides.
+pub(crate) struct Forward {
+    /// Referred to by CVODES.
+    pub(super) _nonlinear_iteration: NonlinearIteration,
+    /// Where CVODES writes the columns.
+    pub(crate) columns: Vec<Vector>,
+    /// S at the last start, column-major.
+    pub(super) matrix: Vec<f64>,
+    pub(super) correction: Correction,
+    /// The work before the last restart.
+    pub(super) earlier: SensitivityStatistics,
+}
+
+impl Forward {
+    /// The vectors as CVODES takes them.
+    pub(crate) fn raw(&self) -> Vec<sys::N_Vector> {
+        self.columns.iter().map(Vector::raw).collect()
+    }
+}

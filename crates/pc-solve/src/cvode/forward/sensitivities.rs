@@ -1,0 +1,274 @@
+//! Which derivatives of a motion to integrate with it, and how.
+
+use pc_expr::VectorField;
+
+use crate::cvode::forward::linearisation::Linearisation;
+use crate::error::InputError;
+use crate::integration::checks::{check_length, finite, positive};
+
+/// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
+///
+/// Each column s satisfies the equation of variation, with one more term if it is a derivative by a parameter pⱼ,
+/// ```text
+/// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
+/// ```
+/// Columns come in the order in which they are asked for. Products with ∂f/∂y are the field's
+/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else by difference quotients,
+/// which are good for about ten digits. Derivatives by parameters need the field's
+/// [`parameter_jacobian`](VectorField::parameter_jacobian).
+///
+/// Where the states lie on a surface that may move with the parameters, so must y₀: a start that satisfies constraints
+/// with parameters in them depends on these, and [`by_parameter_from`](Sensitivities::by_parameter_from) is to be told
+/// how. Columns that begin tangent to the surface stay so up to the tolerances; the
+/// [projection](VectorField::project) of the states after each step is not applied to them, but they are integrated
+/// along the projected states.
+///
+/// ```
+/// use pc_solve::{Options, Sensitivities, from_fn, solve_with_sensitivities};
+///
+/// // ẏ = −y²: y = y₀/(1 + y₀ t), so ∂y/∂y₀ = 1/(1 + y₀ t)².
+/// let decay = from_fn(1, |_t, y, ydot| {
+///     ydot[0] = -y[0] * y[0];
+///     Ok(())
+/// });
+/// let sensitivities = Sensitivities::new().by_start(0);
+/// let motion = solve_with_sensitivities(decay, 0.0, &[2.0], &[1.5], &Options::default(), &sensitivities)?;
+/// assert!((motion.matrix(0)[0] - 1.0 / 16.0).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivities {
+    columns: Vec<Column>,
+    pub(crate) correction: Correction,
+    pub(crate) error_control: bool,
+    pub(crate) tolerances: Option<(f64, f64)>,
+    scales: Option<Vec<f64>>,
+}
+
+/// One column of S.
+#[derive(Debug, Clone, PartialEq)]
+struct Column {
+    parameter: Option<usize>,
+    start: Start,
+}
+
+/// A column at the start.
+#[derive(Debug, Clone, PartialEq)]
+enum Start {
+    Zero,
+    Unit(usize),
+    Along(Vec<f64>),
+}
+
+/// When the implicit equations of the columns are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Correction {
+    /// After that of the state, once it has passed its error test.
+    Staggered,
+    /// Together with that of the state.
+    Simultaneous,
+}
+
+impl Default for Sensitivities {
+    fn default() -> Self {
+        Sensitivities::new()
+    }
+}
+
+impl Sensitivities {
+    /// No column yet; staggered correction, and the errors of the columns tested as those of the state are, with the
+    /// same tolerances.
+    pub fn new() -> Self {
+        Sensitivities {
+            columns: Vec::new(),
+            correction: Correction::Staggered,
+            error_control: true,
+            tolerances: None,
+            scales: None,
+        }
+    }
+
+    fn with(mut self, parameter: Option<usize>, start: Start) -> Self {
+        self.columns.push(Column { parameter, start });
+        self
+    }
+
+    /// A column ∂y/∂pⱼ, of a start that does not depend on pⱼ.
+    pub fn by_parameter(self, j: usize) -> Self {
+        self.with(Some(j), Start::Zero)
+    }
+
+    /// A column ∂y/∂pⱼ for each j, of a start that depends on none of them.
+    pub fn by_parameters(self, parameters: impl IntoIterator<Item = usize>) -> Self {
+        parameters.into_iter().fold(self, Sensitivities::by_parameter)
+    }
+
+    /// A column ∂y/∂pⱼ, of a start with the derivative ∂y₀/∂pⱼ.
+    pub fn by_parameter_from(self, j: usize, start: impl Into<Vec<f64>>) -> Self {
+        self.with(Some(j), Start::Along(start.into()))
+    }
+
+    /// A column ∂y/∂y₀ᵢ.
+    pub fn by_start(self, i: usize) -> Self {
+        self.with(None, Start::Unit(i))
+    }
+
+    /// A column ∂y/∂y₀ᵢ for each i.
+    pub fn by_starts(self, components: impl IntoIterator<Item = usize>) -> Self {
+        components.into_iter().fold(self, Sensitivities::by_start)
+    }
+
+    /// A column (∂y/∂y₀) v, the derivative of the motion when its start moves along v.
+    pub fn along(self, direction: impl Into<Vec<f64>>) -> Self {
+        self.with(None, Start::Along(direction.into()))
+    }
+
+    /// When the implicit equations of the columns are solved.
+    pub fn correction(self, correction: Correction) -> Self {
+        Sensitivities { correction, ..self }
+    }
+
+    /// Whether steps have to pass the error test of the columns too.
+    ///
+    /// If not, a staggered correction leaves the steps of the state as they are without sensitivities, unless the
+    /// iteration for a column does not converge.
+    pub fn error_control(self, error_control: bool) -> Self {
+        Sensitivities { error_control, ..self }
+    }
+
+    /// Sizes p̄ of what the columns are derivatives by, positive, one for each: p̄ s has the unit of the state, and the
+    /// absolute tolerance of the column s is that of the state over p̄.
+    ///
+    /// Unless given, p̄ is the [size of a parameter](VectorField::parameter_size), or where that is not known the one by which
+    /// ∂f/∂p at the start is as large as f; that of a component of the start is its own; and all are at least 1.
+    pub fn scales(self, scales: impl Into<Vec<f64>>) -> Self {
+        Sensitivities { scales: Some(scales.into()), ..self }
+    }
+
+    /// Relative and absolute tolerance of the columns, positive; those of the state [scaled](Sensitivities::scales) unless
+    /// given.
+    pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
+        Sensitivities { tolerances: Some((relative, absolute)), ..self }
+    }
+
+    /// Number of columns.
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether there are no columns.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    /// The parameter of each column.
+    pub(crate) fn parameters(&self) -> Vec<Option<usize>> {
+        self.columns.iter().map(|column| column.parameter).collect()
+    }
+
+    /// p̄ of each column, for a start at y(t) = y.
+    pub(crate) fn sizes(
+        &self,
+        field: &mut impl VectorField,
+        linearisation: &mut Linearisation,
+        t: f64,
+        y: &[f64],
+    ) -> Vec<f64> {
+        if let Some(scales) = &self.scales {
+            return scales.clone();
+        }
+        let is_unknown =
+            |column: &Column| column.parameter.is_some_and(|j| field.parameter_size(j).is_none());
+        let mut rates = vec![f64::NAN; y.len()];
+        // Where there is no derivative the integration will say so.
+        let known = !self.columns.iter().any(is_unknown)
+            || field.rhs(t, y, &mut rates).is_ok() && linearisation.parameter_jacobian(field, t, y).is_ok();
+        let size = |column: &Column| match (column.parameter, &column.start) {
+            (Some(j), _) => match field.parameter_size(j) {
+                Some(size) => size,
+                None if known => {
+                    let by_parameter = linearisation.by_parameter(j).iter();
+                    let ratios = rates.iter().zip(by_parameter).map(|(f, by)| (f / by).abs());
+                    ratios.filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
+                }
+                None => 1.0,
+            },
+            (None, Start::Unit(i)) => y[*i].abs(),
+            (None, _) => 1.0,
+        };
+        // Never so small that the columns would be computed less exactly than the state.
+        self.columns
+            .iter()
+            .map(|column| {
+                Some(size(column)).filter(|size| size.is_finite()).map_or(1.0, |size| size.max(1.0))
+            })
+            .collect()
+    }
+
+    /// S(t₀), column-major.
+    pub(crate) fn start(&self, dim: usize) -> Vec<f64> {
+        let mut start = vec![0.0; dim * self.len()];
+        for (values, column) in start.chunks_exact_mut(dim).zip(&self.columns) {
+            match &column.start {
+                Start::Zero => {}
+                Start::Unit(i) => values[*i] = 1.0,
+                Start::Along(direction) => values.copy_from_slice(direction),
+            }
+        }
+        start
+    }
+
+    pub(crate) fn validate(&self, field: &impl VectorField) -> Result<(), InputError> {
+        let dim = field.dim();
+        for column in &self.columns {
+            if let Some(index) = column.parameter {
+                if !field.has_parameter_jacobian() {
+                    return Err(InputError::NoParameterJacobian);
+                }
+                let len = field.parameters_len();
+                if index >= len {
+                    return Err(InputError::NoParameter { index, len });
+                }
+            }
+            match &column.start {
+                Start::Zero => {}
+                Start::Unit(index) => {
+                    if *index >= dim {
+                        return Err(InputError::NoComponent { index: *index, dim });
+                    }
+                }
+                Start::Along(direction) => {
+                    check_length("the start of a sensitivity", direction.len(), dim)?;
+                    for (i, &value) in direction.iter().enumerate() {
+                        finite(&format!("a sensitivity of {} at the start", field.component_name(i)), value)?;
+                    }
+                }
+            }
+        }
+        if let Some(scales) = &self.scales {
+            check_length("the scales of the sensitivities", scales.len(), self.len())?;
+            for &scale in scales {
+                positive("the scale of a sensitivity", scale)?;
+            }
+        }
+        if let Some((relative, absolute)) = self.tolerances {
+            positive("the relative tolerance of the sensitivities", relative)?;
+            positive("the absolute tolerance of the sensitivities", absolute)?;
+        }
+        Ok(())
+    }
+}
+
+/// The work for the columns, beyond that for the state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct SensitivityStatistics {
+    /// Evaluations of the equations of variation, of all columns at once.
+    pub evaluations: u64,
+    /// Steps tried again because the estimated error of a column was too large.
+    pub error_test_failures: u64,
+    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is simultaneous.
+    pub nonlinear_iterations: u64,
+    /// Failures of that solver to converge, with those recovered by a new Jacobian.
+    pub nonlinear_failures: u64,
+}

@@ -1,0 +1,114 @@
+//! Integration by CVODES: how it is begun, and what no other method tells.
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
+use pc_expr::{Events, VectorField};
+
+use crate::cvode::cvode::Cvode;
+use crate::cvode::integrals::Integrals;
+use crate::cvode::linear::solver::LinearSolver;
+use crate::cvode::options::Options;
+use crate::error::SolveError;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::method::IntegrationMethod;
+use crate::integration::observer::Observed;
+
+impl<F: VectorField> IntegrationMethod<F> for Options {
+    type Stepper = Cvode<F>;
+
+    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Cvode<F>, SolveError> {
+        let mut options = self.clone();
+        options.stop_time = options.stop_time.or(stop.filter(|t| t.is_finite()));
+        Cvode::new(field, t0, y0, &options)
+    }
+}
+
+impl<F: VectorField> Integration<Cvode<F>> {
+    /// Starts at y(t0) = y0 by CVODES, where `y0` has as many numbers as `field` has components.
+    ///
+    /// # Errors
+    /// As for [`Cvode::new`].
+    pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
+        Ok(Integration::of(Cvode::new(field, t0, y0, options)?))
+    }
+}
+
+/// What only a method with error control and a linear solver has to tell.
+impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
+    /// As [`Cvode::linear_solver`].
+    pub fn linear_solver(&self) -> Option<&LinearSolver> {
+        self.engine.linear_solver()
+    }
+
+    /// As [`Cvode::error_weights`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn error_weights(&mut self) -> Result<&[f64], SolveError> {
+        self.engine.error_weights()
+    }
+
+    /// As [`Cvode::local_errors`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn local_errors(&mut self) -> Result<&[f64], SolveError> {
+        self.engine.local_errors()
+    }
+}
+
+impl<F: VectorField> Integration<Cvode<F>> {
+    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion, which are 0 there.
+    ///
+    /// A [checkpoint](Integration::checkpoint) has none of them: what goes on from one is asked for integrals anew, which begin
+    /// at 0.
+    ///
+    /// # Errors
+    /// As for [`Cvode::with_integrals`].
+    pub fn with_integrals(
+        field: F,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+        integrals: Integrals,
+    ) -> Result<Self, SolveError> {
+        Ok(Integration::of(Cvode::with_integrals(field, t0, y0, options, integrals)?))
+    }
+
+    /// This integration, which has not begun, with integrals along the motion.
+    ///
+    /// # Errors
+    /// As for [`Cvode::and_integrals`].
+    pub fn and_integrals(self, integrals: Integrals, options: &Options) -> Result<Self, SolveError> {
+        Ok(Integration::of(self.engine.and_integrals(integrals, options)?))
+    }
+}
+
+impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
+    /// The integrals from the start to [`time`](Integration::time), over what occurred, in the order of their integrands.
+    ///
+    /// # Errors
+    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were asked for; [`SolveError::Integration`] if
+    /// one has grown beyond the largest number.
+    pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
+        self.engine.integrals_here()
+    }
+
+    /// As [`run`](Integration::run), and gives each (t, y) with the integrals to there to `output`.
+    ///
+    /// # Errors
+    /// As for [`run`](Integration::run) and [`integrals`](Integration::integrals).
+    pub fn run_with_integrals(
+        &mut self,
+        times: &[f64],
+        mut output: impl FnMut(f64, &[f64], &[f64]) -> ControlFlow<()>,
+    ) -> Result<Ending, SolveError> {
+        let values = RefCell::new(Vec::new());
+        let mut observer = Observed::new(|t, y: &[f64]| output(t, y, &values.borrow()));
+        self.run_through(times, &mut observer, |integration| {
+            *values.borrow_mut() = integration.engine.integrals_here()?;
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,27 @@
+//! What the callbacks of a linear solver work with.
+
+use crate::cvode::linear::preconditioner::Preconditioner;
+use crate::cvode::linear::quotients::Quotients;
+
+/// What the callbacks of the linear solver read and write, beside the vector field.
+#[derive(Default)]
+pub(crate) struct Work {
+    /// The entries of ∂f/∂y, in the order of the field's pattern.
+    pub(super) entries: Vec<f64>,
+    pub(super) quotients: Option<Quotients>,
+    pub(super) preconditioner: Option<Box<dyn Preconditioner + Send>>,
+}
+
+impl Work {
+    /// Counts from the beginning, as CVODES does after a new start.
+    pub(crate) fn forget_counts(&mut self) {
+        if let Some(quotients) = &mut self.quotients {
+            quotients.forget_evaluations();
+        }
+    }
+
+    /// Evaluations of f for difference quotients of ours, which CVODES does not count.
+    pub(crate) fn quotient_evaluations(&self) -> u64 {
+        self.quotients.as_ref().map_or(0, Quotients::evaluations)
+    }
+}

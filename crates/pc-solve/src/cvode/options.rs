@@ -1,0 +1,195 @@
+//! How to integrate by CVODES.
+
+use crate::cvode::linear::solver::LinearSolver;
+use crate::error::InputError;
+use crate::events::events::Accumulation;
+use crate::integration::checks::{check_length, finite, positive};
+use crate::integration::limits::Limits;
+use crate::settings::inequality::Inequality;
+use crate::settings::method::{Method, NonlinearSolver};
+use crate::settings::tolerance::Tolerance;
+
+/// Method, tolerances and limits of an integration.
+///
+/// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at most 1, where e
+/// is the estimated local error. Values are checked when an integration starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    pub(crate) method: Method,
+    pub(crate) nonlinear_solver: NonlinearSolver,
+    pub(crate) linear_solver: Option<LinearSolver>,
+    pub(crate) inequalities: Vec<Inequality>,
+    pub(crate) relative_tolerance: f64,
+    pub(crate) absolute_tolerance: Tolerance,
+    pub(crate) max_steps: u64,
+    pub(crate) initial_step: Option<f64>,
+    pub(crate) min_step: Option<f64>,
+    pub(crate) max_step: Option<f64>,
+    pub(crate) max_order: Option<u32>,
+    pub(crate) stop_time: Option<f64>,
+    pub(crate) samples_per_step: u32,
+    pub(crate) accumulation: Accumulation,
+}
+
+impl Default for Options {
+    /// [`Method::Adams`] with the defaults of [`Options::new`].
+    fn default() -> Self {
+        Options::new(Method::Adams)
+    }
+}
+
+impl Options {
+    /// A method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000 steps between outputs, Newton's
+    /// iteration for BDF and the fixed-point iteration for Adams.
+    pub fn new(method: Method) -> Self {
+        Options {
+            method,
+            nonlinear_solver: match method {
+                Method::Bdf => NonlinearSolver::Newton,
+                Method::Adams => NonlinearSolver::FixedPoint,
+            },
+            linear_solver: None,
+            inequalities: Vec::new(),
+            relative_tolerance: 1e-9,
+            absolute_tolerance: Tolerance::Scalar(1e-12),
+            max_steps: 500_000,
+            initial_step: None,
+            min_step: None,
+            max_step: None,
+            max_order: None,
+            stop_time: None,
+            samples_per_step: 4,
+            accumulation: Accumulation::default(),
+        }
+    }
+
+    /// How the implicit equation of a step is solved.
+    pub fn nonlinear_solver(self, nonlinear_solver: NonlinearSolver) -> Self {
+        Options { nonlinear_solver, ..self }
+    }
+
+    /// How the linear systems of Newton's iteration are solved; chosen by the field's dimension and zero pattern
+    /// [unless given](LinearSolver).
+    pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
+        Options { linear_solver: Some(linear_solver), ..self }
+    }
+
+    /// Inequalities to satisfy, one for each component; none unless given.
+    ///
+    /// They are not for a field [with a projection](pc_expr::VectorField::has_projection), which moves the states on.
+    pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
+        Options { inequalities, ..self }
+    }
+
+    /// Relative tolerance, positive.
+    pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
+        Options { relative_tolerance, ..self }
+    }
+
+    /// Absolute tolerance, positive: a number, or a `Vec` of one for each component.
+    pub fn absolute_tolerance(self, absolute_tolerance: impl Into<Tolerance>) -> Self {
+        Options { absolute_tolerance: absolute_tolerance.into(), ..self }
+    }
+
+    /// Most internal steps from one output to the next, at least 1; beyond them the error is
+    /// [`Code::TooMuchWork`](crate::Code::TooMuchWork).
+    pub fn max_steps(self, max_steps: u64) -> Self {
+        Options { max_steps, ..self }
+    }
+
+    /// Length of the first step, positive in both directions of time; estimated unless given.
+    pub fn initial_step(self, length: f64) -> Self {
+        Options { initial_step: Some(length), ..self }
+    }
+
+    /// Least length of a step, positive in both directions of time.
+    pub fn min_step(self, length: f64) -> Self {
+        Options { min_step: Some(length), ..self }
+    }
+
+    /// Largest length of a step, positive in both directions of time.
+    pub fn max_step(self, length: f64) -> Self {
+        Options { max_step: Some(length), ..self }
+    }
+
+    /// Highest order to use, from 1 to [`Method::highest_order`].
+    pub fn max_order(self, order: u32) -> Self {
+        Options { max_order: Some(order), ..self }
+    }
+
+    /// A time beyond which the vector field is never evaluated.
+    pub fn stop_time(self, t: f64) -> Self {
+        Options { stop_time: Some(t), ..self }
+    }
+
+    /// In how many equal parts of each internal step events are looked for, at least 1 and 4 unless given; between two
+    /// such places [an even number](crate::Integration) of zeros of a function may be missed.
+    pub fn samples_per_step(self, parts: u32) -> Self {
+        Options { samples_per_step: parts, ..self }
+    }
+
+    /// When occurrences of an event are taken to accumulate, which is an error.
+    pub fn accumulation(self, accumulation: Accumulation) -> Self {
+        Options { accumulation, ..self }
+    }
+
+    /// What does not depend on the method.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits {
+            max_steps: self.max_steps,
+            samples_per_step: self.samples_per_step,
+            accumulation: self.accumulation,
+            inequalities: self.inequalities.clone(),
+        }
+    }
+
+    pub(crate) fn validate(&self, dim: usize) -> Result<(), InputError> {
+        positive("the relative tolerance", self.relative_tolerance)?;
+        match &self.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => positive("the absolute tolerance", *tolerance)?,
+            Tolerance::Vector(tolerances) => {
+                check_length("the absolute tolerances", tolerances.len(), dim)?;
+                for (i, &tolerance) in tolerances.iter().enumerate() {
+                    positive(&format!("absolute tolerance number {i} (from 0)"), tolerance)?;
+                }
+            }
+        }
+        if !self.inequalities.is_empty() {
+            check_length("the inequalities", self.inequalities.len(), dim)?;
+        }
+        if self.max_steps == 0 {
+            return Err(InputError::MaxSteps);
+        }
+        let lengths = [
+            ("the initial step", self.initial_step),
+            ("the minimum step", self.min_step),
+            ("the maximum step", self.max_step),
+        ];
+        for (what, length) in lengths {
+            if let Some(length) = length {
+                positive(what, length)?;
+            }
+        }
+        if let (Some(min), Some(max)) = (self.min_step, self.max_step)
+            && min > max
+        {
+            return Err(InputError::StepBounds { min, max });
+        }
+        if let Some(found) = self.max_order {
+            let limit = self.method.highest_order();
+            if !(1..=limit).contains(&found) {
+                return Err(InputError::MaxOrder { method: self.method, limit, found });
+            }
+        }
+        if self.samples_per_step == 0 {
+            return Err(InputError::SamplesPerStep);
+        }
+        if !(0.0..1.0).contains(&self.accumulation.within) {
+            return Err(InputError::Accumulation { within: self.accumulation.within });
+        }
+        if let Some(t) = self.stop_time {
+            finite("the stop time", t)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,18 @@
+//! When the rest of an ensemble is wanted no longer.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether the rest of an ensemble is wanted no longer.
+#[derive(Debug, Clone, Copy)]
+pub struct Stop<'a> {
+    pub(super) own: &'a AtomicBool,
+    pub(super) flag: Option<&'a AtomicBool>,
+}
+
+impl Stop<'_> {
+    /// Whether to end now: the consumer has broken off, or the flag of
+    /// [`Ensemble::stopped_by`](crate::Ensemble::stopped_by) is set.
+    pub fn requested(&self) -> bool {
+        self.own.load(Ordering::Relaxed) || self.flag.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+}

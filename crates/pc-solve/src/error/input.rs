@@ -1,0 +1,296 @@
+//! What is wrong with a problem or an option.
+
+use crate::settings::inequality::Inequality;
+use crate::settings::method::Method;
+
+/// What is wrong with a problem or an option.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// The vector field has dimension 0.
+    #[error("the vector field has no components")]
+    NoComponents,
+
+    /// A list of one number for each component has another length.
+    #[error("{what}: {found} numbers for {expected} components")]
+    Length {
+        /// Which list.
+        what: &'static str,
+        /// Dimension of the vector field.
+        expected: usize,
+        /// Length of the list.
+        found: usize,
+    },
+
+    /// A checkpoint of a motion with another number of events.
+    #[error("the checkpoint is of a motion with {found} events, not {expected}")]
+    EventCount {
+        /// Number of events of the motion.
+        expected: usize,
+        /// Number of events in the checkpoint.
+        found: usize,
+    },
+
+    /// An input is NaN or infinite.
+    #[error("{what} is {value}")]
+    NotFinite {
+        /// Which input.
+        what: String,
+        /// NaN or an infinity.
+        value: f64,
+    },
+
+    /// An option that must be positive is not.
+    #[error("{what} is {value}, but must be positive")]
+    NotPositive {
+        /// Which option.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+
+    /// The largest order is 0 or beyond what the method has.
+    #[error("the maximum order is {found}, but {method} has orders 1 to {limit}")]
+    MaxOrder {
+        /// The method.
+        method: Method,
+        /// Its highest order.
+        limit: u32,
+        /// The order asked for.
+        found: u32,
+    },
+
+    /// The least step is larger than the largest.
+    #[error("the minimum step {min} is larger than the maximum step {max}")]
+    StepBounds {
+        /// The least step.
+        min: f64,
+        /// The largest step.
+        max: f64,
+    },
+
+    /// A checkpoint of an integration with another number of sensitivities.
+    #[error(
+        "the checkpoint has {found} columns of sensitivities, and {expected} are asked for: an integration with \
+         sensitivities is resumed with the same ones"
+    )]
+    Sensitivities {
+        /// Columns asked for.
+        expected: usize,
+        /// Columns of the checkpoint.
+        found: usize,
+    },
+
+    /// No functional to differentiate.
+    #[error("there is no functional")]
+    NoFunctional,
+
+    /// Integrals of a motion are asked of an integration that has none, or asked for of one that has begun.
+    #[error("integrals are to be asked for once, before the first step")]
+    NoIntegrals,
+
+    /// Derivatives of a motion are asked of an integration that has none.
+    #[error("the integration was begun without sensitivities")]
+    NoSensitivities,
+
+    /// Derivatives by parameters, with events whose own derivatives by these are not known.
+    #[error(
+        "an event resets the state, and it is not known how its function and its reset depend on the parameters that \
+         sensitivities are asked for"
+    )]
+    EventParameters,
+
+    /// A step is to be looked at for events in 0 parts.
+    #[error("the number of samples per step must be at least 1")]
+    SamplesPerStep,
+
+    /// The part of a distance to which those of events shrink when they accumulate.
+    #[error("events accumulate within a part from 0 to less than 1 of their distance, not {within}")]
+    Accumulation {
+        /// The part given.
+        within: f64,
+    },
+
+    /// The maximum number of steps is 0.
+    #[error("the maximum number of steps must be at least 1")]
+    MaxSteps,
+
+    /// A linear solver is chosen, and the fixed-point iteration uses none.
+    #[error("a linear solver is chosen, but the fixed-point iteration has no linear systems to solve")]
+    LinearSolverUnused,
+
+    /// The sparse linear solver is chosen for a field that does not know the zero pattern of ∂f/∂y.
+    #[error(
+        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not know"
+    )]
+    NoPattern,
+
+    /// The zero pattern of ∂f/∂y is not that of a square matrix of the field's dimension.
+    #[error(
+        "the zero pattern of the Jacobian has {rows} rows and {columns} columns for {expected} components"
+    )]
+    PatternSize {
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        columns: usize,
+        /// Dimension of the vector field.
+        expected: usize,
+    },
+
+    /// A band matrix has diagonals beyond its corners.
+    #[error(
+        "a band of {lower} diagonals below the main one and {upper} above does not fit {components} components"
+    )]
+    BandTooWide {
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+        /// Dimension of the vector field.
+        components: usize,
+    },
+
+    /// An entry of ∂f/∂y that may be other than zero lies outside of the band chosen.
+    #[error(
+        "the rate of {row} depends on {column}, outside of the band of {lower} diagonals below the main one and \
+         {upper} above"
+    )]
+    OutsideBand {
+        /// Name of the component of f.
+        row: String,
+        /// Name of the component of y.
+        column: String,
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+    },
+
+    /// The start does not satisfy an inequality.
+    #[error("{component} at the start is {value}, but must be {inequality}")]
+    Inequality {
+        /// Name of the component.
+        component: String,
+        /// What it must satisfy.
+        inequality: Inequality,
+        /// Its value.
+        value: f64,
+    },
+
+    /// Inequalities are given for a field with a projection, which would move the states on.
+    #[error("inequalities cannot be kept for a vector field that projects its states")]
+    InequalitiesOfProjected,
+
+    /// No output times are given.
+    #[error("no output times are given")]
+    NoTimes,
+
+    /// The output times do not all go one way.
+    #[error("output time {time} (number {index} from 0) does not go on from {previous}")]
+    TimesNotMonotonic {
+        /// Place in the list.
+        index: usize,
+        /// The time before it.
+        previous: f64,
+        /// The time that goes back or stays.
+        time: f64,
+    },
+
+    /// The time to go to is where the integration stands.
+    #[error("the end is the start, t = {t}")]
+    EndIsStart {
+        /// That time.
+        t: f64,
+    },
+
+    /// A time lies against the direction of integration.
+    #[error("t = {requested} lies behind t = {current}")]
+    Behind {
+        /// The time asked for.
+        requested: f64,
+        /// Where the integration stands.
+        current: f64,
+    },
+
+    /// A time lies beyond the stop time.
+    #[error("t = {requested} lies beyond the stop time {stop_time}")]
+    BeyondStopTime {
+        /// The time asked for.
+        requested: f64,
+        /// The stop time.
+        stop_time: f64,
+    },
+
+    /// A time outside what a dense output covers.
+    #[error("t = {requested} lies outside the dense output, which goes from {start} to {end}")]
+    OutsideSpan {
+        /// The time asked for.
+        requested: f64,
+        /// Where the output begins.
+        start: f64,
+        /// Where it ends.
+        end: f64,
+    },
+
+    /// A time outside the last internal step, or beyond the event up to which that is known.
+    #[error("t = {requested} lies outside the last step, which goes from t = {start} to {end}")]
+    OutsideStep {
+        /// The time asked for.
+        requested: f64,
+        /// Where the step begins.
+        start: f64,
+        /// Where it ends.
+        end: f64,
+    },
+
+    /// A derivative beyond the degree of the polynomial of the last step.
+    #[error(
+        "the derivative of order {order} is asked for, but the last step has derivatives up to order {highest}"
+    )]
+    DerivativeOrder {
+        /// The order asked for.
+        order: u32,
+        /// The highest there is.
+        highest: u32,
+    },
+
+    /// Derivatives by parameters are asked for of a vector field that has none.
+    #[error("the vector field has no derivative by its parameters")]
+    NoParameterJacobian,
+
+    /// There is no such parameter.
+    #[error("the vector field has {len} parameters, but number {index} (from 0) is asked for")]
+    NoParameter {
+        /// The number asked for.
+        index: usize,
+        /// Number of parameters.
+        len: usize,
+    },
+
+    /// There is no such component.
+    #[error("the vector field has {dim} components, but number {index} (from 0) is asked for")]
+    NoComponent {
+        /// The number asked for.
+        index: usize,
+        /// Dimension of the vector field.
+        dim: usize,
+    },
+
+    /// More Lyapunov exponents are asked for than there are, or none.
+    #[error("{count} exponents are asked for, but a flow in {dim} dimensions has 1 to {dim}")]
+    Exponents {
+        /// The number asked for.
+        count: usize,
+        /// Dimension of the vector field.
+        dim: usize,
+    },
+
+    /// A new start of an integration with sensitivities: the derivatives of the new state are not known.
+    #[error("an integration with sensitivities cannot be started anew without those of the new state")]
+    Restart,
+
+    /// Interpolation before the first step.
+    #[error("no step has been taken to interpolate in")]
+    NoStep,
+}

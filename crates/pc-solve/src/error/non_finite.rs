@@ -1,0 +1,126 @@
+//! Numbers that are not finite.
+
+/// A number that is not finite, written by a vector field that reported no failure, or never written.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NonFinite {
+    /// A component of f(t, y).
+    #[error("the rate of {component} is {value} at t = {t}")]
+    Rate {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where f was evaluated.
+        t: f64,
+    },
+
+    /// An entry of ∂f/∂y.
+    #[error("the derivative of the rate of {row} by {column} is {value} at t = {t}")]
+    Jacobian {
+        /// Name of the component of f.
+        row: String,
+        /// Name of the component of y.
+        column: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the Jacobian was evaluated.
+        t: f64,
+    },
+
+    /// A component of (∂f/∂y) v.
+    #[error("the change of the rate of {component} in a direction is {value} at t = {t}")]
+    Product {
+        /// Name of the component of f.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the product was evaluated.
+        t: f64,
+    },
+
+    /// An entry of ∂f/∂p.
+    #[error("the derivative of the rate of {row} by parameter {parameter} (from 0) is {value} at t = {t}")]
+    ParameterJacobian {
+        /// Name of the component of f.
+        row: String,
+        /// Number of the parameter.
+        parameter: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the derivative was evaluated.
+        t: f64,
+    },
+
+    /// An entry of (∂f/∂y) s.
+    #[error(
+        "the rate of {component} has a derivative along column {column} (from 0) that is {value} at t = {t}"
+    )]
+    Variation {
+        /// Name of the component of f.
+        component: String,
+        /// Number of the column s.
+        column: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the product was evaluated.
+        t: f64,
+    },
+
+    /// A component of what a [preconditioner](crate::Preconditioner) wrote.
+    #[error("the preconditioner makes {component} {value} at t = {t}")]
+    Preconditioned {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// The time of the step.
+        t: f64,
+    },
+
+    /// The function of an event.
+    #[error("the function of the event {event} is {value} at t = {t}")]
+    Event {
+        /// Its name.
+        event: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
+    /// A value or derivative of a [functional](crate::Functional).
+    #[error("{what} is {value} at t = {t}")]
+    Functional {
+        /// Which.
+        what: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
+    /// A rate of an [integral](crate::Integrals).
+    #[error("the rate of integral number {index} (from 0) is {value} at t = {t}")]
+    Integrand {
+        /// Its number.
+        index: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where it was evaluated.
+        t: f64,
+    },
+
+    /// A component of a state after a reset.
+    #[error("the event {event} sets {component} to {value} at t = {t}")]
+    Reset {
+        /// Its name.
+        event: String,
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// When it occurred.
+        t: f64,
+    },
+}

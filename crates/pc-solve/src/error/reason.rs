@@ -1,0 +1,189 @@
+//! Why an integration could not go on.
+
+use std::fmt;
+
+use crate::error::return_code::Code;
+
+/// Why an integration could not go on.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// CVODES returned an error.
+    Cvode {
+        /// Its return code.
+        code: Code,
+        /// What it said.
+        message: String,
+    },
+
+    /// The integration of the adjoint equations, from the end back, could not go on; time and state reached are those of
+    /// the motion there.
+    Adjoint(Box<Reason>),
+
+    /// The end term of a [functional](crate::Functional) failed.
+    Functional,
+
+    /// A terminal event ends the motion before the end of a [functional](crate::Functional).
+    EndsEarly {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// A tangent vector became a combination of those before it, to rounding, in the course of one interval.
+    Collapsed {
+        /// Its number.
+        vector: usize,
+    },
+
+    /// A component grew beyond the largest number in a step that CVODES accepted.
+    Overflow {
+        /// Name of the component.
+        component: String,
+        /// NaN or an infinity.
+        value: f64,
+        /// End of that step.
+        t: f64,
+    },
+
+    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs to.
+    Projection {
+        /// Time of that state.
+        t: f64,
+    },
+
+    /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
+    /// wall it in.
+    Stalled,
+
+    /// The vector field could not be evaluated, by a method that has no shorter step to try.
+    Rates {
+        /// Time of the state at which it was evaluated.
+        t: f64,
+    },
+
+    /// The function of an event, or of one together with it, could not be evaluated.
+    Event {
+        /// Its name.
+        event: String,
+        /// Time of the state at which it was evaluated.
+        t: f64,
+    },
+
+    /// An event did not give a new state.
+    Reset {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// An event that resets the state is met at no speed: sensitivities have no bound.
+    Grazing {
+        /// Its name.
+        event: String,
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// Events that reset the state occur together: sensitivities depend on which of them would come first.
+    Together {
+        /// Their names.
+        events: Vec<String>,
+        /// When they occurred.
+        t: f64,
+    },
+
+    /// The rates before or after a reset, by which sensitivities jump, cannot be evaluated.
+    Saltation {
+        /// When it occurred.
+        t: f64,
+    },
+
+    /// An event [accumulates](crate::Accumulation).
+    Accumulation {
+        /// Its name.
+        event: String,
+        /// How often it has occurred.
+        occurrences: u64,
+        /// The time that its occurrences approach, if their distances go on as a geometric series.
+        t: f64,
+    },
+}
+
+impl Reason {
+    /// The return code of CVODES, if that is the reason.
+    pub(super) fn code(&self) -> Option<Code> {
+        match self {
+            Reason::Cvode { code, .. } => Some(*code),
+            Reason::Adjoint(reason) => reason.code(),
+            Reason::Overflow { .. }
+            | Reason::Projection { .. }
+            | Reason::Functional
+            | Reason::EndsEarly { .. }
+            | Reason::Collapsed { .. }
+            | Reason::Stalled
+            | Reason::Rates { .. }
+            | Reason::Event { .. }
+            | Reason::Reset { .. }
+            | Reason::Accumulation { .. }
+            | Reason::Grazing { .. }
+            | Reason::Together { .. }
+            | Reason::Saltation { .. } => None,
+        }
+    }
+
+    /// The message, after reaching `time`.
+    pub(super) fn write(&self, time: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),
+            Reason::Adjoint(reason) => {
+                f.write_str("the adjoint equations, from the end back: ")?;
+                reason.write(time, f)
+            }
+            Reason::EndsEarly { event, t } => write!(
+                f,
+                "the motion ends with the event {event} at t = {t}: there are gradients of functionals only of motions to \
+                 a time that is given"
+            ),
+            Reason::Functional => write!(f, "the functional has no value at the end, t = {time}"),
+            Reason::Collapsed { vector } => write!(
+                f,
+                "tangent vector number {vector} (from 0) has lost its direction at t = {time}: shorter intervals keep \
+                 it"
+            ),
+            Reason::Overflow { component, value, t } => {
+                write!(f, "{component} is {value} at t = {t}, after reaching t = {time}")
+            }
+            Reason::Projection { t } => write!(
+                f,
+                "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
+            ),
+            Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+            Reason::Rates { t } => {
+                write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")
+            }
+            Reason::Event { event, t } => {
+                write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
+            }
+            Reason::Reset { event, t } => write!(f, "the event {event} cannot reset the state at t = {t}"),
+            Reason::Grazing { event, t } => write!(
+                f,
+                "the function of the event {event} touches zero at t = {t}: the motion after it has no derivatives"
+            ),
+            Reason::Together { events, t } => write!(
+                f,
+                "the events {} occur together at t = {t}: the motion after them has no derivatives",
+                events.join(", ")
+            ),
+            Reason::Saltation { t } => {
+                write!(f, "the rates of the motion cannot be evaluated on both sides of the reset at t = {t}")
+            }
+            Reason::Accumulation { event, occurrences, t } => write!(
+                f,
+                "the event {event} occurs without end near t = {t:.5e} ({occurrences} times up to t = {time})"
+            ),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Why there is no motion, or no more of it.
+
+use std::error::Error;
+use std::fmt;
+
+use pc_expr::Failure;
+
+use crate::error::input::InputError;
+use crate::error::reason::Reason;
+use crate::error::return_code::Code;
+
+/// Why an integration was not begun or not completed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// The problem or an option is not valid; no step was taken.
+    #[error(transparent)]
+    Input(#[from] InputError),
+
+    /// SUNDIALS could not make or set up one of its objects; with valid input, it ran out of memory.
+    #[error("{function} failed with code {code}: {message}")]
+    Setup {
+        /// The function of SUNDIALS.
+        function: &'static str,
+        /// Its return code.
+        code: i32,
+        /// What SUNDIALS said.
+        message: String,
+    },
+
+    /// The integration began and could not go on.
+    #[error(transparent)]
+    Integration(Box<IntegrationError>),
+}
+
+impl SolveError {
+    /// The return code of CVODES, if that is the reason.
+    pub fn code(&self) -> Option<Code> {
+        match self {
+            SolveError::Integration(error) => error.reason.code(),
+            SolveError::Input(_) | SolveError::Setup { .. } => None,
+        }
+    }
+
+    /// The last state reached, (t, y), if the integration had begun.
+    pub fn reached(&self) -> Option<(f64, &[f64])> {
+        match self {
+            SolveError::Integration(error) => Some((error.time, &error.state)),
+            SolveError::Input(_) | SolveError::Setup { .. } => None,
+        }
+    }
+}
+
+/// Why an integration could not go on, and the last state it reached.
+///
+/// Its [`source`](Error::source) is the cause of [`failure`](IntegrationError::failure).
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct IntegrationError {
+    /// Why it could not go on.
+    pub reason: Reason,
+    /// End of the last successful internal step.
+    pub time: f64,
+    /// The state at [`time`](IntegrationError::time); as many numbers as the field has components.
+    pub state: Vec<f64>,
+    /// The last failure of the vector field there: what it reported, or [`NonFinite`](crate::NonFinite) if it wrote such a
+    /// number.
+    pub failure: Option<Failure>,
+}
+
+impl fmt::Display for IntegrationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.reason.write(self.time, f)
+    }
+}
+
+impl Error for IntegrationError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.failure.as_ref().map(|failure| failure.cause() as &(dyn Error + 'static))
+    }
+}

@@ -1,0 +1,83 @@
+//! How to integrate a motion and its adjoint equations.
+
+use crate::cvode::linear::krylov::Krylov;
+use crate::cvode::linear::solver::LinearSolver;
+use crate::cvode::options::Options;
+use crate::error::InputError;
+use crate::integration::checks::positive;
+use crate::settings::method::NonlinearSolver;
+use crate::settings::tolerance::Tolerance;
+
+/// Largest dimension of the Krylov subspaces of the way back, unless a solver is chosen.
+const SUBSPACE: u32 = 30;
+
+/// How to integrate a motion and the adjoint equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdjointOptions {
+    pub(crate) motion: Options,
+    pub(crate) relative_tolerance: f64,
+    pub(crate) absolute_tolerance: f64,
+    pub(crate) checkpoint_interval: u32,
+    linear_solver: Option<LinearSolver>,
+}
+
+impl AdjointOptions {
+    /// The motion as these options say, the way back by the same method with the same tolerances (the least of the
+    /// absolute ones) and limit of steps, and a checkpoint every 200 steps.
+    pub fn new(motion: Options) -> Self {
+        let absolute_tolerance = match &motion.absolute_tolerance {
+            Tolerance::Scalar(atol) => *atol,
+            Tolerance::Vector(atol) => atol.iter().copied().fold(f64::INFINITY, f64::min),
+        };
+        let relative_tolerance = motion.relative_tolerance;
+        AdjointOptions {
+            motion,
+            relative_tolerance,
+            absolute_tolerance,
+            checkpoint_interval: 200,
+            linear_solver: None,
+        }
+    }
+
+    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p, positive.
+    pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
+        AdjointOptions { relative_tolerance: relative, absolute_tolerance: absolute, ..self }
+    }
+
+    /// Steps from one checkpoint to the next, at least 1.
+    ///
+    /// The states at checkpoints are held, and of one interval at a time all steps with their derivatives, at most 13
+    /// vectors a step. The method starts anew at each checkpoint, so an interval should be longer than its start.
+    pub fn checkpoint_interval(self, steps: u32) -> Self {
+        AdjointOptions { checkpoint_interval: steps, ..self }
+    }
+
+    /// How the linear systems of the way back are solved, by matrices that are transposed to those of the motion: unless given,
+    /// as [usual](LinearSolver) for what the field offers, and by [Krylov's method](LinearSolver::Krylov) where that is nothing
+    /// but [products](pc_expr::VectorField::vjp).
+    pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
+        AdjointOptions { linear_solver: Some(linear_solver), ..self }
+    }
+
+    /// For the adjoint equations of a field with entries of its Jacobian, or `products_only`.
+    pub(crate) fn back(&self, products_only: bool) -> Options {
+        let Options { method, nonlinear_solver, max_steps, .. } = self.motion;
+        let options = Options::new(method)
+            .nonlinear_solver(nonlinear_solver)
+            .max_steps(max_steps)
+            .relative_tolerance(self.relative_tolerance)
+            .absolute_tolerance(self.absolute_tolerance);
+        let by_products = products_only && nonlinear_solver == NonlinearSolver::Newton;
+        match &self.linear_solver {
+            Some(choice) => options.linear_solver(choice.clone()),
+            None if by_products => options.linear_solver(LinearSolver::Krylov(Krylov::new(SUBSPACE))),
+            None => options,
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        positive("the relative tolerance of the adjoint equations", self.relative_tolerance)?;
+        positive("the absolute tolerance of the adjoint equations", self.absolute_tolerance)?;
+        positive("the number of steps between checkpoints", f64::from(self.checkpoint_interval))
+    }
+}

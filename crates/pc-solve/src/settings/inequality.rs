@@ -1,0 +1,48 @@
+//! Components that keep their sign.
+
+use std::fmt;
+
+/// What a component of y must satisfy at the end of every step, so that f is not evaluated far from where it makes sense.
+///
+/// A step whose end does not satisfy it is corrected if it errs by little, and else tried again, shorter. Inside a step
+/// the polynomial of the method may err by the tolerance. Where the motion itself leads out, the steps become ever
+/// shorter, until the number of steps or the least step ends the integration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Inequality {
+    /// Nothing.
+    Free,
+    /// y ≥ 0.
+    NotNegative,
+    /// y ≤ 0.
+    NotPositive,
+    /// y > 0.
+    Positive,
+    /// y < 0.
+    Negative,
+}
+
+impl Inequality {
+    /// Whether `value` satisfies it.
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Inequality::Free => true,
+            Inequality::NotNegative => value >= 0.0,
+            Inequality::NotPositive => value <= 0.0,
+            Inequality::Positive => value > 0.0,
+            Inequality::Negative => value < 0.0,
+        }
+    }
+}
+
+impl fmt::Display for Inequality {
+    /// What is said of a component: `not negative`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Inequality::Free => "any number",
+            Inequality::NotNegative => "not negative",
+            Inequality::NotPositive => "not positive",
+            Inequality::Positive => "positive",
+            Inequality::Negative => "negative",
+        })
+    }
+}

@@ -1,0 +1,22 @@
+//! What is too little to matter.
+
+/// Absolute tolerance: one for all components, or one for each.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tolerance {
+    /// The same for all components.
+    Scalar(f64),
+    /// One for each component, in order.
+    Vector(Vec<f64>),
+}
+
+impl From<f64> for Tolerance {
+    fn from(tolerance: f64) -> Self {
+        Tolerance::Scalar(tolerance)
+    }
+}
+
+impl From<Vec<f64>> for Tolerance {
+    fn from(tolerances: Vec<f64>) -> Self {
+        Tolerance::Vector(tolerances)
+    }
+}

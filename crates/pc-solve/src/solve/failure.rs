@@ -1,0 +1,36 @@
+//! What had been reached before a failure.
+
+use std::error::Error;
+use std::fmt;
+
+use crate::error::SolveError;
+use crate::integration::trajectory::Trajectory;
+
+/// A failed integration, such as [`solve`](crate::solve()), with what it had reached.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct SolveFailure<R = Trajectory> {
+    /// The outputs before the failure.
+    pub reached: R,
+    /// What went wrong.
+    pub error: SolveError,
+}
+
+#[cfg(feature = "cvode")]
+impl<R> SolveFailure<R> {
+    pub(crate) fn map<T>(self, part: impl FnOnce(R) -> T) -> SolveFailure<T> {
+        SolveFailure { reached: part(self.reached), error: self.error }
+    }
+}
+
+impl<R> fmt::Display for SolveFailure<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl<R: fmt::Debug> Error for SolveFailure<R> {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.error.source()
+    }
+}

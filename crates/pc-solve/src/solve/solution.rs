@@ -1,0 +1,23 @@
+//! What comes of an integration.
+
+use crate::events::events::Occurrence;
+use crate::integration::integration::Ending;
+use crate::integration::trajectory::Trajectory;
+
+/// A motion as far as it was integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The states at the output times, y⁺ at those of events; a terminal event is the last.
+    pub trajectory: Trajectory,
+    /// What occurred, in order.
+    pub occurrences: Vec<Occurrence>,
+    /// How it ended; none if it failed.
+    pub ending: Option<Ending>,
+}
+
+#[cfg(feature = "cvode")]
+impl Solution {
+    pub(crate) fn new(dim: usize) -> Solution {
+        Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }
+    }
+}

@@ -1,0 +1,157 @@
+//! Integration in one call.
+
+use std::ops::ControlFlow;
+
+use pc_expr::{Events, VectorField};
+
+use crate::cvode::options::Options;
+use crate::error::SolveError;
+use crate::events::events::{NoEvents, Occurrence};
+use crate::integration::dense_output::DenseOutput;
+use crate::integration::integration::{Ending, Integration};
+use crate::integration::method::IntegrationMethod;
+use crate::integration::observer::Observed;
+use crate::integration::trajectory::Trajectory;
+use crate::solve::failure::SolveFailure;
+use crate::solve::solution::Solution;
+
+/// Integrates ẏ = f(t, y) from y(t0) = y0 by CVODES and returns the states at `times`: [`Solve`] has more to choose from.
+///
+/// `y0` has as many numbers as `field` has components. The times go one way, forwards or backwards; the first may be
+/// t0. The vector field is not evaluated beyond the last time, nor beyond the stop time of the options.
+///
+/// # Errors
+/// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.
+pub fn solve<F: VectorField>(
+    field: F,
+    t0: f64,
+    y0: &[f64],
+    times: &[f64],
+    options: &Options,
+) -> Result<Trajectory, Box<SolveFailure>> {
+    match Solve::new(field, t0, y0).method(options).run(times) {
+        Ok(solution) => Ok(solution.trajectory),
+        Err(failure) => Err(Box::new(failure.map(|reached| reached.trajectory))),
+    }
+}
+
+/// A motion to be integrated: ẏ = f(t, y) from y(t0) = y0, by a method, with events.
+///
+/// ```
+/// use pc_solve::{Event, FnEvents, Options, Solve, from_fn};
+///
+/// // A ball that is dropped and bounces.
+/// let ball = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
+/// let bounce = FnEvents::new().with_reset(
+///     Event::new("bounce").falling(), |_t, y| Ok(y[0]), |_t, y| { y[1] *= -0.5; Ok(()) });
+/// let solution = Solve::new(ball, 0.0, &[1.0, 0.0])
+///     .method(Options::default().relative_tolerance(1e-11))
+///     .events(bounce)
+///     .run(&[0.25, 0.5, 0.75])?;
+/// assert_eq!((solution.trajectory.len(), solution.occurrences.len()), (3, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Solve<'a, F, M = Options, E = NoEvents> {
+    field: F,
+    t0: f64,
+    y0: &'a [f64],
+    method: M,
+    events: E,
+}
+
+impl<'a, F: VectorField> Solve<'a, F> {
+    /// By CVODES with the default [`Options`], without events.
+    pub fn new(field: F, t0: f64, y0: &'a [f64]) -> Self {
+        Solve { field, t0, y0, method: Options::default(), events: NoEvents }
+    }
+}
+
+impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
+    /// By this method: [`Options`] are CVODES'.
+    pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
+        let Solve { field, t0, y0, events, .. } = self;
+        Solve { field, t0, y0, method, events }
+    }
+
+    /// With these events.
+    pub fn events<D: Events>(self, events: D) -> Solve<'a, F, M, D> {
+        let Solve { field, t0, y0, method, .. } = self;
+        Solve { field, t0, y0, method, events }
+    }
+}
+
+impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
+    /// The integration at its start, to take it step by step.
+    ///
+    /// # Errors
+    /// As for [`IntegrationMethod::begin`] and [`Integration::with_events`].
+    pub fn start(self) -> Result<Integration<M::Stepper, E>, SolveError> {
+        self.start_towards(None)
+    }
+
+    fn start_towards(self, end: Option<f64>) -> Result<Integration<M::Stepper, E>, SolveError> {
+        let Solve { field, t0, y0, method, events } = self;
+        Integration::of(method.begin(field, t0, y0, end)?).with_events(events)
+    }
+
+    /// The states at `times`, and what occurs on the way.
+    ///
+    /// The times go one way, forwards or backwards; the first may be t0. The vector field is not evaluated beyond the last,
+    /// nor beyond the stop time of the method.
+    ///
+    /// # Errors
+    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is not valid.
+    pub fn run(self, times: &[f64]) -> Result<Solution, Box<SolveFailure<Solution>>> {
+        self.run_observed(times, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`run`](Solve::run), and gives the end (t, y⁻) of each step, or of the part of it before an event, to `step`, to show
+    /// progress or to stop.
+    ///
+    /// If stopped, the solution has the outputs before that step and is not [complete](Trajectory::is_complete).
+    ///
+    /// # Errors
+    /// As for [`run`](Solve::run).
+    pub fn run_observed(
+        self,
+        times: &[f64],
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Solution, Box<SolveFailure<Solution>>> {
+        let mut solution = Solution::new(self.field.dim());
+        let mut integration = match self.start_towards(times.last().copied()) {
+            Ok(integration) => integration,
+            Err(error) => return Err(Box::new(SolveFailure { reached: solution, error })),
+        };
+        let Solution { trajectory, occurrences, .. } = &mut solution;
+        let output = |t: f64, y: &[f64]| {
+            trajectory.push(t, y);
+            ControlFlow::Continue(())
+        };
+        let occurred = |occurrence: &Occurrence| {
+            occurrences.push(occurrence.clone());
+            ControlFlow::Continue(())
+        };
+        let result = integration.run_observed(times, Observed::new(output).occurrences(occurred).steps(step));
+        solution.trajectory.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
+        match result {
+            Ok(ending) => Ok(Solution { ending: Some(ending), ..solution }),
+            Err(error) => Err(Box::new(SolveFailure { reached: solution, error })),
+        }
+    }
+
+    /// The motion to `end`, or to a terminal event before, as a function of time.
+    ///
+    /// # Errors
+    /// As for [`Integration::run_dense`], which also gives what was reached.
+    pub fn dense(self, end: f64) -> Result<DenseOutput, SolveError> {
+        let mut motion = DenseOutput::default();
+        let keep = |segment| {
+            motion.extend([segment]);
+            ControlFlow::Continue(())
+        };
+        self.start_towards(Some(end))?.run_dense(end, keep, |_| ControlFlow::Continue(()))?;
+        Ok(motion)
+    }
+}

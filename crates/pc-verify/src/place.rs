@@ -1,0 +1,45 @@
+//! States, and how they change.
+
+/// A time, coordinates, velocities w and first-order states.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) t: f64,
+    pub(crate) x: Vec<f64>,
+    pub(crate) w: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+}
+
+/// A direction in which a place changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Direction {
+    pub(crate) t: f64,
+    pub(crate) x: Vec<f64>,
+    pub(crate) w: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+}
+
+/// A virtual velocity: the direction of w, and the displacement of the coordinates b w.
+#[derive(Clone, Debug)]
+pub(crate) struct Virtual {
+    pub(crate) w: Direction,
+    pub(crate) x: Vec<f64>,
+}
+
+impl Place {
+    /// In the direction of w_s.
+    pub(crate) fn along_velocity(&self, s: usize) -> Direction {
+        let mut still = self.along(vec![0.0; self.x.len()]);
+        still.w[s] = 1.0;
+        still
+    }
+
+    /// In the direction of coordinates.
+    pub(crate) fn along(&self, x: Vec<f64>) -> Direction {
+        Direction { t: 0.0, x, w: vec![0.0; self.w.len()], z: vec![0.0; self.z.len()] }
+    }
+
+    /// In that of time, coordinates moving with it and first-order states at rest.
+    pub(crate) fn in_time(&self, velocity: &[f64]) -> Direction {
+        Direction { t: 1.0, ..self.along(velocity.to_vec()) }
+    }
+}

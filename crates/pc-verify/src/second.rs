@@ -1,0 +1,246 @@
+//! The second derivation of a model, by the names of the first.
+
+use pc_model::{Assembly, Flow, Model};
+use pc_print::Form;
+
+use crate::agreement::{Agreement, Passed};
+use crate::derivation::{Completing, Derivation};
+use crate::error::{Irregular, VerifyError};
+use crate::linear::pseudo_inverse;
+use crate::place::Place;
+use crate::quantity::{Free, Quantity};
+use crate::resultant::Resultant;
+use crate::rounding::{Random, Rounding};
+use crate::structure::Structure;
+use crate::text::{Text, Velocities};
+
+/// Terms that are evaluated in some milliseconds.
+pub(crate) const LONG: usize = 100_000;
+
+/// Terms that are evaluated for all states together, in a second or so.
+const ALL_STATES: usize = 5_000_000;
+
+/// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
+/// a second, and ten times that with each two more.
+const MOST_INVERTED: usize = 9;
+
+/// The second derivation of a model.
+#[derive(Clone, Debug)]
+pub struct Second {
+    pub(crate) derivation: Derivation,
+    /// What the columns of a table are called.
+    pub(crate) columns: Vec<String>,
+    pub(crate) start: Place,
+    external: Vec<String>,
+}
+
+/// Points at which ranks are looked at.
+const RANK_POINTS: usize = 6;
+
+impl Second {
+    /// The second derivation of a model, at the start of the first.
+    ///
+    /// # Errors
+    /// [`VerifyError::Unable`].
+    pub fn new(model: &Model, assembly: &Assembly<'_>) -> Result<Second, VerifyError> {
+        let text = Text::new(model)?;
+        let n = text.coordinates();
+        let columns = match text.names.quasi_velocities.as_slice() {
+            [] => text.names.coordinates.iter().map(|x| format!("{x}'")).collect(),
+            declared => declared.to_vec(),
+        };
+        let mut derivation = Derivation {
+            on_positions: text.on_positions()?,
+            kept: Vec::new(),
+            completing: Vec::new(),
+            structure: Structure::Frame,
+            text,
+        };
+        // Which velocities the energy is one of is the first derivation's choice.
+        let all = assembly.system.quasi_velocities().iter().skip(columns.len());
+        derivation.completing =
+            all.filter_map(|eta| completing(&derivation.text, &eta.to_string())).collect();
+        let (x, eta) = assembly.start.split_at(n);
+        let stated = Passed::from;
+        let refused = |passed: Passed| match passed {
+            Passed::Error(error) => error,
+            Passed::Irregular(irregular) => {
+                VerifyError::NothingCompared { tried: 1, reason: irregular.to_string() }
+            }
+        };
+        let w = derivation.velocities_of(assembly.t_start, x, &eta[..columns.len()]);
+        let w = w.map_err(|irregular| refused(stated(irregular)))?;
+        let z = eta[eta.len() - derivation.text.state_rates.len()..].to_vec();
+        let start = Place { t: assembly.t_start, x: x.to_vec(), w, z };
+        if let Velocities::Quasi(_) = derivation.text.velocities {
+            derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
+        }
+        if !derivation.on_positions.is_empty() {
+            // Of constraints that follow from each other any may be dropped: the first derivation says which. That they do
+            // is looked at here, and that the motion follows them.
+            let dropped = |a: &usize| {
+                let name = &derivation.text.names.constraints[*a];
+                assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
+            };
+            let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
+            let mut kept = derivation.independent(&start, &last).unwrap_or_default();
+            for number in 0..RANK_POINTS {
+                let place = derivation.random(&start, number);
+                let found = place.and_then(|place| derivation.independent(&place, &last)).unwrap_or_default();
+                if found.len() > kept.len() {
+                    kept = found;
+                }
+            }
+            derivation.kept = kept;
+        }
+        derivation.find_force_functions(&start);
+        Ok(Second { derivation, columns, start, external: model.external_forces() })
+    }
+
+    /// The place of coordinates, columns and first-order states.
+    pub(crate) fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
+        let (x, eta) = row.split_at(self.start.x.len());
+        let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
+        let w = self.derivation.velocities_of(t, x, eta)?;
+        Ok(Place { t, x: x.to_vec(), w, z: z.to_vec() })
+    }
+
+    #[cfg(test)]
+    pub(crate) fn derivation(&self) -> &Derivation {
+        &self.derivation
+    }
+
+    #[cfg(test)]
+    pub(crate) fn start(&self) -> &Place {
+        &self.start
+    }
+
+    /// No state compared.
+    pub(crate) fn nothing_yet(&self) -> Agreement {
+        let mut agreement = Agreement {
+            states: 0,
+            projected: 0,
+            skipped: 0,
+            reason: None,
+            error: 0.0,
+            quantity: String::new(),
+            forms: Vec::new(),
+            not_compared: Vec::new(),
+        };
+        for force in &self.external {
+            agreement.leave_out(&format!("the force on {force} computed outside"), "taken for 0");
+        }
+        agreement
+    }
+
+    /// The quasi-velocity of this name: a column, what a constraint fixes at 0, or a velocity.
+    pub(crate) fn free(&self, name: &str) -> Option<Free> {
+        let column = self.columns.iter().position(|column| column == name).map(Free::Column);
+        column.or_else(|| {
+            completing(&self.derivation.text, name).map(|completing| match completing {
+                Completing::Velocity(i) => Free::Velocity(i),
+                Completing::Constraint(a) => Free::Constraint(a),
+            })
+        })
+    }
+
+    /// Its value.
+    pub(crate) fn velocity(&self, name: &str) -> Option<Quantity> {
+        self.free(name).map(|free| match free {
+            Free::Column(s) => Quantity::Column(s),
+            Free::Velocity(i) => Quantity::Velocity(i),
+            Free::Constraint(_) => Quantity::Zero,
+        })
+    }
+
+    /// The rate of a component of the state.
+    pub(crate) fn rate(&self, name: &str) -> Option<Quantity> {
+        let coordinates = &self.derivation.text.names.coordinates;
+        let coordinate = coordinates.iter().position(|x| x == name).map(Quantity::Velocity);
+        let states = &self.derivation.text.names.states;
+        let state = || states.iter().position(|z| z == name).map(Quantity::StateRate);
+        coordinate.or_else(state).or_else(|| {
+            self.velocity(name).map(|quantity| match quantity {
+                Quantity::Column(s) => Quantity::ColumnRate(s),
+                Quantity::Velocity(i) => Quantity::Acceleration(i),
+                other => other,
+            })
+        })
+    }
+
+    /// An observable.
+    pub(crate) fn observable(&self, name: &str) -> Option<Quantity> {
+        let text = &self.derivation.text;
+        if name == "energy" {
+            return Some(Quantity::Energy);
+        }
+        let observed = text.observed.iter().position(|(known, _)| known == name).map(Quantity::Observed);
+        let names = &text.names;
+        let reaction = || {
+            let constraint = name.strip_prefix("λ_")?;
+            names.constraints.iter().position(|c| c == constraint).map(Quantity::Reaction)
+        };
+        let resultant = || Resultant::named(name, &names.constraints, &names.bodies).map(Quantity::Resultant);
+        observed.or_else(reaction).or_else(resultant)
+    }
+
+    /// How many terms of the text are evaluated for the equations at one state, roughly.
+    pub fn cost(&self) -> usize {
+        let k = self.start.w.len();
+        (k * (k + 1) / 2 + 4 * k + 4).saturating_mul(self.derivation.text.terms())
+    }
+
+    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    pub fn is_long(&self, flow: &Flow) -> bool {
+        self.cost() > LONG && flow.has_momenta()
+    }
+
+    /// Why a printed form is not derived only to be compared.
+    pub(crate) fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
+        if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
+            return None; // the same as Lagrange's, and not derived
+        }
+        if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {
+            return Some("the mass matrix would be inverted in symbols");
+        }
+        (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
+    }
+
+    /// At how many of so many states all equations are compared.
+    pub(crate) fn wholly(&self, states: usize) -> usize {
+        let affordable = ALL_STATES / self.cost().max(1);
+        states.min(affordable.max(1))
+    }
+
+    pub(crate) fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {
+        let coordinates = self.derivation.text.names.coordinates.iter().zip(&at.x);
+        let states = self.derivation.text.names.states.iter().zip(&at.z);
+        let all = coordinates.chain(self.columns.iter().zip(columns)).chain(states);
+        all.map(|(name, &value)| (name.clone(), value)).collect()
+    }
+}
+
+/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, made longer where it is that of something else.
+fn completing(text: &Text, name: &str) -> Option<Completing> {
+    let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
+    let velocity = name.strip_suffix('\'').and_then(|x| place(&text.names.coordinates, x));
+    let constraint = || place(&text.names.constraints, name.trim_end_matches('_'));
+    velocity.map(Completing::Velocity).or_else(|| constraint().map(Completing::Constraint))
+}
+
+impl Derivation {
+    /// The rank of b, the largest of those at some points near a place.
+    fn rank(&self, near: &Place) -> usize {
+        let exact = Rounding::none();
+        let mut random = Random::new(0);
+        let mut largest = 0;
+        for number in 0..RANK_POINTS {
+            let scale = if number == 0 { 0.0 } else { 0.1 };
+            let x = near.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect();
+            let Ok(frame) = self.frame(&Place { x, ..near.clone() }, &exact) else { continue };
+            let b = nalgebra::DMatrix::from_fn(near.x.len(), near.w.len(), |i, s| frame[s][i]);
+            largest = pseudo_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
+        }
+        largest
+    }
+}
