@@ -1,6 +1,7 @@
 //! What the motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
 
-use pc_mech::{Conservation, Equations, Expr, Graph, Neighbourhood, Number, Rates, Style, System};
+use pc_analysis::{Conservation, CyclicDisplacement, PoissonBracket, Rates};
+use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number, Style, System};
 use pc_model::{Assembly, ConstraintFormulation};
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
@@ -71,7 +72,7 @@ pub(super) fn say_energy_is_kept<'g>(list: &mut [Integral<'g>], equations: &Equa
         integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
     };
     for integral in list.iter_mut().filter(open) {
-        let jumps = equations.rates().has_jumps(integral.value);
+        let jumps = Rates::poincare(equations).has_jumps(integral.value);
         integral.verdict =
             if jumps { ConservationVerdict::BetweenJumps } else { ConservationVerdict::Conserved };
     }
@@ -133,7 +134,7 @@ impl<'a, 'g> Search<'a, 'g> {
             graph: system.graph(),
             equations,
             bound: system.with_parameters_bound(),
-            rates: equations.rates(),
+            rates: Rates::poincare(equations),
             near,
             variables: [frame.time()].into_iter().chain(system.state()).collect(),
             unconstrained: system.structure().operators() == k,
@@ -212,7 +213,7 @@ impl<'a, 'g> Search<'a, 'g> {
             format!("momentum of {}", combination(coefficients.iter().map(ToString::to_string).zip(names)))
         };
         let new =
-            self.bound.cyclic_displacements().into_iter().filter(|cyclic| !is_declared(cyclic.momentum));
+            CyclicDisplacement::all(&self.bound).into_iter().filter(|cyclic| !is_declared(cyclic.momentum));
         new.map(|cyclic| Integral {
             name: name(&cyclic.coefficients),
             value: cyclic.momentum,
@@ -243,7 +244,7 @@ impl<'a, 'g> Search<'a, 'g> {
         if !(self.unconstrained && stationary) {
             return;
         }
-        let bracket = self.bound.bracket();
+        let bracket = PoissonBracket::new(&self.bound);
         let degree = (1..=2).rev().find(|&d| binomial(bracket.variables().len() + d, d) <= MOST_FUNCTIONS);
         let momenta: Vec<_> =
             self.bound.momentum_symbols().into_iter().zip(self.system().momenta()).collect();
@@ -253,7 +254,8 @@ impl<'a, 'g> Search<'a, 'g> {
             .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
             .map(|(casimir, value)| {
                 let here = if forced { self.verdict(value) } else { self.proved(value) };
-                let always = !forced && self.system().bracket().is_casimir(casimir).unwrap_or(false);
+                let always =
+                    !forced && PoissonBracket::new(self.system()).is_casimir(casimir).unwrap_or(false);
                 (value, if always { ConservationVerdict::Conserved } else { here })
             })
             .filter(|(_, verdict)| verdict.is_conserved())

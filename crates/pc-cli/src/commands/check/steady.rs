@@ -1,8 +1,7 @@
 //! The steady motion near the start, and whether it is stable.
 
-use pc_mech::{
-    Eigenvalue, Equations, Expr, ExprError, Graph, Matrix, Motion, SteadyMotion, SteadyOptions, Verdict,
-};
+use pc_analysis::{Eigenvalue, SecondVariation, SteadyMotion, SteadyOptions, Verdict, first_approximation};
+use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion};
 use serde_json::{Map, Value, json};
 
 use super::integrals::{Integral, bind, rank_of_gradients};
@@ -73,7 +72,7 @@ pub(super) fn steady_motion<'g>(
     if all.any(|&x| moves(bind(system, x))) {
         return Search::NotAutonomous;
     }
-    let Ok(slopes) = motion.linearised(t_start, start) else { return Search::None };
+    let Ok(slopes) = first_approximation(motion, t_start, start) else { return Search::None };
     let steepest = MOST_STEEPER * largest(&slopes);
     let known = Known::of(equations, integrals);
     let bound = equations.with_parameters_bound();
@@ -92,13 +91,13 @@ pub(super) fn steady_motion<'g>(
             return Search::SurfaceUnknown;
         };
         let options = SteadyOptions::default().iterations(MOST_STEPS);
-        let found = motion.steady_motion_on(t_start, start, &options, |y| Ok(surface.at(y)?));
+        let found = SteadyMotion::on_surface(motion, t_start, start, &options, |y| Ok(surface.at(y)?));
         let Some(found) = found.ok().filter(|found| largest(&found.first_approximation) <= steepest) else {
             continue;
         };
         let state = system.state();
         let names = state.iter().map(Expr::to_string);
-        let second = bound.second_variation_under(&all, &found.state).ok().map(|second| Variation {
+        let second = SecondVariation::under(&bound, &all, &found.state).ok().map(|second| Variation {
             verdict: second.verdict,
             variables: Some(second.variables).filter(|variables| *variables != found.components),
         });
