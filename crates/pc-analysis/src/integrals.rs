@@ -2,9 +2,10 @@
 //!
 //! In go equations, out come rates of functions with verdicts, and integrals that are proved. `rates` differentiates along
 //! the motion, `cyclic_displacements` finds integrals that are momenta, `ansatz` those of a given form, made of the products
-//! of `polynomials`.
+//! of `polynomials`; `search` asks all of them, and Casimirs, for what a system keeps.
 
 pub(crate) mod ansatz;
 pub(crate) mod cyclic_displacements;
 pub(crate) mod polynomials;
 pub(crate) mod rates;
+pub(crate) mod search;

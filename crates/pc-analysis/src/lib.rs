@@ -54,7 +54,8 @@
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`CyclicDisplacement::all`] finds the
 //! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
 //! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
-//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
+//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved. [`Integrals::find`] asks all of
+//! these, and Casimirs, for what a system keeps.
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -101,12 +102,17 @@
 //! let mut integral = CompleteIntegral::new(&particle.canonical()?, action, &["α"])?;
 //! let state = integral.state(2.0, &[5.0], &[-3.0], &[0.0])?;
 //! assert_eq!(state, [9.0, 1.0]); // 5 + 3 t − t²/2, 3 − t
+//! # Frames
+//!
+//! [`FrameFacts::of`] says of each quasi-velocity whether it is dπ/dt, and which constraints hold by the frame alone.
+//!
 //! # Steady motions and stability
 //!
 //! [`SteadyMotion::near`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
 //! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
 //! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
 //! nothing.
+//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and asks both.
 //! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
@@ -140,6 +146,7 @@
 
 mod brackets;
 mod error;
+mod frame_facts;
 mod hamilton_jacobi;
 mod integrals;
 mod measures;
@@ -149,13 +156,16 @@ mod variation;
 
 pub use brackets::poisson_bracket::PoissonBracket;
 pub use error::AnalysisError;
+pub use frame_facts::{FrameConstraints, FrameFacts, QuasiVelocityKind};
 pub use hamilton_jacobi::{CompleteIntegral, hamilton_jacobi};
 pub use integrals::ansatz::Ansatz;
 pub use integrals::cyclic_displacements::CyclicDisplacement;
 pub use integrals::rates::{Conservation, Rates};
+pub use integrals::search::{ConservationVerdict, Integral, Integrals, Origin};
 pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
 pub use measures::reducing_multiplier::ReducingMultiplier;
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
+pub use stability::steady_search::{EnergyCriterion, NearbySteadyMotion, Stability, SteadySearch};
 pub use variation::Variation;
