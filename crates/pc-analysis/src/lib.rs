@@ -5,6 +5,10 @@
 //! [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to the
 //! [`Motion`](pc_mech::Motion) that these are compiled to. What is found is proved unless it is said to be open.
 //!
+//! # Frames
+//!
+//! [`FrameFacts::of`] says of each quasi-velocity whether it is dπ/dt, and which constraints hold by the frame alone.
+//!
 //! # Brackets
 //!
 //! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
@@ -28,6 +32,9 @@
 //! let [x, y, z, px, py, pz] = graph.symbols(["x", "y", "z", "p_x", "p_y", "p_z"]);
 //! let all = PoissonBracket::new(&point).closure(&[y * pz - z * py, z * px - x * pz])?;
 //! assert_eq!(all[2..], [x * py - y * px]);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
 //! # Lie–Poisson
 //!
 //! On a group with invariant L, [reduced](pc_mech::System::reduced) to no coordinates, the bracket is that of the [algebra
@@ -49,13 +56,16 @@
 //!     .build()?;
 //! let free = body.reduced()?;
 //! assert_eq!(PoissonBracket::new(&free).casimirs(2)[0].to_string(), "p_1^2 + p_2^2 + p_3^2");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Integrals
 //!
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`CyclicDisplacement::all`] finds the
 //! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
 //! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
-//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved. [`Integrals::find`] asks all of
-//! these, and Casimirs, for what a system keeps.
+//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
+//! [`Integrals::find`] asks all of these, and Casimirs, for what a system keeps.
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -84,6 +94,9 @@
 //! let rates = Rates::canonical(&top.canonical()?);
 //! let found: Vec<String> = rates.integrals(&rates.ansatz(1, 1))?.iter().map(|f| f.to_string()).collect();
 //! assert_eq!(found, ["p_ω3", "γ1*p_ω1 + γ2*p_ω2 + γ3*p_ω3"]);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
 //! # Hamilton–Jacobi
 //!
 //! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] puts S in and
@@ -102,9 +115,8 @@
 //! let mut integral = CompleteIntegral::new(&particle.canonical()?, action, &["α"])?;
 //! let state = integral.state(2.0, &[5.0], &[-3.0], &[0.0])?;
 //! assert_eq!(state, [9.0, 1.0]); // 5 + 3 t − t²/2, 3 − t
-//! # Frames
-//!
-//! [`FrameFacts::of`] says of each quasi-velocity whether it is dπ/dt, and which constraints hold by the frame alone.
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
 //!
 //! # Steady motions and stability
 //!
@@ -116,7 +128,7 @@
 //! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
-//! use pc_analysis::{SecondVariation, Spectrum, Verdict};
+//! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
 //! use pc_mech::{Graph, LieAlgebra, System};
 //!
 //! // The sleeping top, upright: stable if C² ω² > 4 A mgl. With A = mgl = 1, C = 1/2: if ω > 4.
@@ -134,8 +146,10 @@
 //!     .poincare()?;
 //! let sleeping = |spin| [0.0, 0.0, 1.0, 0.0, 0.0, spin];
 //! assert_eq!(SecondVariation::at(&top, &sleeping(4.01))?.verdict, Verdict::Stable);
-//! let matrix = pc_analysis::first_approximation(&mut top.compile()?, 0.0, &sleeping(3.99))?;
+//! let matrix = first_approximation(&mut top.compile()?, 0.0, &sleeping(3.99))?;
 //! assert_eq!(Spectrum::of(&matrix, 0.0)?.verdict(), Verdict::Unstable);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
 //!
 //! # Invariant measures
 //!

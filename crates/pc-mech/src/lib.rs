@@ -148,12 +148,6 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
 //! # Symmetry
 //!
 //! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with invariant L none
@@ -174,12 +168,6 @@
 //!     .build()?;
 //! let free = body.reduced()?;
 //! assert_eq!(free.canonical()?.right_hand_side()[0].to_string(), "-1/6*p_2*p_3");
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
