@@ -1,5 +1,6 @@
 //! Chetaev's canonical equations (10), (11), their bracket (12) and the equations by brackets (13).
 
+use pc_analysis::{PoissonBracket, hamilton_jacobi};
 use pc_mech::{Canonical, Expr, Graph, System};
 
 use crate::{along, assert_all_equal, assert_identities};
@@ -87,7 +88,7 @@ fn equation_11_gives_the_velocities() {
 fn equation_12_is_the_bracket() {
     let graph = Graph::new();
     let system = sphere(&graph);
-    let (frame, c, bracket) = (system.frame(), system.structure(), system.bracket());
+    let (frame, c, bracket) = (system.frame(), system.structure(), PoissonBracket::new(&system));
     let y = system.momentum_symbols();
     let [theta, phi] = graph.symbols(["θ", "φ"]);
     let (f, g) = (theta * y[0].square() + phi.sin() * y[1], phi * y[0] * y[1] - theta.square());
@@ -104,7 +105,7 @@ fn equation_12_is_the_bracket() {
 #[test]
 fn equation_12_is_skew_and_satisfies_jacobis_identity() {
     let graph = Graph::new();
-    let bracket = sphere(&graph).bracket();
+    let bracket = PoissonBracket::new(&sphere(&graph));
     let [theta, phi, p, q] = graph.symbols(["θ", "φ", "p_u", "p_v"]);
     let (f, g, h) =
         (theta * p.square() + phi.sin() * q, phi * p * q - theta.square(), q.square() + theta * p);
@@ -126,7 +127,7 @@ fn equation_12_is_extended_by_time_where_c_0s_is_not_zero() {
     let pairs = (1..=2).flat_map(|s| (1..=2).map(move |m| (s, m)));
     let printed = graph.sum(pairs.map(|(s, m)| c.get(0, s, m) * df[s - 1] * y[m - 1]));
     assert!(!printed.is_zero());
-    assert!(system.extended_bracket().of(f, f).unwrap().is_zero());
+    assert!(PoissonBracket::extended(&system).of(f, f).unwrap().is_zero());
 }
 
 /// ẋ_i = (x_i, H), ẏ_s = (y_s, H) in a stationary frame, and with the extended bracket and H + y_0 in any. In the paper (11) is
@@ -136,13 +137,13 @@ fn equation_13_the_brackets_with_the_energy_are_the_motion() {
     let graph = Graph::new();
     let system = sphere(&graph);
     let canonical = system.canonical().unwrap();
-    let field = system.bracket().field(canonical.hamiltonian()).unwrap();
+    let field = PoissonBracket::new(&system).field(canonical.hamiltonian()).unwrap();
     let rates = || canonical.velocities().iter().chain(canonical.right_hand_side()).copied();
     assert_all_equal("stationary", field, rates());
 
     let system = driven(&graph, false);
     let canonical = system.canonical().unwrap();
-    let bracket = system.extended_bracket();
+    let bracket = PoissonBracket::extended(&system);
     let energy = canonical.hamiltonian() + bracket.time_momentum().unwrap();
     let state: Vec<_> = system.frame().coordinates().iter().chain(canonical.momenta()).copied().collect();
     let rates = || canonical.velocities().iter().chain(canonical.right_hand_side()).copied();
@@ -163,7 +164,7 @@ fn equations_10_and_11_are_satisfied_by_a_solution_of_hamilton_and_jacobi() {
         .unwrap();
     let canonical = system.canonical().unwrap();
     let action = (x - start).square() / (2.0 * t) - t * (x + start) / 2.0 - t.powi(3) / 24.0;
-    assert!(canonical.hamilton_jacobi(action).unwrap().is_zero());
+    assert!(hamilton_jacobi(&canonical, action).unwrap().is_zero());
     let momentum = system.frame().apply(1, &[action])[0];
     let known = [(canonical.momenta()[0], momentum)];
     let velocity = graph.substitute(canonical.velocities(), &known)[0];

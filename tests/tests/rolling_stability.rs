@@ -5,7 +5,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use pc_mech::{Graph, Motion, SteadyMotion, SteadyOptions, Verdict};
+use pc_analysis::{SteadyMotion, SteadyOptions, Verdict};
+use pc_mech::{Graph, Motion};
 use pc_nonholo::Constrained;
 use pc_tests::nonholonomic::{ball_on_turntable, disk};
 
@@ -25,7 +26,7 @@ fn rolling(a: f64, c: f64) -> Motion {
 fn straight(motion: &mut Motion, spin: f64) -> SteadyMotion {
     let upright = [0.0, 0.0, 0.3, FRAC_PI_2, 0.0, 0.0, 0.0, spin];
     let options = SteadyOptions::default().cyclic(["X", "Y", "psi", "phi"]);
-    motion.steady_motion(0.0, &upright, &options).unwrap()
+    SteadyMotion::near(motion, 0.0, &upright, &options).unwrap()
 }
 
 /// The middle of the last interval where `holds` changes from false to true, 2⁻⁵⁰ of the first.
@@ -68,7 +69,7 @@ fn a_disk_circles_steadily() {
     let (theta, turn) = (1.1f64, -1.5);
     let guess = [0.0, 0.0, 0.0, theta, 0.0, 0.1, turn, 3.0];
     let options = SteadyOptions::default().cyclic(["X", "Y", "psi", "phi"]).fixed(["theta", "w2"]);
-    let steady = motion.steady_motion(0.0, &guess, &options).unwrap();
+    let steady = SteadyMotion::near(&mut motion, 0.0, &guess, &options).unwrap();
     let spin = steady.state[7];
     let balance = 0.25 * turn * turn / theta.tan() - 1.5 * turn * spin - GRAVITY * theta.cos();
     assert!(balance.abs() < 1e-11 && steady.state[5].abs() < 1e-13, "{balance:e}");
@@ -87,7 +88,7 @@ fn a_ball_on_a_turntable_circles_with_two_sevenths() {
     // At rest in space at (1, ½): ω = Ω (X, Y)/R.
     let (rate, radius) = (2.0, 0.5);
     let start = [1.0, 0.5, rate * 1.0 / radius, rate * 0.5 / radius, 0.7];
-    let steady = motion.steady_motion(0.0, &start, &SteadyOptions::default()).unwrap();
+    let steady = SteadyMotion::near(&mut motion, 0.0, &start, &SteadyOptions::default()).unwrap();
     assert!(steady.state.iter().zip(start).all(|(a, b)| (a - b).abs() < 1e-12), "{:?}", steady.state);
     let found = steady.spectrum.eigenvalues().iter().fold(0.0f64, |size, value| size.max(value.imaginary));
     assert!((found - rate * 2.0 / 7.0).abs() < 1e-8, "{found}");

@@ -1,7 +1,7 @@
 //! What can be wrong with a mechanical system.
 
 use pc_algebra::AlgebraError;
-use pc_expr::{Expr, ExprError, Failure, Graph, readable};
+use pc_expr::{ExprError, Failure, readable};
 
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -198,23 +198,6 @@ pub enum MechError {
         /// The derivative.
         what: &'static str,
     },
-    /// Newton's method ended where the rates do not vanish.
-    #[error(
-        "no steady motion was found near the guess: after {iterations} steps the rates that should vanish have \
-         the norm {} at t = {t}{}",
-        readable(*residual),
-        listed(state)
-    )]
-    NoSteadyMotion {
-        /// √Σ f_i² over the components that are not cyclic.
-        residual: f64,
-        /// Number of steps made.
-        iterations: usize,
-        /// Time.
-        t: f64,
-        /// Names and values of the state where the residual was least.
-        state: Vec<(String, f64)>,
-    },
     /// A matrix that must be antisymmetric and is not.
     #[error("{what} is antisymmetric; its entries for `{}` and `{}` do not add up to zero", pair[0], pair[1])]
     NotSkew {
@@ -304,22 +287,6 @@ pub enum MechError {
         /// What it said.
         cause: String,
     },
-    /// A name that no component of the state has.
-    #[error("the state has no component `{name}`; it has {}", known.join(", "))]
-    UnknownComponent {
-        /// The name.
-        name: String,
-        /// The names of the components.
-        known: Vec<String>,
-    },
-    /// A component called cyclic on which a rate depends.
-    #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
-    NotCyclic {
-        /// The component called cyclic.
-        coordinate: String,
-        /// A component that is not.
-        component: String,
-    },
     /// A matrix whose eigenvalues or singular values cannot be computed.
     #[error(
         "a {rows} × {columns} matrix has entries that are not finite, or eigenvalues that cannot be found"
@@ -329,59 +296,6 @@ pub enum MechError {
         rows: usize,
         /// Its columns.
         columns: usize,
-    },
-    /// A function that should be an integral changes along the motion.
-    #[error("`{name}` is not a first integral free of time, so that it proves no stability")]
-    NotConserved {
-        /// Its name.
-        name: String,
-    },
-    /// Hamilton–Jacobi's equation asked for with generalised forces.
-    #[error("Hamilton–Jacobi's equation needs Q = 0; the force on `{quasi_velocity}` is not zero")]
-    Forced {
-        /// The first quasi-velocity with a force.
-        quasi_velocity: String,
-    },
-    /// A function that does not satisfy Hamilton–Jacobi's equation.
-    #[error("S does not satisfy Hamilton–Jacobi's equation: X_0 S + H(t, x, X_s S) = {remainder}")]
-    NotAnAction {
-        /// Text of the left-hand side.
-        remainder: String,
-    },
-    /// A solution of Hamilton–Jacobi's equation with too few constants.
-    #[error("the integral is not complete: the matrix ∂(X_s S)/∂α has rank {rank} of {size}")]
-    IncompleteIntegral {
-        /// Rank at almost all points.
-        rank: usize,
-        /// Number k of quasi-velocities.
-        size: usize,
-    },
-    /// Newton's method ended where Jacobi's equations are not satisfied.
-    #[error(
-        "∂S/∂α = β has no solution near the guess: after {iterations} steps the norm of the difference is {} at \
-         t = {t}{}",
-        readable(*residual),
-        listed(coordinates)
-    )]
-    NoPosition {
-        /// |∂S/∂α − β|
-        residual: f64,
-        /// Number of steps made.
-        iterations: usize,
-        /// Time.
-        t: f64,
-        /// Names and values of the coordinates where the residual was least.
-        coordinates: Vec<(String, f64)>,
-    },
-    /// A function of something that does not belong to it.
-    #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
-    NotAVariable {
-        /// What it is a function of.
-        what: &'static str,
-        /// The first symbol that is neither a variable nor declared as constant.
-        symbol: String,
-        /// What the function can contain.
-        known: Vec<String>,
     },
     /// A vector field that could not be evaluated for a reason of its own.
     #[error("{cause}")]
@@ -419,22 +333,6 @@ fn quoted(names: &[String]) -> String {
 /// An error unless `found` is `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), MechError> {
     if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }) }
-}
-
-/// An error for the first symbol in `functions` that is not `known`.
-pub(crate) fn check_variables<'g>(
-    what: &'static str,
-    graph: &'g Graph,
-    functions: &[Expr<'g>],
-    known: &[Expr<'g>],
-) -> Result<(), MechError> {
-    match graph.symbols_of(functions).into_iter().find(|symbol| !known.contains(symbol)) {
-        None => Ok(()),
-        Some(symbol) => {
-            let known = known.iter().map(Expr::to_string).collect();
-            Err(MechError::NotAVariable { what, symbol: symbol.to_string(), known })
-        }
-    }
 }
 
 fn listed(values: &[(String, f64)]) -> String {

@@ -1,4 +1,5 @@
-//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion, and what can be said of the motions.
+//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion. What can be said of the motions is the matter of
+//! `pc-analysis`.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
 //! corrected. Conventions are those of [`pc_algebra`]: index 0 is time; i, j = 1..n count coordinates, r, s, m = 1..k
@@ -147,71 +148,10 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
-//! # Brackets
-//!
-//! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
-//!
-//! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
-//!
-//! [`System::bracket`] is this [`PoissonBracket`]; for all others [`System::extended_bracket`] adds time and its
-//! momentum y_0, with H + y_0 for H. Functions that commute with everything are [Casimirs](PoissonBracket::casimirs). The
-//! bracket of two integrals is an integral (Poisson's theorem); [`PoissonBracket::closure`] adds what is new.
-//!
-//! ```
-//! use pc_mech::{Graph, System};
-//!
-//! // Two components of the angular momentum in space bring the third.
-//! let graph = Graph::new();
-//! let point = System::builder(&graph)
-//!     .coordinates(["x", "y", "z"])
-//!     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
-//!     .build()?;
-//! let [x, y, z, px, py, pz] = graph.symbols(["x", "y", "z", "p_x", "p_y", "p_z"]);
-//! let all = point.bracket().closure(&[y * pz - z * py, z * px - x * pz])?;
-//! assert_eq!(all[2..], [x * py - y * px]);
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
-//! # Integrals
-//!
-//! [`System::energy_rate`] is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`System::cyclic_displacements`] finds the
-//! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
-//! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
-//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
-//!
-//! ```
-//! use pc_mech::{Conservation, Graph, LieAlgebra, System};
-//!
-//! // Lagrange's top, with friction about its axis and without.
-//! let graph = Graph::new();
-//! let [a, c, n] = graph.symbols(["A", "C", "n"]);
-//! let top = |friction| {
-//!     System::builder(&graph)
-//!         .coordinates(["γ1", "γ2", "γ3"])
-//!         .quasi_velocities(["ω1", "ω2", "ω3"])
-//!         .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
-//!         .algebra(&LieAlgebra::so3())
-//!         .lagrangian(|_, g, w| (a*(w[0].square() + w[1].square()) + c*w[2].square())/2.0 - g[2])
-//!         .dissipation(|_, _, w| friction * w[2].square() / 2.0)
-//!         .build()
-//! };
-//! let rubbed = top(n)?;
-//! assert_eq!(rubbed.energy_rate().to_string(), "-n*ω3^2");
-//! assert!(matches!(rubbed.poincare()?.rates().verdict(rubbed.momenta()[2])?, Conservation::Changing(_)));
-//!
-//! let top = top(0.0.into())?;
-//! assert_eq!(top.cyclic_displacements()[0].momentum.to_string(), "C*ω3");
-//! let rates = top.canonical()?.rates();
-//! let found: Vec<String> = rates.integrals(&rates.ansatz(1, 1))?.iter().map(|f| f.to_string()).collect();
-//! assert_eq!(found, ["p_ω3", "γ1*p_ω1 + γ2*p_ω2 + γ3*p_ω3"]);
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
 //! # Symmetry
 //!
 //! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with invariant L none
-//! remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m, and the bracket
-//! is that of the [algebra alone](PoissonBracket::lie_poisson).
+//! remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m.
 //!
 //! ```
 //! use pc_mech::{Graph, LieGroup, RotationMatrices, System};
@@ -228,57 +168,6 @@
 //!     .build()?;
 //! let free = body.reduced()?;
 //! assert_eq!(free.canonical()?.right_hand_side()[0].to_string(), "-1/6*p_2*p_3");
-//! assert_eq!(free.bracket().casimirs(2)[0].to_string(), "p_1^2 + p_2^2 + p_3^2");
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
-//! # Hamilton–Jacobi
-//!
-//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`Canonical::hamilton_jacobi`] puts S in and
-//! proves it; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
-//!
-//! ```
-//! use pc_mech::{Graph, System};
-//!
-//! // Free fall, g = 1: Hamilton's principal function of the motion from α at t = 0. Then β = −ẋ(0).
-//! let graph = Graph::new();
-//! let [t, x, start] = graph.symbols(["t", "x", "α"]);
-//! let particle =
-//!     System::builder(&graph).coordinates(["x"]).lagrangian(|_, x, v| v[0].square() / 2.0 - x[0]).build()?;
-//! let action = (x - start).square() / (2.0 * t) - t * (x + start) / 2.0 - t.powi(3) / 24.0;
-//! let state = particle.canonical()?.complete_integral(action, &["α"])?.state(2.0, &[5.0], &[-3.0], &[0.0])?;
-//! assert_eq!(state, [9.0, 1.0]); // 5 + 3 t − t²/2, 3 − t
-//! # Ok::<(), pc_mech::MechError>(())
-//! ```
-//!
-//! # Steady motions and stability
-//!
-//! [`Motion::steady_motion`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
-//! [`Spectrum`] shows instability, or asymptotic stability; [`Equations::second_variation`] of the energy under constant
-//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
-//! nothing.
-//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
-//!
-//! ```
-//! use pc_mech::{Graph, LieAlgebra, Spectrum, System, Verdict};
-//!
-//! // The sleeping top, upright: stable if C² ω² > 4 A mgl. With A = mgl = 1, C = 1/2: if ω > 4.
-//! let graph = Graph::new();
-//! let top = System::builder(&graph)
-//!     .coordinates(["γ1", "γ2", "γ3"])
-//!     .quasi_velocities(["ω1", "ω2", "ω3"])
-//!     .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
-//!     .algebra(&LieAlgebra::so3())
-//!     .lagrangian(|_, g, w| (w[0].square() + w[1].square() + w[2].square()/2.0)/2.0 - g[2])
-//!     .integral("area", |_, g, w| w[0]*g[0] + w[1]*g[1] + w[2]*g[2]/2.0)
-//!     .integral("spin", |_, _, w| w[2])
-//!     .integral("γ²", |_, g, _| g[0].square() + g[1].square() + g[2].square())
-//!     .build()?
-//!     .poincare()?;
-//! let sleeping = |spin| [0.0, 0.0, 1.0, 0.0, 0.0, spin];
-//! assert_eq!(top.second_variation(&sleeping(4.01))?.verdict, Verdict::Stable);
-//! let first_approximation = top.compile()?.linearised(0.0, &sleeping(3.99))?;
-//! assert_eq!(Spectrum::of(&first_approximation, 0.0)?.verdict(), Verdict::Unstable);
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
@@ -324,10 +213,7 @@ mod constraints;
 mod emit;
 mod equations;
 mod error;
-mod hamilton_jacobi;
-mod integrals;
 mod numeric;
-mod stability;
 mod system;
 mod transform;
 
@@ -344,12 +230,8 @@ pub use emit::source::{EmitOptions, EmittedFile};
 pub use equations::canonical::Canonical;
 pub use equations::poincare::Equations;
 pub use error::MechError;
-pub use hamilton_jacobi::CompleteIntegral;
-pub use integrals::ansatz::Ansatz;
-pub use integrals::bracket::PoissonBracket;
-pub use integrals::conserved::{Conservation, Rates};
-pub use integrals::cyclic::CyclicDisplacement;
 pub use numeric::least_squares::LeastSquares;
+pub use numeric::singular_values::SingularValues;
 pub use pc_algebra::{
     AlgebraError, Elimination, EulerAngles, Frame, Identity, LieAlgebra, LieGroup, Matrix, Neighbourhood,
     RotationMatrices, StructureCoefficients, UnitQuaternions, acts_as_zero, determinant,
@@ -358,10 +240,6 @@ pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,
     VectorField,
 };
-pub use stability::second_variation::SecondVariation;
-pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
-pub use stability::steady::{SteadyMotion, SteadyOptions};
-pub use stability::variation::Variation;
 pub use system::bodies::particle::Particle;
 pub use system::bodies::rigid_body::{Inertia, RigidBody};
 pub use system::bodies::velocity::BodyVelocity;

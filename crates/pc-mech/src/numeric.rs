@@ -1,5 +1,4 @@
-//! Dense linear algebra and Newton's method, in numbers.
+//! Dense linear equations in numbers.
 
-pub(crate) mod dense;
 pub(crate) mod least_squares;
-pub(crate) mod newton;
+pub(crate) mod singular_values;

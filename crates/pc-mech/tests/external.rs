@@ -4,9 +4,10 @@
 
 mod common;
 
+use pc_analysis::{Conservation, Rates};
 use pc_mech::{
-    Backend, CompileOptions, Conservation, EmitOptions, Expr, ExternalForce, Failure, Graph, Language,
-    MechError, System, SystemBuilder, VectorField,
+    Backend, CompileOptions, EmitOptions, Expr, ExternalForce, Failure, Graph, Language, MechError, System,
+    SystemBuilder, VectorField,
 };
 
 /// Forces on ω3 and ω1 of a top, with their derivatives.
@@ -190,7 +191,7 @@ fn the_force_stays_a_symbol() {
     let [q, w3] = graph.symbols(["Q_ω3", "ω3"]);
     assert_eq!(declared.forces()[2], q);
     assert_eq!(declared.energy_rate(), q * w3);
-    let rates = declared.poincare().unwrap().rates();
+    let rates = Rates::poincare(&declared.poincare().unwrap());
     assert_eq!(rates.verdict(declared.energy()).unwrap(), Conservation::Changing(q * w3));
     assert_eq!(declared.with_parameters_bound().forces()[2], q);
     assert_eq!(declared.permuted(&[2, 0, 1]).forces()[0], q);

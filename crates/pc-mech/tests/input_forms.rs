@@ -4,6 +4,7 @@
 
 mod common;
 
+use pc_analysis::Rates;
 use pc_mech::{Expr, Frame, Graph, Matrix, MechError, Particle, System, SystemBuilder};
 
 /// The spherical pendulum with the velocities ẋ and ẏ.
@@ -117,7 +118,7 @@ fn dissipation_takes_twice_its_function() {
     let r = (d1 * w1.square() + d2 * (w1 - g2 * w2).square() + d3 * w3.square()) / 2.0;
     let system = common::top_of_parameters(&graph).dissipation(|_, _, _| r).build().unwrap();
     assert_eq!(system.energy_rate(), -2.0 * r);
-    assert_eq!(system.poincare().unwrap().rates().of(system.energy()).unwrap(), -2.0 * r);
+    assert_eq!(Rates::poincare(&system.poincare().unwrap()).of(system.energy()).unwrap(), -2.0 * r);
 }
 
 fn skew<'g>(t: Expr<'g>, x: &[Expr<'g>], _: &[Expr<'g>]) -> Matrix<Expr<'g>> {
@@ -132,7 +133,7 @@ fn gyroscopic_forces_do_no_work() {
     let [t, g1, g2, w2, w3] = graph.symbols(["t", "γ1", "γ2", "ω2", "ω3"]);
     assert_eq!(system.forces()[0], t * g1 * w2 - (g2 + 1.0) * w3);
     assert!(!system.forces()[1].is_zero() && system.energy_rate().is_zero());
-    assert!(system.poincare().unwrap().rates().verdict(system.energy()).unwrap().is_conserved());
+    assert!(Rates::poincare(&system.poincare().unwrap()).verdict(system.energy()).unwrap().is_conserved());
 
     // A charge in a uniform field: η̇_1 = B η_2.
     let charge = System::builder(&graph)

@@ -5,7 +5,8 @@
 mod common;
 
 use common::{compiled, rates, some};
-use pc_mech::{Backend, Conservation, Expr, Graph, MechError, Style, System, VectorField};
+use pc_analysis::{AnalysisError, CompleteIntegral, Conservation, PoissonBracket, Rates, hamilton_jacobi};
+use pc_mech::{Backend, Expr, Graph, MechError, Style, System, VectorField};
 
 /// L = −c² √(1 − |η|²/c²) + κ/ρ with η = (ρ̇, ρφ̇).
 fn relativistic(graph: &Graph) -> System<'_> {
@@ -187,15 +188,15 @@ fn what_needs_the_hamiltonian_of_momenta_is_refused() {
     let graph = Graph::new();
     let canonical = relativistic(&graph).canonical().unwrap();
     let action = graph.symbol("φ");
-    let error = canonical.hamilton_jacobi(action).unwrap_err();
-    assert!(matches!(error, MechError::NotQuadratic { .. }));
+    let error = hamilton_jacobi(&canonical, action).unwrap_err();
+    assert!(matches!(error, AnalysisError::Mech(MechError::NotQuadratic { .. })));
     assert_eq!(
         error.to_string(),
         "the Hamiltonian as a function of the momenta needs a Lagrangian that is quadratic in the \
          quasi-velocities; this one is not in `η1`"
     );
-    let error = canonical.complete_integral(action, &["a", "b"]).unwrap_err();
-    assert!(matches!(error, MechError::NotQuadratic { .. }));
+    let error = CompleteIntegral::new(&canonical, action, &["a", "b"]).unwrap_err();
+    assert!(matches!(error, AnalysisError::Mech(MechError::NotQuadratic { .. })));
 }
 
 /// ẏ = (y, H) and ẋ = (x, H) with H = y_s η_s − L at fixed η, and rates of functions of (t, x, y) in (t, x, η).
@@ -206,16 +207,16 @@ fn brackets_and_rates_of_equations_that_are_not_closed() {
     let canonical = system.canonical().unwrap();
     let [rho, y2, eta1, eta2] = graph.symbols(["ρ", "p_η2", "η1", "η2"]);
     assert_eq!(canonical.quasi_velocities(), [eta1, eta2]);
-    let bracket = system.bracket();
+    let bracket = PoissonBracket::new(&system);
     let h = canonical.hamiltonian();
     let rates = [canonical.velocities(), canonical.right_hand_side()].concat();
     // ∂H/∂y at fixed η is η, X_s H is −X_s L.
     for (&z, &rate) in bracket.variables().iter().zip(&rates) {
         assert_eq!(bracket.of(z, h).unwrap(), rate);
     }
-    assert_eq!(canonical.rates().verdict(rho * y2).unwrap(), Conservation::Conserved);
-    assert_eq!(canonical.rates().verdict(h).unwrap(), Conservation::Conserved);
-    assert!(!canonical.rates().verdict(y2).unwrap().is_conserved());
+    assert_eq!(Rates::canonical(&canonical).verdict(rho * y2).unwrap(), Conservation::Conserved);
+    assert_eq!(Rates::canonical(&canonical).verdict(h).unwrap(), Conservation::Conserved);
+    assert!(!Rates::canonical(&canonical).verdict(y2).unwrap().is_conserved());
     assert_eq!(canonical.in_momenta(eta1), eta1);
     let lines: Vec<_> =
         canonical.balance(Style::Text).into_iter().map(|(l, r)| format!("{l} = {r}")).collect();

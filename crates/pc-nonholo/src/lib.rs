@@ -181,7 +181,5 @@ pub use classification::classification::{ConstraintClassification, Kind};
 pub use error::NonholoError;
 pub use n_trailer::{NTrailer, Wagon};
 pub use reduction::adapted::Adapted;
-pub use reduction::chaplygin::ReducingMultiplier;
 pub use reduction::constrained::Constrained;
-pub use reduction::invariant_measure::{InvariantMeasure, invariant_measure};
 pub use reduction::voronets::Voronets;

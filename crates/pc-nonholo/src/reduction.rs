@@ -2,12 +2,8 @@
 //!
 //! In goes a system with constraints, out come its equations in independent velocities, and the reactions.
 //! `adapted` makes constraints vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
-//! `voronets` solves them for velocities (35); `almost_poisson`, `chaplygin` and `invariant_measure` say what structure
-//! is left.
+//! `voronets` solves them for velocities (35).
 
 pub(crate) mod adapted;
-pub(crate) mod almost_poisson;
-pub(crate) mod chaplygin;
 pub(crate) mod constrained;
-pub(crate) mod invariant_measure;
 pub(crate) mod voronets;

@@ -207,10 +207,10 @@ fn projected(mut model: Model) -> Result<Motion, Refusal> {
 }
 
 fn conserved(equations: &Equations<'_>) -> Vec<String> {
-    let rates = equations.rates();
+    let rates = pc_analysis::Rates::poincare(equations);
     let integrals = equations.system().integrals().iter();
-    let kept =
-        integrals.filter(|(_, value)| rates.verdict(*value).is_ok_and(pc_mech::Conservation::is_conserved));
+    let kept = integrals
+        .filter(|(_, value)| rates.verdict(*value).is_ok_and(pc_analysis::Conservation::is_conserved));
     kept.map(|(name, _)| name.clone()).collect()
 }
 

@@ -1,6 +1,7 @@
 //! Families of any length: the pendulum of N links and the Toda chain.
 
-use pc_mech::{Expr, Graph, SteadyOptions, System};
+use pc_analysis::{SteadyMotion, SteadyOptions};
+use pc_mech::{Expr, Graph, System};
 
 use super::definition::assert_definition;
 use super::harness::{STATES, compiled, distance, integrate, normals, rates};
@@ -93,7 +94,8 @@ fn small_swings_of_a_chain_have_laguerres_frequencies() {
     for links in [1, 2, 4, 6] {
         let graph = Graph::new();
         let mut motion = compiled(&pendulum_in_angles(&graph, links));
-        let rest = motion.steady_motion(0.0, &vec![0.0; 2 * links], &SteadyOptions::default()).unwrap();
+        let rest =
+            SteadyMotion::near(&mut motion, 0.0, &vec![0.0; 2 * links], &SteadyOptions::default()).unwrap();
         let mut squares: Vec<f64> = Vec::new();
         for eigenvalue in rest.spectrum.eigenvalues().iter().filter(|eigenvalue| eigenvalue.imaginary > 0.0) {
             assert!(eigenvalue.real.abs() < 1e-12, "{eigenvalue:?}");

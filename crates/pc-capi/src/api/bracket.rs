@@ -2,8 +2,10 @@
 
 use std::ffi::c_char;
 
+use pc_analysis::{AnalysisError, PoissonBracket};
 use pc_expr::Evaluator;
-use pc_mech::{Expr, Graph};
+use pc_mech::{Expr, Graph, MechError};
+use pc_model::{Assembly, ModelError};
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -57,8 +59,8 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallErr
     let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
     assembly.placed(canonical.closed_quasi_velocities())?;
     let bracket = match assembly.placed(assembly.constraints.constrained(&assembly.at_start()))? {
-        Some(constrained) => assembly.placed(constrained.almost_poisson_bracket())?,
-        None => canonical.system().bracket(),
+        Some(constrained) => placed(&assembly, PoissonBracket::almost_poisson(&constrained))?,
+        None => PoissonBracket::new(canonical.system()),
     };
     let all = assembly.system.quasi_velocities();
     let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities())?;
@@ -67,9 +69,19 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallErr
         let function = model.function(&assembly, text)?;
         Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
     };
-    let value = assembly.placed(bracket.of(in_momenta(f)?, in_momenta(g)?))?;
+    let value = placed(&assembly, bracket.of(in_momenta(f)?, in_momenta(g)?))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
     let equations = assembly.equations_in()?;
     Ok(assembly.placed(compile(&equations, &[value], &[]))?)
+}
+
+/// What came of an analysis, an error put at the place in the model that is to blame.
+fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
+    found.or_else(|error| match error {
+        AnalysisError::Nonholo(error) => assembly.placed(Err(error)),
+        AnalysisError::Mech(error) => assembly.placed(Err(error)),
+        AnalysisError::Expr(error) => assembly.placed(Err(MechError::from(error))),
+        other => Err(assembly.not_derived(other.to_string())),
+    })
 }

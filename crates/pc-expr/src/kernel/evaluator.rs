@@ -83,4 +83,12 @@ impl Evaluator {
     pub fn diagnose(&self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
     }
+
+    /// What is to blame for results that are not finite: what [`diagnose`](Evaluator::diagnose) names, or, where the
+    /// operations of the interpreter, which are not fused, all end, the fused ones of machine code.
+    pub fn blame(&self, t: f64, state: &[f64], parameters: &[f64]) -> ExprError {
+        let expression = "a result of fused operations".to_owned();
+        let fused = || ExprError::NotFinite { expression, value: f64::NAN, t, state: Vec::new() };
+        self.diagnose(t, state, parameters).unwrap_or_else(fused)
+    }
 }

@@ -86,12 +86,5 @@ pub(crate) fn blame(
     evaluator: &Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
 ) -> EvaluationFailure {
-    // The operations of the interpreter, which are not fused, may all end where those of machine code do not.
-    let fused = || ExprError::NotFinite {
-        expression: "a result of fused operations".to_owned(),
-        value: f64::NAN,
-        t,
-        state: Vec::new(),
-    };
-    EvaluationFailure::Expr(evaluator.diagnose(t, state, parameters).unwrap_or_else(fused))
+    EvaluationFailure::Expr(evaluator.blame(t, state, parameters))
 }

@@ -5,6 +5,7 @@ use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion};
+use crate::error::MechError;
 
 impl Motion {
     /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
@@ -176,5 +177,17 @@ impl VectorField for Motion {
 
     fn component_name(&self, i: usize) -> String {
         self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
+    }
+}
+
+impl Motion {
+    /// ẏ = f(t, y), as long as the state.
+    ///
+    /// # Errors
+    /// Where f is not defined, as [`rhs`](VectorField::rhs).
+    pub fn rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
+        let mut rates = vec![0.0; y.len()];
+        self.rhs(t, y, &mut rates)?;
+        Ok(rates)
     }
 }

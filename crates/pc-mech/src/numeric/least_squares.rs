@@ -3,7 +3,7 @@
 use pc_algebra::Matrix;
 
 use crate::error::MechError;
-use crate::numeric::dense::SingularValues;
+use crate::numeric::singular_values::SingularValues;
 
 /// The equations A x = b of a matrix A = U Σ Vᵀ, m × n, solved by its singular values.
 ///

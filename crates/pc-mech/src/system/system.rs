@@ -58,8 +58,8 @@ impl<'g> System<'g> {
         self.state_with(&self.quasi_velocities)
     }
 
-    /// x, then what moves them, then z.
-    pub(crate) fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    /// The symbols of the state with others in place of η, such as momenta: x, then what moves them, then z.
+    pub fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let states = self.states.iter().map(|(symbol, _)| symbol);
         self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
     }
@@ -83,12 +83,12 @@ impl<'g> System<'g> {
     }
 
     /// The signals u with symbols for u̇, of which nothing is known.
-    pub(crate) fn signal_rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+    pub fn signal_rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.signals.iter().map(|&u| (u, self.unused(format!("{u}'"), "_"))).collect()
     }
 
     /// The parameters that are numbers, with these.
-    pub(crate) fn numbers(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+    pub fn numbers(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let numbers = self.parameters.iter().filter(|(symbol, _)| !self.signals.contains(symbol));
         numbers.map(|&(symbol, value)| (symbol, value.into())).collect()
     }
@@ -133,7 +133,7 @@ impl<'g> System<'g> {
 
     /// The symbols of the system: time, state, parameters, external forces, and any other that stands in its frame,
     /// brackets, Lagrangian or forces.
-    pub(crate) fn symbols(&self) -> Vec<Expr<'g>> {
+    pub fn symbols(&self) -> Vec<Expr<'g>> {
         let inputs = self.run_time_inputs();
         let mut symbols: Vec<Expr<'g>> = [self.frame.time()]
             .iter()

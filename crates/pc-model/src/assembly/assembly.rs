@@ -8,6 +8,7 @@ use pc_nonholo::NonholoError;
 use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::Document;
 
 /// The system of a model, with the state its motion starts from.
@@ -44,6 +45,12 @@ impl<'g> Assembly<'g> {
     /// [`ModelError`] for the error there is.
     pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
         derived.map_err(|error| self.document.constraint_error(error.into()))
+    }
+
+    /// That something could not be derived from this system, for a reason that has no place in the file but that of the
+    /// energy.
+    pub fn not_derived(&self, message: String) -> ModelError {
+        self.document.error(&self.document.energy_place(), MeaningError::Derivation { message })
     }
 
     /// The equations of motion in independent quasi-velocities.

@@ -64,7 +64,7 @@ impl<'g> Voronets<'g> {
     }
 
     /// The system whose constraints are solved, of all n velocities.
-    pub(crate) fn held(&self) -> &System<'g> {
+    pub fn held(&self) -> &System<'g> {
         self.multipliers.equations().system()
     }
 

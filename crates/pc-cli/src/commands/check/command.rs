@@ -1,5 +1,6 @@
 //! `pc check`: whether a model holds together.
 
+use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
 use pc_nonholo::{Kind, Redundant};
@@ -7,9 +8,9 @@ use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
 use pc_verify::{Agreement, Options, VerifyError, verify};
 use serde_json::{Value, json};
 
-use super::frame::{self, FrameFacts};
-use super::integrals::{self, Integral};
-use super::steady::{self, Search};
+use super::frame;
+use super::integrals;
+use super::steady;
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
 use crate::error::CliError;
@@ -58,15 +59,15 @@ struct Report<'g> {
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
-    frame: FrameFacts,
+    frame: FrameFacts<'g>,
     /// Each with what it does.
     constraints: Vec<(String, String)>,
     classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
     integrable_combinations: usize,
     start_residual: f64,
-    integrals: Vec<Integral<'g>>,
-    steady: Search,
+    integrals: Integrals<'g>,
+    steady: SteadySearch,
     operations: Operations,
     second: Option<Result<Agreement, VerifyError>>,
 }
@@ -94,14 +95,15 @@ impl<'g> Report<'g> {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let mut integrals = integrals::integrals(equations, &near);
+        let mut integrals = Integrals::find(equations, &near);
+        integrals::name_momenta(&mut integrals, equations.system());
         if assembly.keeps_energy() && energy_remark(assembly).is_none() {
-            integrals::say_energy_is_kept(&mut integrals, equations);
+            integrals.keep_energy(equations);
         }
         if energy_remark(assembly).is_some()
             && let Some(energy) = energy_of_all(assembly, equations)
         {
-            integrals::add_energy_of_all(&mut integrals, equations, &near, energy);
+            integrals.add_energy_of_all(equations, &near, energy);
         }
         integrals::say_what_jumps(&mut integrals, assembly);
         Ok(Report {
@@ -126,7 +128,7 @@ impl<'g> Report<'g> {
             redundant: assembly.constraints.redundant().to_vec(),
             integrable_combinations: assembly.constraints.integrable_combinations(),
             start_residual: start_residual(assembly, &near),
-            steady: steady_motion(assembly, equations, motion, &integrals),
+            steady: steady_motion(assembly, equations, motion, integrals.list()),
             integrals,
             operations,
             second: None,
@@ -150,14 +152,15 @@ impl<'g> Report<'g> {
         let names = self.coordinates.iter().chain(&self.quasi_velocities).chain(&self.states);
         let names = names.map(String::as_str);
         let start = assignments(names.zip(self.start.iter().copied()), WIDTH);
-        let rank = [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(self.frame.constraints());
+        let rank =
+            [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(frame::constraints(&self.frame));
         let of_states = if self.states.is_empty() { Vec::new() } else { counted_names("l", &self.states) };
         let entries: [(&str, Vec<String>); 13] = [
             ("coordinates", counted_names("n", &self.coordinates)),
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
             ("states", of_states),
             ("rank of the frame", rank.collect()),
-            ("holonomic", self.frame.holonomic(WIDTH)),
+            ("holonomic", frame::holonomic(&self.frame, WIDTH)),
             ("closure", vec![held(self.closure_residual)]),
             ("Jacobi identity", vec![held(self.jacobi_residual)]),
             ("algebra", vec![self.algebra.clone()]),
@@ -187,16 +190,16 @@ impl<'g> Report<'g> {
         if let Some(second) = &self.second {
             text += &labelled("second derivation", LABEL, &verification::lines(second, WIDTH));
         }
-        let width = self.integrals.iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
-        let mut integrals = Vec::new();
-        for integral in &self.integrals {
-            let lines = (0..).zip(integral.lines());
-            integrals.extend(
+        let width = self.integrals.list().iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
+        let mut kept = Vec::new();
+        for integral in self.integrals.list() {
+            let lines = (0..).zip(integrals::lines(integral));
+            kept.extend(
                 lines.map(|(i, line)| format!("{:width$}  {line}", if i == 0 { &integral.name } else { "" })),
             );
         }
-        text += &labelled("integrals", LABEL, &integrals);
-        text + &labelled("steady motion", LABEL, &self.steady.lines(WIDTH))
+        text += &labelled("integrals", LABEL, &kept);
+        text + &labelled("steady motion", LABEL, &steady::lines(&self.steady, WIDTH))
     }
 
     fn mass_matrix_lines(&self) -> Vec<String> {
@@ -222,8 +225,8 @@ impl<'g> Report<'g> {
     }
 
     fn json(&self) -> Value {
-        let integrals: Vec<Value> = self.integrals.iter().map(Integral::object).collect();
-        let (frame_constraints, holonomic) = self.frame.objects();
+        let integrals: Vec<Value> = self.integrals.list().iter().map(integrals::object).collect();
+        let (frame_constraints, holonomic) = frame::objects(&self.frame);
         json!({
             "model": self.title,
             "coordinates": self.coordinates.len(),
@@ -242,7 +245,7 @@ impl<'g> Report<'g> {
             "negative_energy": self.negative_energy,
             "start_residual": self.start_residual,
             "integrals": integrals,
-            "steady_motion": self.steady.object(),
+            "steady_motion": steady::object(&self.steady),
             "second_derivation": self.second.as_ref().map(verification::object),
         })
     }
@@ -282,22 +285,22 @@ fn steady_motion<'g>(
     equations: &Equations<'g>,
     motion: Motion,
     integrals: &[Integral<'g>],
-) -> Search {
+) -> SteadySearch {
     let system = equations.system();
     if assembly.constraints.nonlinear().is_some() {
-        return Search::Nonlinear;
+        return SteadySearch::Nonlinear;
     }
     let start = assembly.start_of(&system.state());
     let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
-        return steady::steady_motion(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
+        return SteadySearch::near(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
     };
-    let Ok(mut independent) = equations.compile() else { return Search::None };
+    let Ok(mut independent) = equations.compile() else { return SteadySearch::None };
     let constraints = held.multipliers.constraints().iter();
     let positions: Vec<(String, Expr<'g>)> = constraints
         .filter(|constraint| constraint.is_holonomic(&assembly.system))
         .map(|constraint| (constraint.name().to_owned(), constraint.expression()))
         .collect();
-    steady::steady_motion(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
+    SteadySearch::near(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
 }
 
 /// The constraints, those dropped at the end, each with what it does.

@@ -1,0 +1,62 @@
+//! Casimirs: functions C with (C, ·) = 0.
+
+use pc_mech::Expr;
+
+use crate::brackets::poisson_bracket::PoissonBracket;
+use crate::error::AnalysisError;
+use crate::integrals::polynomials::{Generator, combination, independent, monomials};
+
+impl<'g> PoissonBracket<'g> {
+    /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: then f is an integral
+    /// whatever the Hamiltonian.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] for a function of something else than variables and constants.
+    pub fn is_casimir(&self, f: Expr<'g>) -> Result<bool, AnalysisError> {
+        Ok(self.field(f)?.iter().all(|rate| rate.is_zero()))
+    }
+
+    /// The Casimirs that are linear combinations of `functions` with rational coefficients; a basis of them.
+    ///
+    /// Each is proved, (C, z_i) being folded to zero. What may be missed is said at
+    /// [`linear_relations`](pc_mech::Graph::linear_relations).
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] for a function of something else than variables and constants.
+    pub fn casimirs_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
+        self.check(functions)?;
+        Ok(self.combinations(functions))
+    }
+
+    fn combinations(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let graph = self.graph();
+        let brackets: Vec<Vec<Expr<'g>>> =
+            self.variables().iter().map(|&z| self.along(functions, z)).collect();
+        let column = |j: usize| brackets.iter().map(|row| row[j]).collect();
+        let columns: Vec<Vec<Expr<'g>>> = (0..functions.len()).map(column).collect();
+        let relations = graph.linear_relations(&columns);
+        relations.iter().map(|a| combination(graph, a, functions)).collect()
+    }
+
+    /// Functionally independent Casimirs that are polynomials of degree ≤ `degree` in the variables, with
+    /// rational coefficients; of low degree first. There are at most [`corank`](PoissonBracket::corank) of
+    /// them; where there are fewer, the others are of higher degree, or rational, or transcendental.
+    ///
+    /// ```
+    /// use pc_analysis::PoissonBracket;
+    /// use pc_mech::{Graph, LieAlgebra};
+    /// let graph = Graph::new();
+    /// let bracket = PoissonBracket::lie_poisson(&graph, &LieAlgebra::se3());
+    /// let [c, area] = bracket.casimirs(2)[..] else { panic!("two of them") };
+    /// assert_eq!(c.to_string(), "y1*y4 + y2*y5 + y3*y6");
+    /// assert_eq!(area.to_string(), "y4^2 + y5^2 + y6^2");
+    /// ```
+    pub fn casimirs(&self, degree: u32) -> Vec<Expr<'g>> {
+        if self.corank() == 0 {
+            return Vec::new();
+        }
+        let generators: Vec<Generator<'g>> = self.variables().iter().map(|&z| (z, degree)).collect();
+        let found = self.combinations(&monomials(&generators, degree));
+        independent(self.graph(), self.variables(), &[], found)
+    }
+}

@@ -1,0 +1,141 @@
+//! What can be wrong with a question about motions.
+
+use pc_expr::{Expr, ExprError, Failure, Graph, readable};
+use pc_mech::MechError;
+use pc_nonholo::NonholoError;
+
+/// An error of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AnalysisError {
+    /// Newton's method ended where the rates do not vanish.
+    #[error(
+        "no steady motion was found near the guess: after {iterations} steps the rates that should vanish have \
+         the norm {} at t = {t}{}",
+        readable(*residual),
+        listed(state)
+    )]
+    NoSteadyMotion {
+        /// √Σ f_i² over the components that are not cyclic.
+        residual: f64,
+        /// Number of steps made.
+        iterations: usize,
+        /// Time.
+        t: f64,
+        /// Names and values of the state where the residual was least.
+        state: Vec<(String, f64)>,
+    },
+    /// A name that no component of the state has.
+    #[error("the state has no component `{name}`; it has {}", known.join(", "))]
+    UnknownComponent {
+        /// The name.
+        name: String,
+        /// The names of the components.
+        known: Vec<String>,
+    },
+    /// A component called cyclic on which a rate depends.
+    #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
+    NotCyclic {
+        /// The component called cyclic.
+        coordinate: String,
+        /// A component that is not.
+        component: String,
+    },
+    /// A function that should be an integral changes along the motion.
+    #[error("`{name}` is not a first integral free of time, so that it proves no stability")]
+    NotConserved {
+        /// Its name.
+        name: String,
+    },
+    /// Hamilton–Jacobi's equation asked for with generalised forces.
+    #[error("Hamilton–Jacobi's equation needs Q = 0; the force on `{quasi_velocity}` is not zero")]
+    Forced {
+        /// The first quasi-velocity with a force.
+        quasi_velocity: String,
+    },
+    /// A function that does not satisfy Hamilton–Jacobi's equation.
+    #[error("S does not satisfy Hamilton–Jacobi's equation: X_0 S + H(t, x, X_s S) = {remainder}")]
+    NotAnAction {
+        /// Text of the left-hand side.
+        remainder: String,
+    },
+    /// A solution of Hamilton–Jacobi's equation with too few constants.
+    #[error("the integral is not complete: the matrix ∂(X_s S)/∂α has rank {rank} of {size}")]
+    IncompleteIntegral {
+        /// Rank at almost all points.
+        rank: usize,
+        /// Number k of quasi-velocities.
+        size: usize,
+    },
+    /// Newton's method ended where Jacobi's equations are not satisfied.
+    #[error(
+        "∂S/∂α = β has no solution near the guess: after {iterations} steps the norm of the difference is {} at \
+         t = {t}{}",
+        readable(*residual),
+        listed(coordinates)
+    )]
+    NoPosition {
+        /// |∂S/∂α − β|
+        residual: f64,
+        /// Number of steps made.
+        iterations: usize,
+        /// Time.
+        t: f64,
+        /// Names and values of the coordinates where the residual was least.
+        coordinates: Vec<(String, f64)>,
+    },
+    /// A function of something that does not belong to it.
+    #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
+    NotAVariable {
+        /// What it is a function of.
+        what: &'static str,
+        /// The first symbol that is neither a variable nor declared as constant.
+        symbol: String,
+        /// What the function can contain.
+        known: Vec<String>,
+    },
+    /// An error of the derivation or of the numbers of a motion.
+    #[error(transparent)]
+    Mech(#[from] MechError),
+    /// An error of the constraints.
+    #[error(transparent)]
+    Nonholo(#[from] NonholoError),
+    /// An error of the expressions.
+    #[error(transparent)]
+    Expr(#[from] ExprError),
+}
+
+impl From<Failure> for AnalysisError {
+    /// What a [`Motion`](pc_mech::Motion) failed with; of other vector fields their words.
+    fn from(failure: Failure) -> AnalysisError {
+        MechError::from(failure).into()
+    }
+}
+
+/// An error unless `found` is `expected`.
+pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AnalysisError> {
+    if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }.into()) }
+}
+
+/// An error for the first symbol in `functions` that is not `known`.
+pub(crate) fn check_variables<'g>(
+    what: &'static str,
+    graph: &'g Graph,
+    functions: &[Expr<'g>],
+    known: &[Expr<'g>],
+) -> Result<(), AnalysisError> {
+    match graph.symbols_of(functions).into_iter().find(|symbol| !known.contains(symbol)) {
+        None => Ok(()),
+        Some(symbol) => {
+            let known = known.iter().map(Expr::to_string).collect();
+            Err(AnalysisError::NotAVariable { what, symbol: symbol.to_string(), known })
+        }
+    }
+}
+
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn listed(values: &[(String, f64)]) -> String {
+    values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
+}

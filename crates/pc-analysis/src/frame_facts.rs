@@ -1,0 +1,78 @@
+//! What the frame and its brackets say before any Lagrangian does.
+
+use pc_algebra::{Holonomy, Integrability};
+use pc_mech::{Expr, Neighbourhood, System};
+
+/// Quasi-velocities that are velocities of something, and functions that no motion changes.
+#[derive(Clone, Debug)]
+pub struct FrameFacts<'g> {
+    /// Of each quasi-velocity, if the frame determines it: rank b = k.
+    pub holonomy: Vec<(String, QuasiVelocityKind<'g>)>,
+    /// Whether η = ẋ.
+    pub lagrangian: bool,
+    /// What holds by the frame alone, if n > rank b.
+    pub constraints: Option<FrameConstraints>,
+}
+
+/// Whether a quasi-velocity is dπ/dt.
+#[derive(Clone, Debug)]
+pub enum QuasiVelocityKind<'g> {
+    /// Of this π, or of one that is not elementary to find.
+    RateOf(Option<Expr<'g>>),
+    /// Of nothing, because of the bracket of this pair.
+    RateOfNothing([String; 2]),
+}
+
+/// The n − rank b constraints that a frame stands for.
+#[derive(Clone, Debug)]
+pub enum FrameConstraints {
+    /// So many can be written f = const.
+    Integrable {
+        /// How many.
+        count: usize,
+        /// Whether the f depend on time.
+        of_time: bool,
+    },
+    /// Not all can, because of the bracket of this pair.
+    NotIntegrable {
+        /// Names of two quasi-velocities, or `t`.
+        pair: [String; 2],
+    },
+}
+
+impl<'g> FrameFacts<'g> {
+    /// What the frame of a system says near a point.
+    pub fn of(system: &System<'g>, near: &Neighbourhood<'g>) -> FrameFacts<'g> {
+        let (frame, structure, eta) = (system.frame(), system.structure(), system.quasi_velocities());
+        let (n, k, rank) = (frame.coordinates().len(), eta.len(), frame.rank());
+        let named = |s: usize| if s == 0 { "t".to_owned() } else { eta[s - 1].to_string() };
+        let lagrangian = frame.velocities(eta) == eta;
+        let rate = |m: usize| {
+            if lagrangian {
+                return QuasiVelocityKind::RateOf(Some(frame.coordinates()[m - 1]));
+            }
+            match frame.holonomy(m, structure) {
+                Holonomy::Holonomic { coordinate } => QuasiVelocityKind::RateOf(coordinate),
+                Holonomy::Nonholonomic { pair: (r, s) } => {
+                    QuasiVelocityKind::RateOfNothing([named(r), named(s)])
+                }
+            }
+        };
+        let determined = rank == k && structure.operators() == k;
+        let moves = frame.b0().iter().any(|entry| !entry.is_zero())
+            || frame.b().entries().iter().any(|entry| entry.depends_on(frame.time()));
+        let constraints = (rank < n).then(|| match frame.integrability(near) {
+            Integrability::Integrable { dimension } => {
+                FrameConstraints::Integrable { count: n - dimension, of_time: moves }
+            }
+            Integrability::NotIntegrable { pair: (r, s), .. } => {
+                FrameConstraints::NotIntegrable { pair: [named(r), named(s)] }
+            }
+        });
+        FrameFacts {
+            holonomy: (1..=k).filter(|_| determined).map(|m| (named(m), rate(m))).collect(),
+            lagrangian,
+            constraints,
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! What a motion keeps: rates along it, momenta of cyclic displacements, integrals from an ansatz.
+//!
+//! In go equations, out come rates of functions with verdicts, and integrals that are proved. `rates` differentiates along
+//! the motion, `cyclic_displacements` finds integrals that are momenta, `ansatz` those of a given form, made of the products
+//! of `polynomials`; `search` asks all of them, and Casimirs, for what a system keeps.
+
+pub(crate) mod ansatz;
+pub(crate) mod cyclic_displacements;
+pub(crate) mod polynomials;
+pub(crate) mod rates;
+pub(crate) mod search;

@@ -1,0 +1,55 @@
+//! Cyclic displacements: operators whose momentum is an integral.
+
+use pc_mech::{Expr, Number, System};
+
+use crate::integrals::polynomials::combination;
+
+/// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion keeps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CyclicDisplacement<'g> {
+    /// a_1..a_k, whole and coprime.
+    pub coefficients: Vec<Number>,
+    /// The integral a_s ∂L/∂η_s in terms of (t, x, η).
+    pub momentum: Expr<'g>,
+    /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. Then X L + a_s Q_s = 0 is
+    /// left of the condition; otherwise the terms of this Lagrangian cancel.
+    pub commutes: bool,
+}
+
+impl<'g> CyclicDisplacement<'g> {
+    /// A basis of the displacements X = a_s X_s, with rational constants a_s, whose momentum is an integral:
+    ///
+    ///   d/dt (a_s y_s) = a_s [(c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s] = 0   identically in (t, x, η),
+    ///
+    /// by (9). The condition is sufficient and, for constant a_s, necessary. It holds above all of the
+    /// displacements that are cyclic in Chetaev's sense: they [commute](CyclicDisplacement::commutes) with
+    /// all operators, and X L = 0. Coordinates that are cyclic in Lagrange's sense are these in the frame
+    /// X_s = ∂/∂x_s. It also holds of X_3 for Lagrange's top in body axes, where the first term is ω_2 y_1 −
+    /// ω_1 y_2 = (A − B) ω_1 ω_2.
+    ///
+    /// Parameters count as independent of each other; [bind](System::with_parameters_bound) them to use their
+    /// values.
+    pub fn all(system: &System<'g>) -> Vec<CyclicDisplacement<'g>> {
+        let (graph, momenta) = (system.graph(), system.momenta());
+        let x = system.frame().coordinates();
+        let slope = system.frame().contract(&graph.gradient(system.lagrangian(), x));
+        let gyroscopic = system.structure().gyroscopic(graph, system.quasi_velocities(), &momenta);
+        let rate = |s: usize| vec![graph.sum([gyroscopic[s], slope[s], system.forces()[s]])];
+        let rates: Vec<Vec<Expr<'g>>> = (0..momenta.len()).map(rate).collect();
+        let displacement = |a: Vec<Number>| CyclicDisplacement {
+            momentum: combination(graph, &a, &momenta),
+            commutes: is_central(system, &a),
+            coefficients: a,
+        };
+        graph.linear_relations(&rates).into_iter().map(displacement).collect()
+    }
+}
+
+/// a_s c_rs^m = 0 for r = 0..k, m = 1..k
+fn is_central<'g>(system: &System<'g>, a: &[Number]) -> bool {
+    let k = a.len();
+    let along = |r: usize, m: usize| -> Expr<'g> {
+        (1..=k).map(|s| system.structure().get(r, s, m) * Expr::from(a[s - 1])).sum()
+    };
+    (0..=k).all(|r| (1..=k).all(|m| along(r, m).is_zero()))
+}

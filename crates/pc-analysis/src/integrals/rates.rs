@@ -1,0 +1,177 @@
+//! Rates of change along the motion, and whether they vanish.
+
+use pc_mech::{Canonical, Equations, Expr, Graph, System};
+
+use crate::error::{AnalysisError, check_variables};
+
+/// What is known of a function along the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Conservation<'g> {
+    /// Its rate vanishes identically: it is an integral.
+    Conserved,
+    /// Its rate vanishes identically for the values that the parameters have.
+    ConservedHere,
+    /// Its rate vanishes identically, if only for the values that the parameters have, but it jumps where a sign or a
+    /// step in it does, and of that the rate knows nothing.
+    ConservedBetweenJumps,
+    /// The rate, which the graph does not fold to zero.
+    Changing(Expr<'g>),
+}
+
+impl Conservation<'_> {
+    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    pub fn is_conserved(self) -> bool {
+        matches!(self, Conservation::Conserved | Conservation::ConservedHere)
+    }
+}
+
+/// The derivative along the motion, df/dt = ∂f/∂t + ẋ_i ∂f/∂x_i + η̇_s ∂f/∂η_s, or with y_s in place of η_s.
+///
+/// Of [`Equations`] for functions of (t, x, η, η̇), nonholonomic ones included, and of [`Canonical`]
+/// equations for functions of (t, x, y). Where these are not [closed](Canonical::is_closed), the functions may
+/// contain η too, and the rates are in (t, x, η).
+#[derive(Clone, Debug)]
+pub struct Rates<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) time: Expr<'g>,
+    pub(crate) coordinates: Vec<Expr<'g>>,
+    /// η or y
+    pub(crate) moving: Vec<Expr<'g>>,
+    parameters: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The symbols of η̇ with their expressions in (t, x, η).
+    accelerations: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The symbols of y with their expressions in (t, x, η), where these are not solved for η.
+    momenta: Vec<(Expr<'g>, Expr<'g>)>,
+    /// Each symbol that changes, with its rate.
+    pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
+    /// What counts as constant: parameters, external forces and any other symbol of the system.
+    constants: Vec<Expr<'g>>,
+}
+
+impl<'g> Rates<'g> {
+    /// The derivative along the motion of functions of (t, x, η, η̇), by Poincaré's equations.
+    pub fn poincare(equations: &Equations<'g>) -> Rates<'g> {
+        let (system, accelerations) = (equations.system(), equations.accelerations());
+        let symbols = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
+        let states = system.states().iter().map(|&(_, rate)| rate).collect();
+        let rates =
+            Rates::new(system, system.quasi_velocities(), equations.velocities(), &accelerations, states);
+        Rates { accelerations: symbols, ..rates }
+    }
+
+    /// The derivative along the motion of functions of (t, x, y), by the canonical equations.
+    pub fn canonical(equations: &Canonical<'g>) -> Rates<'g> {
+        let (system, y) = (equations.system(), equations.momenta());
+        let states = equations.state_rates().to_vec();
+        let mut rates = Rates::new(system, y, equations.velocities(), equations.right_hand_side(), states);
+        if !equations.is_closed() {
+            let accelerations = equations.accelerations();
+            rates.flow.extend(system.quasi_velocities().iter().copied().zip(accelerations));
+            rates.momenta = equations.values_of_momenta();
+        }
+        rates
+    }
+
+    fn new(
+        system: &System<'g>,
+        moving: &[Expr<'g>],
+        velocities: &[Expr<'g>],
+        right: &[Expr<'g>],
+        states: Vec<Expr<'g>>,
+    ) -> Rates<'g> {
+        let (time, x) = (system.frame().time(), system.frame().coordinates());
+        let mut constants = system.symbols();
+        let state = system.state();
+        constants.retain(|z| *z != time && !state.contains(z));
+        let state = system.state_with(moving).into_iter();
+        let flow = state.zip(velocities.iter().chain(right).copied().chain(states));
+        let flow = flow.chain([(time, Expr::ONE)]).chain(system.signal_rates());
+        Rates {
+            graph: system.graph(),
+            time,
+            coordinates: x.to_vec(),
+            moving: moving.to_vec(),
+            parameters: system.numbers(),
+            accelerations: Vec::new(),
+            momenta: Vec::new(),
+            flow: flow.collect(),
+            constants,
+        }
+    }
+
+    /// That functions contain nothing but what has a rate and what counts as constant.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] naming the first other symbol.
+    fn check(&self, functions: &[Expr<'g>]) -> Result<(), AnalysisError> {
+        let first =
+            |pairs: &[(Expr<'g>, Expr<'g>)]| pairs.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>();
+        let known = [first(&self.flow), first(&self.accelerations), self.constants.clone()].concat();
+        check_variables("a function along the motion", self.graph, functions, &known)
+    }
+
+    /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that is none of the motion: neither one that changes along it
+    /// nor one that its equations contain.
+    pub fn of(&self, f: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
+        Ok(self.of_all(&[f])?[0])
+    }
+
+    /// The rates of several functions, as many as these.
+    ///
+    /// # Errors
+    /// As for [`of`](Rates::of).
+    pub fn of_all(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
+        self.check(functions)?;
+        Ok(self.along(functions))
+    }
+
+    /// [`of_all`](Rates::of_all) of functions that are known to be such.
+    pub(crate) fn along(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let functions = self.graph.substitute(functions, &self.accelerations);
+        self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)
+    }
+
+    /// Whether the motion keeps f constant. [`Conservation::Changing`] is no proof of the contrary where the
+    /// rate contains roots, logarithms or the like: the graph knows few of their identities.
+    ///
+    /// # Errors
+    /// As for [`of`](Rates::of).
+    pub fn verdict(&self, f: Expr<'g>) -> Result<Conservation<'g>, AnalysisError> {
+        let rate = self.of(f)?;
+        let (always, here) = (rate.is_zero(), self.graph.substitute(&[rate], &self.parameters)[0].is_zero());
+        Ok(if here && self.has_jumps(f) {
+            Conservation::ConservedBetweenJumps
+        } else if always {
+            Conservation::Conserved
+        } else if here {
+            Conservation::ConservedHere
+        } else {
+            Conservation::Changing(rate)
+        })
+    }
+
+    /// Whether f is written with a sign, a step or an angle of what changes, and so may jump.
+    pub fn has_jumps(&self, f: Expr<'g>) -> bool {
+        let f = self.graph.substitute(&[f], &self.accelerations)[0];
+        let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();
+        self.graph.applies(f, &changing, |function| !function.is_continuous())
+    }
+
+    /// The derivative with the parameters replaced by their numbers.
+    #[must_use]
+    pub fn with_parameters_bound(&self) -> Rates<'g> {
+        let bind = |pairs: &[(Expr<'g>, Expr<'g>)]| -> Vec<_> {
+            pairs.iter().map(|&(s, rate)| (s, self.graph.substitute(&[rate], &self.parameters)[0])).collect()
+        };
+        Rates {
+            flow: bind(&self.flow),
+            accelerations: bind(&self.accelerations),
+            momenta: bind(&self.momenta),
+            parameters: Vec::new(),
+            ..self.clone()
+        }
+    }
+}

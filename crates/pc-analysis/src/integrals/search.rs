@@ -1,0 +1,413 @@
+//! What the motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
+
+use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number, System};
+
+use crate::brackets::poisson_bracket::PoissonBracket;
+use crate::integrals::cyclic_displacements::CyclicDisplacement;
+use crate::integrals::rates::{Conservation, Rates};
+
+/// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
+const MOST_FUNCTIONS: usize = 150;
+
+/// A function that may keep its value.
+#[derive(Clone, Debug)]
+pub struct Integral<'g> {
+    /// What it is called: as declared, `energy`, `momentum 1`, `Casimir 1`, `found 1`.
+    pub name: String,
+    /// The function of (t, x, η).
+    pub value: Expr<'g>,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// What is known of its rate.
+    pub verdict: ConservationVerdict<'g>,
+    /// Whether an event may change it.
+    pub jumps: bool,
+}
+
+/// Where an integral comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin {
+    /// It is declared with the system.
+    Declared,
+    /// It is declared, and a function of Casimirs.
+    DeclaredCasimir,
+    /// It is the energy of the velocities in the equations.
+    Energy,
+    /// It is the energy of all velocities, where the equations are those of independent ones.
+    EnergyOfAll,
+    /// It is the momentum a_s y_s of a [`CyclicDisplacement`].
+    CyclicDisplacement {
+        /// a_1..a_k
+        coefficients: Vec<Number>,
+    },
+    /// It is a Casimir of the bracket (12).
+    Casimir,
+    /// An ansatz found it.
+    Found,
+}
+
+/// What is known of the rate of change of a function along the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConservationVerdict<'g> {
+    /// It vanishes identically.
+    Conserved,
+    /// It vanishes identically for these values of the parameters.
+    ConservedHere,
+    /// It vanishes identically, if only for these values, where the function does not jump.
+    BetweenJumps,
+    /// It is not known: the function is none of time and state alone, as one with reactions.
+    NoFunction,
+    /// It is not seen to vanish.
+    Rate {
+        /// The rate in terms of (t, x, η).
+        rate: Expr<'g>,
+        /// Its value at the start, if it has one.
+        at_start: Option<f64>,
+    },
+}
+
+/// What the motion keeps, or may keep.
+#[derive(Clone, Debug)]
+pub struct Integrals<'g> {
+    list: Vec<Integral<'g>>,
+}
+
+impl<'g> Integrals<'g> {
+    /// The declared integrals, the energy, and what else is found, each with a verdict: momenta of cyclic displacements,
+    /// Casimirs, and integrals linear in η with polynomials of low degree as coefficients. `near` has values of time,
+    /// state and parameters.
+    ///
+    /// ```
+    /// use pc_analysis::Integrals;
+    /// use pc_mech::{Graph, Neighbourhood, System};
+    ///
+    /// // A particle on a line, free.
+    /// let graph = Graph::new();
+    /// let particle =
+    ///     System::builder(&graph).coordinates(["x"]).lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
+    /// let at: Vec<_> = ["t", "x", "x'"].map(|name| (graph.symbol(name), 0.5)).into();
+    /// let found = Integrals::find(&particle.poincare()?, &Neighbourhood { centre: at });
+    /// assert!(found.list().iter().all(|integral| integral.is_conserved()));
+    /// assert_eq!(found.list()[1].value, graph.symbol("x'"));
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn find(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
+        let search = Search::new(equations, near);
+        let mut list = search.declared();
+        list.push(search.energy());
+        list.extend(search.cyclic_momenta());
+        search.add_casimirs(&mut list);
+        search.add_found(&mut list);
+        Integrals { list }
+    }
+
+    /// All of them, the declared ones first.
+    pub fn list(&self) -> &[Integral<'g>] {
+        &self.list
+    }
+
+    /// Gives each the name that `name` has for it, if it has one.
+    pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
+        for integral in &mut self.list {
+            if let Some(name) = name(integral) {
+                integral.name = name;
+            }
+        }
+    }
+
+    /// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
+    pub fn keep_energy(&mut self, equations: &Equations<'g>) {
+        let open = |integral: &&mut Integral<'g>| {
+            integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
+        };
+        for integral in self.list.iter_mut().filter(open) {
+            let jumps = Rates::poincare(equations).has_jumps(integral.value);
+            integral.verdict =
+                if jumps { ConservationVerdict::BetweenJumps } else { ConservationVerdict::Conserved };
+        }
+    }
+
+    /// Says of what keeps its value between events that resets may change it: those that do not leave it as it is whatever
+    /// the state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
+    /// with its new value.
+    pub fn jump<'r>(
+        &mut self,
+        system: &System<'g>,
+        resets: impl Iterator<Item = &'r [(usize, Expr<'g>)]>,
+        projected: bool,
+    ) where
+        'g: 'r,
+    {
+        let state = system.state();
+        for reset in resets.filter(|reset| !reset.is_empty()) {
+            let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
+            for integral in &mut self.list {
+                let after = system.graph().substitute(&[integral.value], &new)[0];
+                let jump = after - integral.value;
+                if projected || !bind(system, jump).is_zero() {
+                    integral.jumps = true;
+                } else if integral.verdict == ConservationVerdict::Conserved && !jump.is_zero() {
+                    integral.verdict = ConservationVerdict::ConservedHere;
+                }
+            }
+        }
+    }
+
+    /// Adds the energy of all velocities, that of a run; y·η − L of the independent ones is called Jacobi's then.
+    pub fn add_energy_of_all(
+        &mut self,
+        equations: &Equations<'g>,
+        near: &Neighbourhood<'g>,
+        value: Expr<'g>,
+    ) {
+        for integral in self.list.iter_mut().filter(|integral| integral.is_energy()) {
+            integral.name = "Jacobi's".to_owned();
+        }
+        let verdict = Search::new(equations, near).verdict(value);
+        let origin = Origin::EnergyOfAll;
+        self.list.push(Integral { name: "energy".to_owned(), value, origin, verdict, jumps: false });
+    }
+}
+
+/// Where integrals are looked for.
+struct Search<'a, 'g> {
+    graph: &'g Graph,
+    equations: &'a Equations<'g>,
+    /// With the parameters as numbers.
+    bound: System<'g>,
+    rates: Rates<'g>,
+    near: &'a Neighbourhood<'g>,
+    /// (t, x, η, z)
+    variables: Vec<Expr<'g>>,
+    /// Whether the brackets are those of all operators, so that the Lagrangian says everything.
+    unconstrained: bool,
+}
+
+impl<'a, 'g> Search<'a, 'g> {
+    fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
+        let system = equations.system();
+        let (frame, k) = (system.frame(), system.quasi_velocities().len());
+        Search {
+            graph: system.graph(),
+            equations,
+            bound: system.with_parameters_bound(),
+            rates: Rates::poincare(equations),
+            near,
+            variables: [frame.time()].into_iter().chain(system.state()).collect(),
+            unconstrained: system.structure().operators() == k,
+        }
+    }
+
+    fn system(&self) -> &'a System<'g> {
+        self.equations.system()
+    }
+
+    fn verdict(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
+        match self.rates.verdict(function) {
+            Ok(Conservation::Conserved) => ConservationVerdict::Conserved,
+            Ok(Conservation::ConservedHere) => ConservationVerdict::ConservedHere,
+            Ok(Conservation::ConservedBetweenJumps) => ConservationVerdict::BetweenJumps,
+            Ok(Conservation::Changing(rate)) => self.changing(rate),
+            Err(_) => ConservationVerdict::NoFunction,
+        }
+    }
+
+    fn changing(&self, rate: Expr<'g>) -> ConservationVerdict<'g> {
+        let value = self.graph.evaluate(&[rate], &self.near.centre).ok();
+        let at_start = value.map(|values| values[0]).filter(|value| value.is_finite());
+        ConservationVerdict::Rate { rate, at_start }
+    }
+
+    fn bind(&self, function: Expr<'g>) -> Expr<'g> {
+        bind(self.system(), function)
+    }
+
+    fn declared(&self) -> Vec<Integral<'g>> {
+        let integrals = self.system().integrals().iter();
+        let with_verdict = |&(ref name, value): &(String, Expr<'g>)| Integral {
+            name: name.clone(),
+            value,
+            origin: Origin::Declared,
+            verdict: self.verdict(value),
+            jumps: false,
+        };
+        integrals.map(with_verdict).collect()
+    }
+
+    /// The energy, whose rate needs no accelerations.
+    fn energy(&self) -> Integral<'g> {
+        let value = self.equations.energy();
+        let verdict = match self.verdict(value) {
+            ConservationVerdict::Rate { .. } if self.unconstrained => {
+                let rate = self.system().energy_rate();
+                let vanishes_here = self.bind(rate).is_zero();
+                if vanishes_here && self.rates.has_jumps(value) {
+                    ConservationVerdict::BetweenJumps
+                } else if rate.is_zero() {
+                    ConservationVerdict::Conserved
+                } else if vanishes_here {
+                    ConservationVerdict::ConservedHere
+                } else {
+                    self.changing(rate)
+                }
+            }
+            verdict => verdict,
+        };
+        Integral { name: "energy".to_owned(), value, origin: Origin::Energy, verdict, jumps: false }
+    }
+
+    /// The momenta of cyclic displacements that are not declared, for the values of the parameters.
+    fn cyclic_momenta(&self) -> Vec<Integral<'g>> {
+        if !self.unconstrained {
+            return Vec::new();
+        }
+        let is_declared = |momentum: Expr<'g>| {
+            let mut known = self.bound.integrals().iter().filter(|(_, known)| !known.is_zero());
+            known.any(|&(_, known)| (momentum / known).constant().is_some())
+        };
+        let new =
+            CyclicDisplacement::all(&self.bound).into_iter().filter(|cyclic| !is_declared(cyclic.momentum));
+        (1..)
+            .zip(new)
+            .map(|(number, cyclic)| Integral {
+                name: format!("momentum {number}"),
+                value: cyclic.momentum,
+                verdict: self.proved(cyclic.momentum),
+                origin: Origin::CyclicDisplacement { coefficients: cyclic.coefficients },
+                jumps: false,
+            })
+            .collect()
+    }
+
+    /// The verdict on what is proved to be conserved at least for these parameters.
+    fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
+        match self.verdict(function) {
+            known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
+            _ if self.rates.has_jumps(function) => ConservationVerdict::BetweenJumps,
+            _ => ConservationVerdict::ConservedHere,
+        }
+    }
+
+    /// The Casimirs of the bracket (12) in terms of (x, η), those that are no functions of integrals in the
+    /// list; what in the list is a function of Casimirs is called one.
+    ///
+    /// Where b_0 = 0, c_0s = 0 and Q = 0, the motion keeps them whatever the Lagrangian.
+    fn add_casimirs(&self, list: &mut Vec<Integral<'g>>) {
+        let (frame, structure) = (self.bound.frame(), self.bound.structure());
+        let stationary = frame.b0().iter().all(|b| b.is_zero()) && structure.nonzero().all(|(r, ..)| r > 0);
+        let forced = self.bound.forces().iter().any(|q| !q.is_zero());
+        if !(self.unconstrained && stationary) {
+            return;
+        }
+        let bracket = PoissonBracket::new(&self.bound);
+        let degree = (1..=2).rev().find(|&d| binomial(bracket.variables().len() + d, d) <= MOST_FUNCTIONS);
+        let momenta: Vec<_> =
+            self.bound.momentum_symbols().into_iter().zip(self.system().momenta()).collect();
+        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = degree
+            .map_or_else(Vec::new, |degree| bracket.casimirs(degree as u32))
+            .into_iter()
+            .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
+            .map(|(casimir, value)| {
+                let here = if forced { self.verdict(value) } else { self.proved(value) };
+                let always =
+                    !forced && PoissonBracket::new(self.system()).is_casimir(casimir).unwrap_or(false);
+                (value, if always { ConservationVerdict::Conserved } else { here })
+            })
+            .filter(|(_, verdict)| verdict.is_conserved())
+            .collect();
+
+        let values: Vec<Expr<'g>> = casimirs.iter().map(|&(value, _)| self.bind(value)).collect();
+        let mut known = Vec::new();
+        for integral in list.iter_mut().filter(|integral| integral.verdict.is_conserved()) {
+            let value = self.bind(integral.value);
+            if self.rank(&[value]) == 1 && !self.is_new(&values, value) {
+                known.push(value);
+                if integral.origin == Origin::Declared {
+                    integral.origin = Origin::DeclaredCasimir;
+                }
+            }
+        }
+        let mut number = 0;
+        for ((value, verdict), bound) in casimirs.into_iter().zip(values) {
+            if self.is_new(&known, bound) {
+                number += 1;
+                let name = format!("Casimir {number}");
+                list.push(Integral { name, value, origin: Origin::Casimir, verdict, jumps: false });
+                known.push(bound);
+            }
+        }
+    }
+
+    /// Integrals linear in η with coefficients of low degree in x, those that are no functions of integrals in
+    /// the list.
+    fn add_found(&self, list: &mut Vec<Integral<'g>>) {
+        let (n, k) = (self.bound.frame().coordinates().len(), self.bound.quasi_velocities().len());
+        let largest = if n <= 4 { 2 } else { 1 };
+        let degree = (0..=largest).rev().find(|&d| (1 + k) * binomial(n + d, d) <= MOST_FUNCTIONS);
+        let Some(degree) = degree else { return };
+        let rates = self.rates.with_parameters_bound();
+        let mut ansatz = rates.ansatz(1, degree as u32);
+        let conserved = list.iter().filter(|integral| integral.verdict.is_conserved());
+        ansatz.known = conserved.map(|integral| self.bind(integral.value)).collect();
+        for (number, value) in (1..).zip(rates.integrals(&ansatz).unwrap_or_default()) {
+            let verdict = self.proved(value);
+            let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
+            let name = format!("found {number}");
+            list.push(Integral { name, value, origin: Origin::Found, verdict, jumps: false });
+        }
+    }
+
+    /// Whether f is no function of the known ones.
+    fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
+        self.rank(&[known, &[f]].concat()) > self.rank(known)
+    }
+
+    /// How many of the functions are independent.
+    fn rank(&self, functions: &[Expr<'g>]) -> usize {
+        rank_of_gradients(self.graph, functions, &self.variables)
+    }
+}
+
+/// The function with the parameters of a system replaced by their numbers.
+pub(crate) fn bind<'g>(system: &System<'g>, function: Expr<'g>) -> Expr<'g> {
+    system.graph().substitute(&[function], &system.numbers())[0]
+}
+
+/// Rank of ∂f/∂z at almost all points: how many of the functions are independent.
+pub(crate) fn rank_of_gradients<'g>(
+    graph: &'g Graph,
+    functions: &[Expr<'g>],
+    variables: &[Expr<'g>],
+) -> usize {
+    let rows: Vec<Vec<Expr<'g>>> = functions.iter().map(|&f| graph.gradient(f, variables)).collect();
+    graph.generic_rank(&rows)
+}
+
+/// n over d
+fn binomial(n: usize, d: usize) -> usize {
+    (1..=d).fold(1, |product, i| product * (n + 1 - i) / i)
+}
+
+impl ConservationVerdict<'_> {
+    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    pub fn is_conserved(self) -> bool {
+        matches!(self, ConservationVerdict::Conserved | ConservationVerdict::ConservedHere)
+    }
+}
+
+impl Integral<'_> {
+    /// Whether it is proved to keep its value, if only for these parameters.
+    pub fn is_conserved(&self) -> bool {
+        self.verdict.is_conserved()
+    }
+
+    /// Whether it is the energy of the velocities in the equations.
+    pub fn is_energy(&self) -> bool {
+        self.origin == Origin::Energy
+    }
+
+    /// Whether it is a Casimir, declared or not.
+    pub fn is_casimir(&self) -> bool {
+        matches!(self.origin, Origin::Casimir | Origin::DeclaredCasimir)
+    }
+}

@@ -1,0 +1,185 @@
+//! What can be said of motions without integrating them: what they keep, where they rest, and what happens near by.
+//!
+//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
+//! corrected; conventions are those of [`pc_mech`]. Questions are put to its [`System`](pc_mech::System), to its
+//! [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to the
+//! [`Motion`](pc_mech::Motion) that these are compiled to. What is found is proved unless it is said to be open.
+//!
+//! # Frames
+//!
+//! [`FrameFacts::of`] says of each quasi-velocity whether it is dπ/dt, and which constraints hold by the frame alone.
+//!
+//! # Brackets
+//!
+//! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
+//!
+//! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
+//!
+//! [`PoissonBracket::new`] is this bracket; for all others [`PoissonBracket::extended`] adds time and its
+//! momentum y_0, with H + y_0 for H. Functions that commute with everything are [Casimirs](PoissonBracket::casimirs). The
+//! bracket of two integrals is an integral (Poisson's theorem); [`PoissonBracket::closure`] adds what is new.
+//!
+//! ```
+//! use pc_analysis::PoissonBracket;
+//! use pc_mech::{Graph, System};
+//!
+//! // Two components of the angular momentum in space bring the third.
+//! let graph = Graph::new();
+//! let point = System::builder(&graph)
+//!     .coordinates(["x", "y", "z"])
+//!     .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
+//!     .build()?;
+//! let [x, y, z, px, py, pz] = graph.symbols(["x", "y", "z", "p_x", "p_y", "p_z"]);
+//! let all = PoissonBracket::new(&point).closure(&[y * pz - z * py, z * px - x * pz])?;
+//! assert_eq!(all[2..], [x * py - y * px]);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
+//! # Lie–Poisson
+//!
+//! On a group with invariant L, [reduced](pc_mech::System::reduced) to no coordinates, the bracket is that of the [algebra
+//! alone](PoissonBracket::lie_poisson).
+//!
+//! ```
+//! use pc_analysis::PoissonBracket;
+//! use pc_mech::{Graph, LieGroup, RotationMatrices, System};
+//!
+//! // A free rigid body with its nine direction cosines; moments of inertia 1, 2, 3.
+//! let graph = Graph::new();
+//! let names = ["R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"];
+//! let frame = RotationMatrices.left_frame(&graph, graph.symbol("t"), graph.symbols(names).to_vec())?;
+//! let body = System::builder(&graph)
+//!     .coordinates(names)
+//!     .quasi_velocities(["1", "2", "3"])
+//!     .frame(frame)
+//!     .kinetic(|_, _, w| (w[0].square() + 2.0 * w[1].square() + 3.0 * w[2].square()) / 2.0)
+//!     .build()?;
+//! let free = body.reduced()?;
+//! assert_eq!(PoissonBracket::new(&free).casimirs(2)[0].to_string(), "p_1^2 + p_2^2 + p_3^2");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Integrals
+//!
+//! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`CyclicDisplacement::all`] finds the
+//! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
+//! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
+//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
+//! [`Integrals::find`] asks all of these, and Casimirs, for what a system keeps.
+//!
+//! ```
+//! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
+//! use pc_mech::{Graph, LieAlgebra, System};
+//!
+//! // Lagrange's top, with friction about its axis and without.
+//! let graph = Graph::new();
+//! let [a, c, n] = graph.symbols(["A", "C", "n"]);
+//! let top = |friction| {
+//!     System::builder(&graph)
+//!         .coordinates(["γ1", "γ2", "γ3"])
+//!         .quasi_velocities(["ω1", "ω2", "ω3"])
+//!         .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
+//!         .algebra(&LieAlgebra::so3())
+//!         .lagrangian(|_, g, w| (a*(w[0].square() + w[1].square()) + c*w[2].square())/2.0 - g[2])
+//!         .dissipation(|_, _, w| friction * w[2].square() / 2.0)
+//!         .build()
+//! };
+//! let rubbed = top(n)?;
+//! assert_eq!(rubbed.energy_rate().to_string(), "-n*ω3^2");
+//! let verdict = Rates::poincare(&rubbed.poincare()?).verdict(rubbed.momenta()[2])?;
+//! assert!(matches!(verdict, Conservation::Changing(_)));
+//!
+//! let top = top(0.0.into())?;
+//! assert_eq!(CyclicDisplacement::all(&top)[0].momentum.to_string(), "C*ω3");
+//! let rates = Rates::canonical(&top.canonical()?);
+//! let found: Vec<String> = rates.integrals(&rates.ansatz(1, 1))?.iter().map(|f| f.to_string()).collect();
+//! assert_eq!(found, ["p_ω3", "γ1*p_ω1 + γ2*p_ω2 + γ3*p_ω3"]);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
+//! # Hamilton–Jacobi
+//!
+//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] puts S in and
+//! proves it; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//!
+//! ```
+//! use pc_analysis::CompleteIntegral;
+//! use pc_mech::{Graph, System};
+//!
+//! // Free fall, g = 1: Hamilton's principal function of the motion from α at t = 0. Then β = −ẋ(0).
+//! let graph = Graph::new();
+//! let [t, x, start] = graph.symbols(["t", "x", "α"]);
+//! let particle =
+//!     System::builder(&graph).coordinates(["x"]).lagrangian(|_, x, v| v[0].square() / 2.0 - x[0]).build()?;
+//! let action = (x - start).square() / (2.0 * t) - t * (x + start) / 2.0 - t.powi(3) / 24.0;
+//! let mut integral = CompleteIntegral::new(&particle.canonical()?, action, &["α"])?;
+//! let state = integral.state(2.0, &[5.0], &[-3.0], &[0.0])?;
+//! assert_eq!(state, [9.0, 1.0]); // 5 + 3 t − t²/2, 3 − t
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
+//! # Steady motions and stability
+//!
+//! [`SteadyMotion::near`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
+//! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
+//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
+//! nothing.
+//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and asks both.
+//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
+//!
+//! ```
+//! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
+//! use pc_mech::{Graph, LieAlgebra, System};
+//!
+//! // The sleeping top, upright: stable if C² ω² > 4 A mgl. With A = mgl = 1, C = 1/2: if ω > 4.
+//! let graph = Graph::new();
+//! let top = System::builder(&graph)
+//!     .coordinates(["γ1", "γ2", "γ3"])
+//!     .quasi_velocities(["ω1", "ω2", "ω3"])
+//!     .kinematics(|_, g, w| [g[1]*w[2] - g[2]*w[1], g[2]*w[0] - g[0]*w[2], g[0]*w[1] - g[1]*w[0]])
+//!     .algebra(&LieAlgebra::so3())
+//!     .lagrangian(|_, g, w| (w[0].square() + w[1].square() + w[2].square()/2.0)/2.0 - g[2])
+//!     .integral("area", |_, g, w| w[0]*g[0] + w[1]*g[1] + w[2]*g[2]/2.0)
+//!     .integral("spin", |_, _, w| w[2])
+//!     .integral("γ²", |_, g, _| g[0].square() + g[1].square() + g[2].square())
+//!     .build()?
+//!     .poincare()?;
+//! let sleeping = |spin| [0.0, 0.0, 1.0, 0.0, 0.0, spin];
+//! assert_eq!(SecondVariation::at(&top, &sleeping(4.01))?.verdict, Verdict::Stable);
+//! let matrix = first_approximation(&mut top.compile()?, 0.0, &sleeping(3.99))?;
+//! assert_eq!(Spectrum::of(&matrix, 0.0)?.verdict(), Verdict::Unstable);
+//! # Ok::<(), pc_analysis::AnalysisError>(())
+//! ```
+//!
+//! # Invariant measures
+//!
+//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N dx dy kept, as it
+//! is by every system with potential forces, and by some under nonholonomic constraints. Those have a bracket as well, the
+//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems a time in which they are Lagrangian,
+//! by a [`ReducingMultiplier`].
+
+mod brackets;
+mod error;
+mod frame_facts;
+mod hamilton_jacobi;
+mod integrals;
+mod measures;
+mod numeric;
+mod stability;
+mod variation;
+
+pub use brackets::poisson_bracket::PoissonBracket;
+pub use error::AnalysisError;
+pub use frame_facts::{FrameConstraints, FrameFacts, QuasiVelocityKind};
+pub use hamilton_jacobi::{CompleteIntegral, hamilton_jacobi};
+pub use integrals::ansatz::Ansatz;
+pub use integrals::cyclic_displacements::CyclicDisplacement;
+pub use integrals::rates::{Conservation, Rates};
+pub use integrals::search::{ConservationVerdict, Integral, Integrals, Origin};
+pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
+pub use measures::reducing_multiplier::ReducingMultiplier;
+pub use stability::second_variation::SecondVariation;
+pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
+pub use stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
+pub use stability::steady_search::{EnergyCriterion, NearbySteadyMotion, Stability, SteadySearch};
+pub use variation::Variation;

@@ -1,0 +1,4 @@
+//! Eigenvalues and Newton's method, in numbers.
+
+pub(crate) mod dense;
+pub(crate) mod newton;

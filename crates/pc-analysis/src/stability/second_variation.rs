@@ -1,0 +1,237 @@
+//! Stability by the second variation of the energy under constant integrals (Routh; Chetaev's bundle of
+//! integrals; energy and Casimirs).
+
+use pc_mech::{Equations, Expr, Graph, Matrix, MechError, SingularValues};
+
+use crate::error::{AnalysisError, shape};
+use crate::numeric::dense::{norm, product, symmetric_eigenvalues};
+use crate::stability::definite::{combination, definite_combination};
+use crate::stability::spectrum::Verdict;
+
+/// The second variation of F = H + λ_j I_j at a steady motion where dF = 0, on the deviations with dI_j = 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SecondVariation {
+    /// The components of the state on which H or an integral depends; the others are ignored.
+    pub variables: Vec<String>,
+    /// The names of the integrals with the multipliers λ_j.
+    pub multipliers: Vec<(String, f64)>,
+    /// |dH + λ_j dI_j| against the largest of |dH| and |dI_j|: zero but for rounding at a steady motion.
+    pub residual: f64,
+    /// The eigenvalues of the second variation on the kernel of the dI_j, rising.
+    pub eigenvalues: Vec<f64>,
+    /// The size up to which an eigenvalue counts as zero.
+    pub tolerance: f64,
+    /// [`Stable`](Verdict::Stable) if it is definite, else [`Undecided`](Verdict::Undecided).
+    pub verdict: Verdict,
+}
+
+impl SecondVariation {
+    /// The numbers of positive, negative and zero eigenvalues.
+    pub fn signature(&self) -> (usize, usize, usize) {
+        let positive = self.eigenvalues.iter().filter(|&&value| value > self.tolerance).count();
+        let negative = self.eigenvalues.iter().filter(|&&value| value < -self.tolerance).count();
+        (positive, negative, self.eigenvalues.len() - positive - negative)
+    }
+}
+
+/// Values, slopes and curvatures of one function at the state.
+struct Expansion {
+    gradient: Vec<f64>,
+    hessian: Matrix<f64>,
+}
+
+impl SecondVariation {
+    /// The second variation of the energy at the steady motion `state`, (x, η), under the
+    /// [integrals](pc_mech::System::integrals) of the system.
+    ///
+    /// With d(H + λ_j I_j) = 0 there, λ by least squares, a second variation that is definite on the common
+    /// kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j − I_j(y))² has a
+    /// strict extremum at y for large κ. This does not need independent dI_j. Where they depend on each other
+    /// the λ_j are not determined, and those for which the form is definite are searched for.
+    ///
+    /// Stability is that of the [variables](SecondVariation::variables). Redundant coordinates are variables:
+    /// their constraints, such as γ² = 1, are to be among the integrals.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotConserved`] if H or an integral changes along motions or depends on the time;
+    /// [`MechError::Shape`]; [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
+    pub fn at(equations: &Equations<'_>, state: &[f64]) -> Result<SecondVariation, AnalysisError> {
+        SecondVariation::under(equations, equations.system().integrals(), state)
+    }
+
+    /// The same under the given integrals with their names, functions of (x, η) and parameters.
+    ///
+    /// # Errors
+    /// As [`at`](SecondVariation::at).
+    pub fn under<'g>(
+        equations: &Equations<'g>,
+        integrals: &[(String, Expr<'g>)],
+        state: &[f64],
+    ) -> Result<SecondVariation, AnalysisError> {
+        let system = equations.system();
+        let symbols = system.state();
+        shape("the state", state.len(), symbols.len())?;
+        check_conserved(equations, integrals, &symbols)?;
+
+        let functions: Vec<Expr<'g>> =
+            [equations.energy()].into_iter().chain(integrals.iter().map(|&(_, f)| f)).collect();
+        let variables: Vec<Expr<'g>> =
+            symbols.iter().copied().filter(|&y| functions.iter().any(|f| f.depends_on(y))).collect();
+        let values: Vec<(Expr<'g>, f64)> = symbols
+            .iter()
+            .copied()
+            .zip(state.iter().copied())
+            .chain(system.parameters().iter().copied())
+            .collect();
+        let expansions: Vec<Expansion> = functions
+            .iter()
+            .map(|&f| expand(system.graph(), f, &variables, &values))
+            .collect::<Result<_, _>>()?;
+        let names = integrals.iter().map(|(name, _)| name.clone());
+        let mut result = decide(&expansions)?;
+        result.variables = variables.iter().map(Expr::to_string).collect();
+        result.multipliers = names.zip(result.multipliers).map(|(name, (_, value))| (name, value)).collect();
+        Ok(result)
+    }
+}
+
+/// That H and the integrals are kept and free of time.
+fn check_conserved<'g>(
+    equations: &Equations<'g>,
+    integrals: &[(String, Expr<'g>)],
+    symbols: &[Expr<'g>],
+) -> Result<(), AnalysisError> {
+    let (system, graph) = (equations.system(), equations.system().graph());
+    let accelerations = equations.accelerations();
+    let of_states = system.states().iter().map(|(_, rate)| rate);
+    let rates = equations.velocities().iter().chain(&accelerations).chain(of_states).copied();
+    let along: Vec<_> = symbols.iter().copied().zip(rates).chain(system.signal_rates()).collect();
+    let energy = ("energy".to_owned(), equations.energy());
+    for (name, function) in [&energy].into_iter().chain(integrals) {
+        let rate = graph.directional(&[*function], &along)[0];
+        let drift = function.derivative(system.frame().time());
+        if graph.generic_rank(&[vec![rate], vec![drift]]) > 0 {
+            return Err(AnalysisError::NotConserved { name: name.clone() });
+        }
+    }
+    Ok(())
+}
+
+fn expand<'g>(
+    graph: &'g Graph,
+    function: Expr<'g>,
+    variables: &[Expr<'g>],
+    values: &[(Expr<'g>, f64)],
+) -> Result<Expansion, MechError> {
+    let n = variables.len();
+    let slopes = graph.gradient(function, variables);
+    let curvatures: Vec<Expr<'g>> = slopes.iter().flat_map(|&f| graph.gradient(f, variables)).collect();
+    let numbers = graph.evaluate(&curvatures, values)?;
+    let hessian = Matrix::from_fn(n, n, |i, j| numbers[i.max(j) * n + i.min(j)]);
+    Ok(Expansion { gradient: graph.evaluate(&slopes, values)?, hessian })
+}
+
+/// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations that they are tried on.
+struct Multipliers {
+    /// λ by least squares.
+    lambda: Vec<f64>,
+    /// The μ with μ_j dI_j = 0, as columns.
+    free: Matrix<f64>,
+    /// |dH + λ_j dI_j|, relative.
+    residual: f64,
+    /// The common kernel of the dI_j, as columns.
+    kernel: Matrix<f64>,
+    /// The relative size of what counts as zero.
+    rounding: f64,
+}
+
+impl Multipliers {
+    fn of(energy: &Expansion, integrals: &[Expansion]) -> Result<Multipliers, MechError> {
+        let (n, count) = (energy.gradient.len(), integrals.len());
+        let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;
+        let largest = factors.values.first().copied().unwrap_or(0.0);
+        let rounding = 64.0 * (n + count) as f64 * f64::EPSILON;
+        let rank = factors.rank(rounding * largest);
+
+        let along = |l: usize| factors.left.column(l).zip(&energy.gradient).map(|(u, h)| u * h).sum::<f64>();
+        let weights: Vec<f64> = (0..rank).map(|l| -along(l) / factors.values[l]).collect();
+        let lambda = |j: usize| (0..rank).map(|l| factors.right[(j, l)] * weights[l]).sum();
+        let left_over: Vec<f64> = (rank..n).map(along).collect();
+        let scale = norm(&energy.gradient).max(largest);
+        Ok(Multipliers {
+            lambda: (0..count).map(lambda).collect(),
+            free: factors.kernel(rank),
+            residual: if scale == 0.0 { 0.0 } else { norm(&left_over) / scale },
+            kernel: Matrix::from_fn(n, n - rank, |i, j| factors.left[(i, rank + j)]),
+            rounding,
+        })
+    }
+}
+
+/// The second variation from the expansions of H, I_1, I_2, …, without names.
+fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
+    let critical = Multipliers::of(&expansions[0], &expansions[1..])?;
+    let rounding = critical.rounding;
+    let hessians: Vec<Matrix<f64>> =
+        expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();
+    // Against the whole forms: what they leave on the kernel may be rounding alone.
+    let whole = expansions.iter().map(|expansion| norm(expansion.hessian.entries()));
+    let largest = whole.fold(0.0, f64::max);
+
+    // The form of λ, and those by which the free multipliers change it.
+    let mut forms = vec![combination(&hessians, &with_energy(1.0, &critical.lambda))];
+    let mut multipliers = vec![critical.lambda];
+    for l in 0..critical.free.columns() {
+        let mu: Vec<f64> = critical.free.column(l).collect();
+        let form = combination(&hessians, &with_energy(0.0, &mu));
+        if norm(form.entries()) > rounding * largest {
+            forms.push(form);
+            multipliers.push(mu);
+        }
+    }
+    let certain = rounding + critical.residual;
+    let weights =
+        if critical.residual <= rounding.sqrt() { definite(&forms, largest, certain)? } else { None };
+    let verdict = if weights.is_some() { Verdict::Stable } else { Verdict::Undecided };
+    let weights = weights.unwrap_or_else(|| with_energy(1.0, &vec![0.0; forms.len() - 1]));
+    let multiplier = |j: usize| multipliers.iter().zip(&weights).map(|(part, w)| w * part[j]).sum();
+    let form = combination(&forms, &weights);
+    Ok(SecondVariation {
+        variables: Vec::new(),
+        multipliers: (0..multipliers[0].len()).map(|j| (String::new(), multiplier(j))).collect(),
+        residual: critical.residual,
+        tolerance: certain * norm(form.entries()),
+        eigenvalues: symmetric_eigenvalues(&form)?.0,
+        verdict,
+    })
+}
+
+/// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if there are any.
+fn definite(forms: &[Matrix<f64>], largest: f64, tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
+    let least_size = if largest > 0.0 { tolerance * largest } else { 1.0 };
+    let sizes: Vec<f64> = forms.iter().map(|form| norm(form.entries()).max(least_size)).collect();
+    let scaled: Vec<Matrix<f64>> =
+        forms.iter().zip(&sizes).map(|(form, size)| form.map(|entry| entry / size)).collect();
+    let found = definite_combination(&scaled, tolerance)?;
+    Ok(found.map(|c| {
+        // Definite also with a little of the first form where none was needed.
+        let first = if c[0] == 0.0 { tolerance / 2.0 * norm(&c) } else { c[0] };
+        c.iter()
+            .zip(&sizes)
+            .enumerate()
+            .map(|(i, (c, size))| match i {
+                0 => 1.0,
+                _ => c / size * sizes[0] / first,
+            })
+            .collect()
+    }))
+}
+
+fn with_energy(weight: f64, multipliers: &[f64]) -> Vec<f64> {
+    [weight].into_iter().chain(multipliers.iter().copied()).collect()
+}
+
+/// Nᵀ W N
+fn restricted(form: &Matrix<f64>, kernel: &Matrix<f64>) -> Matrix<f64> {
+    product(&kernel.transpose(), &product(form, kernel))
+}

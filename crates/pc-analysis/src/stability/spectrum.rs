@@ -1,0 +1,137 @@
+//! Eigenvalues of the first approximation, and what they say about stability.
+
+use std::fmt;
+
+use pc_mech::{Matrix, MechError, SingularValues};
+
+use crate::numeric::dense::{eigenvalues, norm, product};
+
+/// What is known of the stability of an equilibrium or a steady motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Neighbouring motions approach it: all real parts are negative (Lyapunov's first method).
+    AsymptoticallyStable,
+    /// Neighbouring motions stay near: an integral has a strict extremum there (Lyapunov's second method).
+    Stable,
+    /// Some neighbouring motion leaves: a real part is positive (Lyapunov's first method).
+    Unstable,
+    /// The method decides nothing: the case is critical, as it is for the first approximation of every stable
+    /// conservative system.
+    Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Verdict::AsymptoticallyStable => "asymptotically stable",
+            Verdict::Stable => "stable",
+            Verdict::Unstable => "unstable",
+            Verdict::Undecided => "undecided",
+        })
+    }
+}
+
+/// An eigenvalue λ: a small deviation changes as e^λt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eigenvalue {
+    /// The rate of growth.
+    pub real: f64,
+    /// The angular frequency.
+    pub imaginary: f64,
+}
+
+/// The eigenvalues of a matrix A, its zeros counted by rank and not by size.
+///
+/// A zero of multiplicity m in one Jordan block comes out of any eigenvalue routine as m numbers of size
+/// ε^(1/m) |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions
+/// gives A a kernel, and an angle whose speed changes along the family a block of two. Therefore they are
+/// split off by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the
+/// image, the r × r matrix U_rᵀ A U_r, have the same eigenvalues but for n − r zeros; this is repeated until
+/// the rest is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N.
+/// Kublanovskaya's method for the Jordan structure).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectrum {
+    eigenvalues: Vec<Eigenvalue>,
+    zero_blocks: Vec<usize>,
+    tolerance: f64,
+}
+
+impl Spectrum {
+    /// The spectrum of a square matrix A whose entries are known to `uncertainty` |A|; uncertainties below
+    /// 8 n ε, the rounding of the method, count as that.
+    ///
+    /// Singular values up to `uncertainty` |A| are zeros. A real part counts as zero up to √`uncertainty`
+    /// |A|, to which a double eigenvalue is determined.
+    ///
+    /// # Errors
+    /// [`MechError::Shape`] if the matrix is not square; [`MechError::NoEigenvalues`] if it is not finite.
+    pub fn of(matrix: &Matrix<f64>, uncertainty: f64) -> Result<Spectrum, MechError> {
+        let size = matrix.rows();
+        if matrix.columns() != size {
+            let what = "a row of the matrix of the first approximation";
+            return Err(MechError::Shape { what, found: matrix.columns(), expected: size });
+        }
+        let uncertainty = uncertainty.max(8.0 * size as f64 * f64::EPSILON);
+        let scale = norm(matrix.entries());
+        let (regular, zero_blocks) = without_zeros(matrix, uncertainty * scale)?;
+        let mut found: Vec<Eigenvalue> = eigenvalues(&regular)?
+            .into_iter()
+            .map(|(real, imaginary)| Eigenvalue { real, imaginary })
+            .collect();
+        let zeros = zero_blocks.iter().sum();
+        found.extend(std::iter::repeat_n(Eigenvalue { real: 0.0, imaginary: 0.0 }, zeros));
+        found.sort_by(|a, b| b.real.total_cmp(&a.real).then(b.imaginary.total_cmp(&a.imaginary)));
+        Ok(Spectrum { eigenvalues: found, zero_blocks, tolerance: uncertainty.sqrt() * scale })
+    }
+
+    /// The eigenvalues, n of them, by falling real part.
+    pub fn eigenvalues(&self) -> &[Eigenvalue] {
+        &self.eigenvalues
+    }
+
+    /// The numbers of Jordan blocks of the eigenvalue zero of size at least 1, 2, …; their sum is the
+    /// multiplicity of zero, the first the dimension of the kernel.
+    pub fn zero_blocks(&self) -> &[usize] {
+        &self.zero_blocks
+    }
+
+    /// The size up to which a real part counts as zero.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The number of eigenvalues whose real part counts as zero, zeros among them.
+    pub fn neutral(&self) -> usize {
+        self.eigenvalues.iter().filter(|value| value.real.abs() <= self.tolerance).count()
+    }
+
+    /// [`Unstable`](Verdict::Unstable) if a real part is above the [tolerance](Spectrum::tolerance),
+    /// [`AsymptoticallyStable`](Verdict::AsymptoticallyStable) if all are below minus the tolerance,
+    /// [`Undecided`](Verdict::Undecided) else.
+    ///
+    /// Zeros never count as growth, in blocks or not: in the first approximation a block means growth with a
+    /// power of t, along a family of steady motions or not, and the motion itself need not follow.
+    pub fn verdict(&self) -> Verdict {
+        match self.eigenvalues.first() {
+            Some(first) if first.real > self.tolerance => Verdict::Unstable,
+            Some(first) if first.real >= -self.tolerance => Verdict::Undecided,
+            _ => Verdict::AsymptoticallyStable,
+        }
+    }
+}
+
+/// A regular matrix with the eigenvalues of `matrix` other than zero, and the numbers of zeros split off at
+/// each step.
+fn without_zeros(matrix: &Matrix<f64>, tolerance: f64) -> Result<(Matrix<f64>, Vec<usize>), MechError> {
+    let (mut rest, mut blocks) = (matrix.clone(), Vec::new());
+    loop {
+        let factors = SingularValues::of(&rest)?;
+        let (size, rank) = (rest.rows(), factors.rank(tolerance));
+        if rank == size {
+            return Ok((rest, blocks));
+        }
+        blocks.push(size - rank);
+        let image = Matrix::from_fn(size, rank, |i, j| factors.left[(i, j)]);
+        rest = product(&image.transpose(), &product(&rest, &image));
+    }
+}

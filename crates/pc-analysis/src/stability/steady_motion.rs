@@ -1,0 +1,234 @@
+//! Equilibria and steady motions: the rates of all but the cyclic coordinates vanish.
+
+use pc_mech::{Matrix, MechError, Motion, Pattern, VectorField};
+
+use crate::error::{AnalysisError, shape};
+use crate::numeric::{dense::norm, newton};
+use crate::stability::spectrum::{Spectrum, Verdict};
+
+/// How a steady motion is looked for.
+///
+/// ```
+/// use pc_analysis::{SteadyMotion, SteadyOptions};
+/// use pc_mech::{Graph, System};
+///
+/// // A particle on a turntable's radius: r̈ = rφ̇² − r + 1, φ cyclic.
+/// let graph = Graph::new();
+/// let mut motion = System::builder(&graph)
+///     .coordinates(["r", "φ"])
+///     .lagrangian(|_, x, v| (v[0].square() + x[0].square() * v[1].square() - (x[0] - 1.0).square()) / 2.0)
+///     .build()?
+///     .poincare()?
+///     .compile()?;
+/// let options = SteadyOptions::default().fixed(["φ'"]);
+/// let circle = SteadyMotion::near(&mut motion, 0.0, &[1.0, 0.0, 0.1, 0.5], &options)?;
+/// assert!((circle.state[0] - 4.0 / 3.0).abs() < 1e-14);
+/// assert_eq!(circle.rates, [("φ".to_owned(), 0.5)]);
+/// # Ok::<(), pc_analysis::AnalysisError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteadyOptions {
+    cyclic: Option<Vec<String>>,
+    fixed: Vec<String>,
+    iterations: usize,
+    tolerance: f64,
+}
+
+impl Default for SteadyOptions {
+    /// Cyclic coordinates as the equations have them, nothing fixed, 100 steps, a relative residual of 10⁻¹².
+    fn default() -> SteadyOptions {
+        SteadyOptions { cyclic: None, fixed: Vec::new(), iterations: 100, tolerance: 1e-12 }
+    }
+}
+
+impl SteadyOptions {
+    /// Names the cyclic coordinates, whose rates need not vanish. Without it they are all coordinates on
+    /// which no rate depends but rates of cyclic ones.
+    #[must_use]
+    pub fn cyclic<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
+        SteadyOptions { cyclic: Some(names.into_iter().map(Into::into).collect()), ..self }
+    }
+
+    /// Names components of the state that keep the value of the guess: they choose one of a family of steady
+    /// motions. Without it the one near the guess is found.
+    #[must_use]
+    pub fn fixed<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
+        SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
+    }
+
+    /// The largest number of steps.
+    #[must_use]
+    pub fn iterations(self, iterations: usize) -> SteadyOptions {
+        SteadyOptions { iterations, ..self }
+    }
+
+    /// The residual |f| that counts as zero, in units of |∂f/∂y| (1 + |y|). The iteration goes on as long as
+    /// the residual falls, so that it usually ends at the rounding whatever this is.
+    #[must_use]
+    pub fn tolerance(self, tolerance: f64) -> SteadyOptions {
+        SteadyOptions { tolerance, ..self }
+    }
+}
+
+/// An equilibrium or a steady motion (Routh): f_i(t, y) = 0 for all components i but the cyclic coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteadyMotion {
+    /// y, as long as the state; cyclic coordinates have the values of the guess.
+    pub state: Vec<f64>,
+    /// √Σ f_i² over the components that are not cyclic.
+    pub residual: f64,
+    /// The cyclic coordinates with their rates, which are constant.
+    pub rates: Vec<(String, f64)>,
+    /// The names of the other components, r of them, in the order of the state.
+    pub components: Vec<String>,
+    /// ∂f_i/∂y_j over these, r × r: the first approximation δẏ = A δy in the reduced variables.
+    pub first_approximation: Matrix<f64>,
+    /// The spectrum of it.
+    pub spectrum: Spectrum,
+}
+
+impl SteadyMotion {
+    /// The equilibrium or steady motion near `guess` at time t: f_i(t, y) = 0 for all components i but the
+    /// cyclic coordinates.
+    ///
+    /// Steady motions come in families, so that these equations do not determine y: the iteration goes to a
+    /// solution near the guess, and components can be [fixed](SteadyOptions::fixed). For a time-dependent
+    /// system what is found is an equilibrium of the rates at that time.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::UnknownComponent`],
+    /// [`AnalysisError::NotCyclic`] for names that do not fit; otherwise as [`first_approximation`].
+    pub fn near(
+        motion: &mut Motion,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+    ) -> Result<SteadyMotion, AnalysisError> {
+        let size = motion.dim();
+        SteadyMotion::on_surface(motion, t, guess, options, |_| {
+            Ok((Vec::new(), Matrix::from_fn(0, size, |_, _| 0.0)))
+        })
+    }
+
+    /// The same among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
+    ///
+    /// `surface` answers g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
+    /// functions g that the motion keeps leave steady motions steady.
+    ///
+    /// # Errors
+    /// As [`near`](SteadyMotion::near), and those of `surface`.
+    pub fn on_surface(
+        motion: &mut Motion,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+        mut surface: impl FnMut(&[f64]) -> Result<(Vec<f64>, Matrix<f64>), AnalysisError>,
+    ) -> Result<SteadyMotion, AnalysisError> {
+        shape("the guess", guess.len(), motion.dim())?;
+        let cyclic = cyclic_among(motion, options.cyclic.as_deref())?;
+        let fixed = components(motion, &options.fixed)?;
+        let kept: Vec<usize> = (0..motion.dim()).filter(|i| !cyclic.contains(i)).collect();
+        let free: Vec<usize> = kept.iter().copied().filter(|i| !fixed.contains(i)).collect();
+
+        let mut state = guess.to_vec();
+        let start = free.iter().map(|&j| guess[j]).collect();
+        let end = newton::solve(start, options.iterations, |z| {
+            for (&j, &value) in free.iter().zip(z) {
+                state[j] = value;
+            }
+            let rates = motion.rates(t, &state)?;
+            let slopes = part(&first_approximation(motion, t, &state)?, &kept, &free);
+            let (distances, normals) = surface(&state)?;
+            let values = kept.iter().map(|&i| rates[i]).chain(distances).collect();
+            let on_surface = |i: usize, j: usize| normals[(i - kept.len(), free[j])];
+            let rows = kept.len() + normals.rows();
+            let entry = |i, j| if i < kept.len() { slopes[(i, j)] } else { on_surface(i, j) };
+            Ok((values, Matrix::from_fn(rows, free.len(), entry)))
+        })?;
+        for (&j, &value) in free.iter().zip(&end.point) {
+            state[j] = value;
+        }
+        let residual = norm(&end.values[..kept.len()]);
+        if !end.is_solution(options.tolerance) {
+            let state = motion.names().iter().cloned().zip(state).collect();
+            return Err(AnalysisError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
+        }
+        let rates = motion.rates(t, &state)?;
+        let matrix = part(&first_approximation(motion, t, &state)?, &kept, &kept);
+        Ok(SteadyMotion {
+            residual,
+            rates: cyclic.iter().map(|&i| (motion.names()[i].clone(), rates[i])).collect(),
+            components: kept.iter().map(|&i| motion.names()[i].clone()).collect(),
+            spectrum: Spectrum::of(&matrix, end.relative_residual())?,
+            first_approximation: matrix,
+            state,
+        })
+    }
+
+    /// What the first approximation says about stability with respect to the components that are not cyclic.
+    pub fn verdict(&self) -> Verdict {
+        self.spectrum.verdict()
+    }
+}
+
+/// The matrix A = ∂f/∂y of the first approximation δẏ = A δy at (t, y), n × n for a state of n
+/// components.
+///
+/// Its [`Spectrum`] is that of all components, cyclic coordinates among them.
+///
+/// # Errors
+/// [`MechError::Shape`]; [`MechError::NotCompiled`] without the Jacobian; where f is not defined, as
+/// [`rhs`](VectorField::rhs).
+pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
+    let n = motion.dim();
+    shape("the state", y.len(), n)?;
+    let mut entries = vec![0.0; n * n];
+    motion.jacobian(t, y, &mut entries)?;
+    Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
+}
+
+/// Where the components with those names stand.
+fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisError> {
+    let find = |name: &String| motion.names().iter().position(|known| known == name);
+    names
+        .iter()
+        .map(|name| {
+            find(name).ok_or_else(|| AnalysisError::UnknownComponent {
+                name: name.clone(),
+                known: motion.names().to_vec(),
+            })
+        })
+        .collect()
+}
+
+/// The cyclic coordinates, those named or all.
+fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
+    let pattern = motion.sparsity().ok_or(MechError::NotCompiled { what: "Jacobian" })?;
+    let Some(named) = named else { return Ok(cyclic_coordinates(pattern, motion.coordinates())) };
+    let cyclic = components(motion, named)?;
+    for &j in &cyclic {
+        let other = pattern.column(j).iter().find(|i| !cyclic.contains(i));
+        if let Some(&i) = other {
+            let [coordinate, component] = [j, i].map(|i| motion.names()[i].clone());
+            return Err(AnalysisError::NotCyclic { coordinate, component });
+        }
+    }
+    Ok(cyclic)
+}
+
+/// The largest set of coordinates on which no rates depend but those of the set itself.
+fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
+    let mut cyclic: Vec<usize> = (0..coordinates).collect();
+    loop {
+        let ends_in = |j: &usize| pattern.column(*j).iter().all(|i| cyclic.contains(i));
+        let rest: Vec<usize> = cyclic.iter().copied().filter(ends_in).collect();
+        if rest.len() == cyclic.len() {
+            return rest;
+        }
+        cyclic = rest;
+    }
+}
+
+fn part(matrix: &Matrix<f64>, rows: &[usize], columns: &[usize]) -> Matrix<f64> {
+    Matrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])])
+}

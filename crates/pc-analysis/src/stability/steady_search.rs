@@ -1,0 +1,349 @@
+//! The steady motion near the start, and whether it is stable.
+
+use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion};
+
+use crate::integrals::search::{Integral, bind, rank_of_gradients};
+use crate::stability::second_variation::SecondVariation;
+use crate::stability::spectrum::{Eigenvalue, Verdict};
+use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
+
+/// Where rates are steeper than this many times those at the start, the coordinates are singular.
+const MOST_STEEPER: f64 = 1e6;
+
+/// A differential of which more than this part is left beside others is independent of them.
+const INDEPENDENT: f64 = 1e-8;
+
+/// Steps of Newton's method.
+const MOST_STEPS: usize = 50;
+
+/// An equilibrium or a steady motion of an autonomous system near its start.
+#[derive(Clone, Debug)]
+pub struct NearbySteadyMotion {
+    /// The components that are not cyclic, with their values.
+    pub state: Vec<(String, f64)>,
+    /// The cyclic coordinates whose rates are constant, with these.
+    pub rates: Vec<(String, f64)>,
+    /// Euclidean, in the components that are not cyclic.
+    pub distance: f64,
+    /// The integrals that have the values of the start.
+    pub same: Vec<String>,
+    /// Those of the first approximation.
+    pub eigenvalues: Vec<Eigenvalue>,
+    /// The real part that counts as zero.
+    pub tolerance: f64,
+    /// What these say.
+    pub first_approximation: Verdict,
+    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times, once for each of
+    /// as many independent integrals, and all other real parts negative.
+    pub neutral: Option<usize>,
+    /// What the second variation says, if the energy and the integrals are kept.
+    pub second_variation: Option<EnergyCriterion>,
+}
+
+/// What the second variation of the energy under the integrals says.
+#[derive(Clone, Debug)]
+pub struct EnergyCriterion {
+    /// Stable, or undecided.
+    pub verdict: Verdict,
+    /// In which variables, if not in all that are not cyclic.
+    pub variables: Option<Vec<String>>,
+}
+
+/// What is known of the stability of a steady motion, and by what.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stability {
+    /// The first approximation decides.
+    ByFirstApproximation(Verdict),
+    /// It is stable by the second variation of the energy.
+    BySecondVariation {
+        /// In which variables, if not in all that are not cyclic.
+        variables: Option<Vec<String>>,
+    },
+    /// It is asymptotically stable but for neutral directions, by the first approximation.
+    AsymptoticBut {
+        /// Their number.
+        directions: usize,
+    },
+    /// Nothing decides.
+    Undecided {
+        /// Whether the second variation was asked too.
+        second_variation: bool,
+    },
+}
+
+/// What came of the search.
+#[derive(Clone, Debug)]
+pub enum SteadySearch {
+    /// The equations depend on time.
+    NotAutonomous,
+    /// Not as many functions of the coordinates are known as the frame keeps: a solution might not be reached.
+    SurfaceUnknown,
+    /// The constraints leave no velocities that are independent of each other.
+    Nonlinear,
+    /// Newton's method ended nowhere, or far away.
+    None,
+    /// It is there.
+    Found(Box<NearbySteadyMotion>),
+}
+
+impl SteadySearch {
+    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are not
+    /// independent keep their relations; `positions` are those that constraints say, `integrals` what is known to be kept.
+    pub fn near<'g>(
+        equations: &Equations<'g>,
+        motion: &mut Motion,
+        (t_start, start): (f64, &[f64]),
+        integrals: &[Integral<'g>],
+        positions: &[(String, Expr<'g>)],
+    ) -> SteadySearch {
+        let system = equations.system();
+        let (frame, time) = (system.frame(), system.frame().time());
+        let mut all = equations
+            .velocities()
+            .iter()
+            .chain(equations.mass_matrix().entries())
+            .chain(equations.right_hand_side())
+            .chain(system.states().iter().map(|(_, rate)| rate));
+        let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
+        if all.any(|&x| moves(bind(system, x))) {
+            return SteadySearch::NotAutonomous;
+        }
+        let Ok(slopes) = first_approximation(motion, t_start, start) else { return SteadySearch::None };
+        let steepest = MOST_STEEPER * largest(&slopes);
+        let known = Known::of(equations, integrals);
+        let bound = equations.with_parameters_bound();
+        let all = known.integrals.clone();
+        for mut same in known.choices() {
+            for (name, position) in positions {
+                let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
+                let more = [functions.as_slice(), &[bind(system, *position)]].concat();
+                if rank_of_gradients(system.graph(), &more, frame.coordinates())
+                    > rank_of_gradients(system.graph(), &functions, frame.coordinates())
+                {
+                    same.push((name.clone(), bind(system, *position)));
+                }
+            }
+            let Some(surface) = Surface::new(equations, &same, start) else {
+                return SteadySearch::SurfaceUnknown;
+            };
+            let options = SteadyOptions::default().iterations(MOST_STEPS);
+            let found = SteadyMotion::on_surface(motion, t_start, start, &options, |y| Ok(surface.at(y)?));
+            let Some(found) = found.ok().filter(|found| largest(&found.first_approximation) <= steepest)
+            else {
+                continue;
+            };
+            let state = system.state();
+            let names = state.iter().map(Expr::to_string);
+            let second =
+                SecondVariation::under(&bound, &all, &found.state).ok().map(|second| EnergyCriterion {
+                    verdict: second.verdict,
+                    variables: Some(second.variables).filter(|variables| *variables != found.components),
+                });
+            let same = same.into_iter().map(|(name, _)| name).collect();
+            let rates = constant_rates(equations, &found);
+            let neutral = neutral_directions(equations, &found, &all);
+            if let Some(steady) =
+                NearbySteadyMotion::new(&found, names, start, (rates, neutral), same, second)
+            {
+                return SteadySearch::Found(Box::new(steady));
+            }
+        }
+        SteadySearch::None
+    }
+}
+
+/// The number k of neutral directions of a steady motion that is one of a family: the first approximation has λ = 0 in k
+/// blocks of size 1 and negative real parts else, and there are k integrals whose differentials are independent there, so that
+/// on each level near by the steady motion is one alone, and approached (I. G. Malkin's theorem of the critical case of k
+/// zeros).
+fn neutral_directions(
+    equations: &Equations<'_>,
+    found: &SteadyMotion,
+    integrals: &[(String, Expr<'_>)],
+) -> Option<usize> {
+    let spectrum = &found.spectrum;
+    let &[count] = spectrum.zero_blocks() else { return None };
+    let damped = spectrum.eigenvalues().iter().filter(|value| value.real < -spectrum.tolerance()).count();
+    if damped + count != spectrum.eigenvalues().len() || spectrum.neutral() != count {
+        return None;
+    }
+    let (system, graph) = (equations.system(), equations.system().graph());
+    let symbols = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let kept: Vec<Expr<'_>> =
+        symbols.iter().copied().filter(|y| found.components.contains(&y.to_string())).collect();
+    let at: Vec<(Expr<'_>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
+    // One of a cyclic coordinate is none of the other components alone.
+    let of_kept = |f: &Expr<'_>| {
+        graph
+            .symbols_of(&[*f])
+            .iter()
+            .all(|symbol| kept.contains(symbol) || !at.iter().any(|(y, _)| y == symbol))
+    };
+    let functions: Vec<Expr<'_>> = integrals.iter().map(|&(_, f)| f).filter(of_kept).collect();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for function in functions {
+        let mut gradient = graph.evaluate(&graph.gradient(function, &kept), &at).ok()?;
+        let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = length(&gradient);
+        for known in &basis {
+            let along: f64 = known.iter().zip(&gradient).map(|(a, b)| a * b).sum();
+            gradient.iter_mut().zip(known).for_each(|(g, known)| *g -= along * known);
+        }
+        let left = length(&gradient);
+        if left > INDEPENDENT * size {
+            basis.push(gradient.iter().map(|g| g / left).collect());
+        }
+    }
+    (basis.len() >= count).then_some(count)
+}
+
+/// The rates of the cyclic coordinates that contain no cyclic coordinate.
+fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(String, f64)> {
+    let x = equations.system().frame().coordinates();
+    let is_cyclic = |name: &str| found.rates.iter().any(|(cyclic, _)| cyclic == name);
+    let cyclic: Vec<Expr<'_>> = x.iter().copied().filter(|x| is_cyclic(&x.to_string())).collect();
+    let rates = x.iter().zip(equations.velocities());
+    let constant: Vec<String> = rates
+        .filter(|(_, rate)| !cyclic.iter().any(|&x| rate.depends_on(x)))
+        .map(|(x, _)| x.to_string())
+        .collect();
+    // A velocity that is a component of the state is known already.
+    let is_component = |name: &str| found.components.iter().any(|known| *known == format!("{name}'"));
+    let rates = found.rates.iter().filter(|(name, _)| constant.contains(name) && !is_component(name));
+    rates.cloned().collect()
+}
+
+/// The largest size of an entry.
+fn largest(matrix: &Matrix<f64>) -> f64 {
+    matrix.entries().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
+}
+
+/// The integrals that do not contain the time, independent of the energy and of each other; parameters are numbers.
+struct Known<'g> {
+    integrals: Vec<(String, Expr<'g>)>,
+    /// Those of them that are Casimirs.
+    casimirs: Vec<(String, Expr<'g>)>,
+    /// Those of them that are functions of the coordinates.
+    of_coordinates: Vec<(String, Expr<'g>)>,
+}
+
+impl<'g> Known<'g> {
+    fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
+        let system = equations.system();
+        let (graph, eta) = (system.graph(), system.quasi_velocities());
+        let variables = system.state();
+        let is_of_coordinates = |f: Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
+        let mut independent = vec![bind(system, equations.energy())];
+        let mut known = Known { integrals: Vec::new(), casimirs: Vec::new(), of_coordinates: Vec::new() };
+        for integral in integrals.iter().filter(|integral| integral.is_conserved() && !integral.is_energy()) {
+            let value = bind(system, integral.value);
+            independent.push(value);
+            let is_new = rank_of_gradients(graph, &independent, &variables) == independent.len();
+            if value.depends_on(system.frame().time()) || !is_new {
+                independent.pop();
+                continue;
+            }
+            let named = (integral.name.clone(), value);
+            if is_of_coordinates(value) {
+                known.of_coordinates.push(named.clone());
+            }
+            if integral.is_casimir() || is_of_coordinates(value) {
+                known.casimirs.push(named.clone());
+            }
+            known.integrals.push(named);
+        }
+        known
+    }
+
+    /// What a steady motion may have in common with the start, most first: a motion is compared with the steady
+    /// ones of the same integrals, if there are any (E. J. Routh).
+    fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
+        let mut choices = vec![self.integrals, self.casimirs, self.of_coordinates];
+        choices.dedup_by_key(|choice| choice.len());
+        choices
+    }
+}
+
+/// The states in which given functions have their values of the start.
+struct Surface<'g> {
+    graph: &'g Graph,
+    symbols: Vec<Expr<'g>>,
+    /// g_1, g_2, …, then ∂g_1/∂y_1, ∂g_1/∂y_2, …
+    expressions: Vec<Expr<'g>>,
+    values: Vec<f64>,
+}
+
+impl<'g> Surface<'g> {
+    /// If n − rank b of them are functions of the coordinates, as many as the frame keeps.
+    fn new(equations: &Equations<'g>, same: &[(String, Expr<'g>)], start: &[f64]) -> Option<Surface<'g>> {
+        let system = equations.system();
+        let (graph, x, eta) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
+        let symbols = system.state();
+        let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
+        let of_coordinates = |f: &Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
+        let relations: Vec<Expr<'g>> = functions.iter().copied().filter(of_coordinates).collect();
+        // Where velocities are bound the frame keeps no function that is not said to be a position.
+        let is_bound = system.structure().operators() != eta.len();
+        if !is_bound && rank_of_gradients(graph, &relations, x) != x.len() - system.frame().rank() {
+            return None;
+        }
+        let slopes = functions.iter().flat_map(|&f| graph.gradient(f, &symbols));
+        let expressions: Vec<Expr<'g>> = functions.iter().copied().chain(slopes).collect();
+        let mut surface = Surface { graph, values: vec![0.0; functions.len()], symbols, expressions };
+        surface.values = surface.at(start).ok()?.0;
+        Some(surface)
+    }
+
+    /// g(y) − g(start) and ∂g/∂y
+    fn at(&self, y: &[f64]) -> Result<(Vec<f64>, Matrix<f64>), ExprError> {
+        let state: Vec<_> = self.symbols.iter().copied().zip(y.iter().copied()).collect();
+        let numbers = self.graph.evaluate(&self.expressions, &state)?;
+        let (values, slopes) = numbers.split_at(self.values.len());
+        let distances = values.iter().zip(&self.values).map(|(value, start)| value - start).collect();
+        Ok((distances, Matrix::from_fn(values.len(), y.len(), |i, j| slopes[i * y.len() + j])))
+    }
+}
+
+impl NearbySteadyMotion {
+    /// The motion in names and numbers, unless it is farther from the start than the start is large.
+    fn new(
+        found: &SteadyMotion,
+        names: impl Iterator<Item = String>,
+        start: &[f64],
+        (rates, neutral): (Vec<(String, f64)>, Option<usize>),
+        same: Vec<String>,
+        second_variation: Option<EnergyCriterion>,
+    ) -> Option<NearbySteadyMotion> {
+        let all = names.zip(found.state.iter().zip(start));
+        let kept: Vec<_> = all.filter(|(name, _)| found.components.contains(name)).collect();
+        let norm = |numbers: Vec<f64>| numbers.iter().map(|z| z * z).sum::<f64>().sqrt();
+        let distance = norm(kept.iter().map(|(_, (y, start))| *y - *start).collect());
+        let size = 1.0 + norm(kept.iter().map(|(_, (_, start))| **start).collect());
+        (distance <= size).then(|| NearbySteadyMotion {
+            state: kept.into_iter().map(|(name, (&y, _))| (name, y)).collect(),
+            rates,
+            distance,
+            same,
+            eigenvalues: found.spectrum.eigenvalues().to_vec(),
+            tolerance: found.spectrum.tolerance(),
+            first_approximation: found.verdict(),
+            neutral,
+            second_variation,
+        })
+    }
+
+    /// What is known of stability, and by what.
+    pub fn stability(&self) -> Stability {
+        let proved = |second: &&EnergyCriterion| second.verdict == Verdict::Stable;
+        match (self.first_approximation, self.second_variation.as_ref().filter(proved)) {
+            (Verdict::Undecided, Some(second)) => {
+                Stability::BySecondVariation { variables: second.variables.clone() }
+            }
+            (Verdict::Undecided, None) => match self.neutral {
+                Some(directions) => Stability::AsymptoticBut { directions },
+                None => Stability::Undecided { second_variation: self.second_variation.is_some() },
+            },
+            (verdict, _) => Stability::ByFirstApproximation(verdict),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The equations of variation (Poincaré; Chetaev's equations of perturbed motion in the first approximation).
+
+use pc_expr::{Failure, TimeDependence, VectorField};
+use pc_mech::MechError;
+
+/// A motion together with deviations from it in the first approximation:
+///
+///   ẏ = f(t, y),   δ̇_a = (∂f/∂y) δ_a,   a = 1..m.
+///
+/// The state is (y, δ_1, …, δ_m), of n (m + 1) components. To first order in s, y + s δ is a neighbouring
+/// motion.
+#[derive(Clone, Debug)]
+pub struct Variation<F> {
+    field: F,
+    deviations: usize,
+}
+
+impl<F: VectorField> Variation<F> {
+    /// The motion of `field`, with `deviations` deviations from it.
+    ///
+    /// # Errors
+    /// [`MechError::NotCompiled`] if the field has no products with its Jacobian, as a
+    /// [`Motion`](pc_mech::Motion) has [on demand](pc_mech::CompileOptions::jvp).
+    pub fn new(field: F, deviations: usize) -> Result<Variation<F>, MechError> {
+        if field.has_jvp() {
+            Ok(Variation { field, deviations })
+        } else {
+            Err(MechError::NotCompiled { what: "products with the Jacobian" })
+        }
+    }
+
+    /// The field of y alone.
+    pub fn field(&self) -> &F {
+        &self.field
+    }
+}
+
+impl<F: VectorField> VectorField for Variation<F> {
+    fn dim(&self) -> usize {
+        self.field.dim() * (self.deviations + 1)
+    }
+
+    fn rhs(&mut self, t: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+        let n = self.field.dim();
+        let (y, deviations) = state.split_at(n);
+        let (ydot, rates) = rates.split_at_mut(n);
+        self.field.rhs(t, y, ydot)?;
+        for a in 0..self.deviations {
+            let own = a * n..(a + 1) * n;
+            self.field.jvp(t, y, &deviations[own.clone()], &mut rates[own])?;
+        }
+        Ok(())
+    }
+
+    fn breaks(&self) -> &[f64] {
+        self.field.breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        self.field.enter(t, end)
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        self.field.time_dependence()
+    }
+
+    /// The names of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component `x`.
+    fn component_name(&self, i: usize) -> String {
+        let n = self.field.dim().max(1);
+        let name = self.field.component_name(i % n);
+        if i < n { name } else { format!("δ{} {name}", i / n) }
+    }
+}
