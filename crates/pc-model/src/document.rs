@@ -1,6 +1,6 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
-//! In goes TOML, out comes a [`Document`](contents::Document). Read what comes out first: `expression`, with the places that
+//! In goes TOML, out comes a [`Document`]. Read what comes out first: `expression`, with the places that
 //! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `syntax` gives TOML,
 //! `reader` typed access to it; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
 //! must be true between them, and `parse` puts these together.
