@@ -567,3 +567,24 @@ fn forces_that_have_a_force_function_count_in_the_energy() {
     assert_eq!(dragged.forces(), [-vx, Expr::ZERO, Expr::ZERO]);
     assert_eq!(potential(&dragged), k * z);
 }
+
+/// The same where the frame has an irrational coefficient, with which products are rounded: a uniform force, and a spring.
+#[test]
+fn rounded_coefficients_leave_a_force_its_force_function() {
+    let graph = Graph::new();
+    let h = graph.symbol("h");
+    let height = -0.23 * h;
+    for (force, function) in [(Expr::ONE, height), (-2.0 * height, -height.square())] {
+        let system = System::builder(&graph)
+            .coordinates(["φ", "h"])
+            .quasi_velocities(["ω"])
+            // h = √(2 φ)
+            .kinematics(|_, x, eta| [eta[0], Expr::from(2.0).sqrt() * x[0].sqrt() / (2.0 * x[0]) * eta[0]])
+            .particle(|_, _, _| Particle::new(1.0, [Expr::ZERO, height]).force([Expr::ZERO, force]))
+            .build()
+            .unwrap();
+        assert_eq!(system.forces(), [Expr::ZERO], "{force}");
+        assert!((potential(&system) + function).is_zero(), "{}", potential(&system));
+        assert!(system.energy_rate().is_zero());
+    }
+}

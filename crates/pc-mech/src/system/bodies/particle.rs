@@ -1,6 +1,6 @@
 //! Mass points.
 
-use pc_expr::Expr;
+use pc_expr::{Expr, Number};
 
 use crate::error::{MechError, shape};
 use crate::system::bodies::moving::{Moving, Share};
@@ -114,6 +114,10 @@ impl<'g> Particle<'g> {
             return None;
         }
         let product = graph.dot(force.iter().copied(), self.position.iter().copied());
+        // Of a uniform force that needs no test, which rounding in the frame may fail.
+        if !force.iter().any(|f| moving.frame.coordinates().iter().any(|&x| f.depends_on(x))) {
+            return Some(product);
+        }
         let slopes: Vec<Expr<'g>> =
             (1..=moving.eta.len()).map(|s| moving.frame.apply(s, &[product])[0]).collect();
         let work = moving.work(force, displacements);
@@ -122,11 +126,19 @@ impl<'g> Particle<'g> {
             if slopes[s].is_zero() {
                 return None;
             }
-            factor = Expr::from((work[s] / slopes[s]).constant()?);
+            factor = Expr::from(simple((work[s] / slopes[s]).constant()?));
         }
         let is_exact = work.iter().zip(&slopes).all(|(&work, &slope)| (work - factor * slope).is_zero());
         is_exact.then(|| factor * product)
     }
+}
+
+/// The multiple of 1/12 that a quotient is but for rounding, as that of coefficients with √2 may be: 1/(d + 1) of the degrees d
+/// that forces have is one. Any other number is left as it is.
+fn simple(quotient: Number) -> Number {
+    let twelfths = (12.0 * quotient.to_f64()).round();
+    let is_near = (12.0 * quotient.to_f64() - twelfths).abs() <= 1e-13 * twelfths.abs();
+    if is_near && twelfths.abs() < 1e6 { Number::ratio(twelfths as i64, 12) } else { quotient }
 }
 
 /// The vector whose only component is the i-th of another.
