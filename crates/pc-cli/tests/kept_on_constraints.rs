@@ -45,19 +45,23 @@ fn a_bicycle_rides_at_every_speed() {
     let directory = tempfile::tempdir().expect("a directory");
     let [model, table] = ["bicycle.toml", "speeds.csv"].map(|name| directory.path().join(name));
     std::fs::write(&model, BICYCLE).expect("written");
-    let mut sweep = Command::new(env!("CARGO_BIN_EXE_pc"));
-    sweep.arg("sweep").arg(&model).args(["--vary", "v0=4:6:41", "-o"]).arg(&table);
-    assert!(sweep.stderr(Stdio::null()).status().expect("pc starts").success());
-    let text = std::fs::read_to_string(&table).expect("a table");
-    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
-    let [status, energy, drift] = ["status", "energy", "drift(energy)"]
-        .map(|name| names.iter().position(|known| *known == name).expect("a column"));
-    assert_eq!(text.lines().count(), 42);
-    for row in text.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
-        assert_eq!(row[status], "completed", "{row:?}");
-        let number = |j: usize| row[j].parse::<f64>().expect("a number");
-        // The error of the integration with rtol 1e-9, at most some ten times that in some hundred steps.
-        assert!(number(drift) < 1e-8 * number(energy).abs(), "{row:?}");
+    // The error of the integration in some hundred steps: it scatters from speed to speed by ten times and more, and falls
+    // with the tolerance, as what a projection lost would not.
+    for (tolerance, bound) in [("1e-9", 1e-8), ("1e-11", 1e-10)] {
+        let mut sweep = Command::new(env!("CARGO_BIN_EXE_pc"));
+        sweep.arg("sweep").arg(&model).args(["--vary", "v0=4:6:41", "--rtol", tolerance, "-o"]).arg(&table);
+        assert!(sweep.stderr(Stdio::null()).status().expect("pc starts").success());
+        let text = std::fs::read_to_string(&table).expect("a table");
+        let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+        let [status, energy, drift] = ["status", "energy", "drift(energy)"]
+            .map(|name| names.iter().position(|known| *known == name).expect("a column"));
+        assert_eq!(text.lines().count(), 42);
+        for row in text.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
+            assert_eq!(row[status], "completed", "{row:?}");
+            let number = |j: usize| row[j].parse::<f64>().expect("a number");
+            assert!(number(drift) < bound * number(energy).abs(), "{tolerance}: {row:?}");
+        }
+        std::fs::remove_file(&table).expect("the table is there");
     }
 }
 
