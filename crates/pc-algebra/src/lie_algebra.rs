@@ -9,6 +9,7 @@ pub(crate) mod bianchi;
 pub(crate) mod catalogue;
 pub(crate) mod families;
 pub(crate) mod invariant_forms;
+pub(crate) mod jacobi;
 pub(crate) mod killing;
 pub(crate) mod lie_algebra;
 pub(crate) mod matrix_algebra;

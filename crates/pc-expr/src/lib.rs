@@ -50,6 +50,7 @@ pub use graph::function::Function;
 pub use graph::graph::Graph;
 pub use graph::node::Folding;
 pub use graph::number::Number;
+pub use identity::blocks::independent_blocks;
 pub use identity::echelon::ResidueEchelon;
 pub use identity::prime_field::Residue;
 pub use kernel::evaluator::{Backend, Evaluator, compile};

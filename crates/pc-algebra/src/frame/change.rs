@@ -4,7 +4,7 @@ use pc_expr::Expr;
 
 use crate::error::AlgebraError;
 use crate::frame::frame::{Frame, shape};
-use crate::frame::structure::StructureCoefficients;
+use crate::frame::structure::{StructureCoefficients, pairs};
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
@@ -166,7 +166,7 @@ impl<'g> FrameChange<'g> {
         let (graph, k) = (self.to.graph(), self.drift.len());
         shape("the list of operators of the structure coefficients", c.operators(), k)?;
         let b: Vec<Vec<Expr<'g>>> = (0..=k).map(|s| self.old_components(s)).collect();
-        StructureCoefficients::from_pairs(k, |r, s| {
+        StructureCoefficients::from_pairs(k, pairs(k), |r, s| {
             let forth = self.to.apply(r, &b[s]);
             let back = self.to.apply(s, &b[r]);
             let along_old: Vec<Expr<'g>> = (1..=k)

@@ -1,14 +1,19 @@
 //! Finding and checking the structure coefficients of a frame (6), and its closure.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use pc_expr::{Expr, Number};
 
 use crate::error::AlgebraError;
 use crate::frame::frame::Frame;
 use crate::frame::structure::StructureCoefficients;
 use crate::identity::sample::{HIDDEN, Neighbourhood, TRIALS};
-use crate::lie_algebra::lie_algebra::check_jacobi;
+use crate::lie_algebra::jacobi::{check_jacobi, cyclic};
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
+
+/// The terms of the components m of Jacobi's identity, by the triple r < s < u.
+type JacobiDefects<'g> = BTreeMap<(usize, usize, usize), BTreeMap<usize, Vec<Expr<'g>>>>;
 
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
@@ -37,7 +42,7 @@ impl<'g> Frame<'g> {
             return self.constant_coefficients(rank, near);
         }
         let mut left_inverse = None;
-        StructureCoefficients::from_pairs(k, |r, s| {
+        StructureCoefficients::from_pairs(k, self.coupled_pairs(), |r, s| {
             let terms = self.commutator_terms(r, s);
             let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
             if commutator.iter().all(|x| x.is_zero()) {
@@ -68,9 +73,8 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> Result<(), AlgebraError> {
         self.check_dimension(structure)?;
-        let k = self.operators();
-        for (r, s) in pairs(k) {
-            let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
+        for (r, s) in self.pairs_with(structure) {
+            let c = structure.of_pair(r, s);
             let residual = self.residual(&self.commutator_terms(r, s), &c, near);
             if residual > Neighbourhood::ROUNDING {
                 return Err(AlgebraError::Contradiction { pair: (r, s), residual });
@@ -82,20 +86,17 @@ impl<'g> Frame<'g> {
     /// The largest residual of [X_r, X_s] = c_rs^m X_m relative to its terms, as
     /// [`Neighbourhood::residual`] measures it, over all pairs.
     pub fn closure_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
-        let k = self.operators();
-        pairs(k)
-            .map(|(r, s)| {
-                let c: Vec<Expr<'g>> = (1..=k).map(|m| structure.get(r, s, m)).collect();
-                self.residual(&self.commutator_terms(r, s), &c, near)
-            })
-            .fold(0.0, f64::max)
+        let residual = |(r, s)| self.residual(&self.commutator_terms(r, s), &structure.of_pair(r, s), near);
+        self.pairs_with(structure).into_iter().map(residual).fold(0.0, f64::max)
     }
 
     /// The largest defect of the Jacobi identity c_rs^p c_pu^m − X_u c_rs^m + cyclic = 0 for the operators
     /// 0..k, relative to its terms, as [`Neighbourhood::residual`] measures it.
     pub fn jacobi_residual(&self, structure: &StructureCoefficients<'g>, near: &Neighbourhood<'g>) -> f64 {
-        let defects = self.jacobi_defects(structure);
-        defects.map(|(_, defects)| near.residual(self.graph(), &defects)).fold(0.0, f64::max)
+        let residual = |defects: BTreeMap<usize, Vec<Expr<'g>>>| {
+            near.residual(self.graph(), &defects.into_values().collect::<Vec<_>>())
+        };
+        self.jacobi_defects(structure).into_values().map(residual).fold(0.0, f64::max)
     }
 
     /// Checks the Jacobi identity of given structure coefficients, X_u c_rs^m included.
@@ -110,11 +111,15 @@ impl<'g> Frame<'g> {
         self.check_dimension(structure)?;
         let graph = self.graph();
         if structure.are_constant() {
-            let number = |c: Expr<'g>| c.constant().unwrap_or(Number::UNDEFINED);
-            return check_jacobi(0..=self.operators(), |r, s, m| number(structure.get(r, s, m)));
+            let number =
+                |(r, s, m, c): (_, _, _, Expr<'g>)| (r, s, m, c.constant().unwrap_or(Number::UNDEFINED));
+            return check_jacobi(
+                self.operators(),
+                &structure.both_ways().into_iter().map(number).collect::<Vec<_>>(),
+            );
         }
         for (triple, defects) in self.jacobi_defects(structure) {
-            for (component, terms) in (1..).zip(defects) {
+            for (component, terms) in defects {
                 if near.residual(graph, std::slice::from_ref(&terms)) > Neighbourhood::ROUNDING {
                     let defect = graph.shorten(&[graph.sum(terms)], &[])[0].to_string();
                     return Err(AlgebraError::Jacobi { triple, component, defect });
@@ -130,26 +135,36 @@ impl<'g> Frame<'g> {
         if algebra == operators { Ok(()) } else { Err(AlgebraError::Dimension { algebra, operators }) }
     }
 
-    /// The terms of c_rs^p c_pu^m − X_u c_rs^m + cyclic, m = 1..k, for all r < s < u.
-    fn jacobi_defects<'a>(
-        &'a self,
-        structure: &'a StructureCoefficients<'g>,
-    ) -> impl Iterator<Item = ((usize, usize, usize), Vec<Vec<Expr<'g>>>)> + 'a {
-        let k = if structure.nonzero().next().is_none() { 0 } else { self.operators() };
-        let triples =
-            (0..=k).flat_map(move |r| (r + 1..=k).flat_map(move |s| (s + 1..=k).map(move |u| (r, s, u))));
-        triples.map(move |(r, s, u)| {
-            let cycles = [(r, s, u), (s, u, r), (u, r, s)];
-            let defect = |m: usize| -> Vec<Expr<'g>> {
-                let terms = cycles.iter().flat_map(|&(r, s, u)| {
-                    let transport = self.apply(u, &[structure.get(r, s, m)])[0];
-                    let nested = (1..=k).map(move |p| structure.get(r, s, p) * structure.get(p, u, m));
-                    nested.chain([-transport])
-                });
-                terms.filter(|term| !term.is_zero()).collect()
-            };
-            ((r, s, u), (1..=k).map(defect).collect())
-        })
+    /// The pairs r < s of 0..k whose commutator or brackets may not vanish.
+    fn pairs_with(&self, structure: &StructureCoefficients<'g>) -> BTreeSet<(usize, usize)> {
+        let given = structure.nonzero().map(|(r, s, ..)| (r, s));
+        self.coupled_pairs().into_iter().chain(given).collect()
+    }
+
+    /// The terms of c_rs^p c_pu^m − X_u c_rs^m + cyclic that are not 0, by r < s < u and by m.
+    fn jacobi_defects(&self, structure: &StructureCoefficients<'g>) -> JacobiDefects<'g> {
+        let all = structure.both_ways();
+        let mut of_first = vec![Vec::new(); self.operators() + 1];
+        for &(p, u, m, c) in &all {
+            of_first[p].push((u, m, c));
+        }
+        let mut defects = JacobiDefects::new();
+        let mut add = |(r, s, u), m, term: Expr<'g>| {
+            if let Some(triple) = cyclic(r, s, u).filter(|_| !term.is_zero()) {
+                defects.entry(triple).or_default().entry(m).or_default().push(term);
+            }
+        };
+        for &(r, s, p, first) in &all {
+            for &(u, m, second) in &of_first[p] {
+                add((r, s, u), m, first * second);
+            }
+        }
+        for &(r, s, m, c) in all.iter().filter(|(.., c)| c.constant().is_none()) {
+            for u in 0..=self.operators() {
+                add((r, s, u), m, -self.apply(u, &[c])[0]);
+            }
+        }
+        defects
     }
 
     /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
@@ -214,9 +229,4 @@ impl<'g> Frame<'g> {
         };
         near.residual(self.graph(), &y.iter().enumerate().map(difference).collect::<Vec<_>>())
     }
-}
-
-/// The pairs r < s of 0..=k.
-pub(crate) fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..=k).flat_map(move |r| (r + 1..=k).map(move |s| (r, s)))
 }

@@ -9,7 +9,6 @@ use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};
 
 use crate::error::AlgebraError;
-use crate::frame::closure::pairs;
 use crate::frame::frame::Frame;
 use crate::frame::structure::StructureCoefficients;
 use crate::identity::sample::Neighbourhood;
@@ -35,9 +34,10 @@ impl<'g> Frame<'g> {
         let k = self.operators();
         let operators: Vec<Vec<Expr<'g>>> = (1..=k).map(|s| self.operator(s)).collect();
         self.check_independent(rank, &operators, near)?;
-        let commutators: Vec<Vec<Expr<'g>>> = pairs(k).map(|(r, s)| self.commutator(r, s)).collect();
+        let pairs = self.coupled_pairs();
+        let commutators: Vec<Vec<Expr<'g>>> = pairs.iter().map(|&(r, s)| self.commutator(r, s)).collect();
         let mut found = self.combinations(&operators, &commutators, near).into_iter();
-        StructureCoefficients::from_pairs(k, |r, s| {
+        StructureCoefficients::from_pairs(k, pairs, |r, s| {
             let refusal = AlgebraError::RankDeficient { rank, operators: k, pair: (r, s) };
             found.next().flatten().ok_or(refusal)
         })

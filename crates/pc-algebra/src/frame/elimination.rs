@@ -3,9 +3,8 @@
 use pc_expr::Expr;
 
 use crate::error::AlgebraError;
-use crate::frame::closure::pairs;
 use crate::frame::frame::{Frame, shape};
-use crate::frame::structure::StructureCoefficients;
+use crate::frame::structure::{StructureCoefficients, pairs};
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::matrix::Matrix;
 
@@ -114,7 +113,7 @@ impl<'g> Elimination<'g> {
                 return Err(AlgebraError::NotClosed { pair: (r, s), residual });
             }
         }
-        StructureCoefficients::from_pairs(l, |r, s| {
+        StructureCoefficients::from_pairs(l, pairs(l), |r, s| {
             let terms = bracket(r, s);
             let inside: Vec<Expr<'g>> =
                 self.free.iter().map(|&m| graph.sum(terms[m].iter().copied())).collect();

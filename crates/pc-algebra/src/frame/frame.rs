@@ -1,5 +1,7 @@
 //! Frames of operators: ẋ = b η + b_0 (3), X_s = b_is ∂/∂x_i (4).
 
+use std::collections::{BTreeSet, HashMap};
+
 use pc_expr::{Expr, Graph};
 
 use crate::error::AlgebraError;
@@ -165,7 +167,8 @@ impl<'g> Frame<'g> {
         } else {
             self.coordinates.iter().copied().zip(self.b.column(s - 1)).collect()
         };
-        self.graph.directional(functions, &rates)
+        let moving: Vec<_> = rates.into_iter().filter(|(_, rate)| !rate.is_zero()).collect();
+        self.graph.directional(functions, &moving)
     }
 
     /// X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
@@ -183,6 +186,26 @@ impl<'g> Frame<'g> {
         let forth = self.apply(r, &self.operator(s));
         let back = self.apply(s, &self.operator(r));
         forth.into_iter().zip(back).map(|(forth, back)| [forth, -back]).collect()
+    }
+
+    /// The pairs r < s of 0..k whose commutator may not vanish, in order: one of the operators moves what the other's
+    /// components depend on.
+    pub(crate) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
+        let components: Vec<Vec<Expr<'g>>> = (0..=self.operators()).map(|s| self.operator(s)).collect();
+        let mut moved_by: HashMap<Option<String>, Vec<usize>> = HashMap::new();
+        moved_by.entry(self.time.symbol_name()).or_default().push(0);
+        for (s, components) in components.iter().enumerate() {
+            for (&x, _) in self.coordinates.iter().zip(components).filter(|(_, b)| !b.is_zero()) {
+                moved_by.entry(x.symbol_name()).or_default().push(s);
+            }
+        }
+        let mut coupled = BTreeSet::new();
+        for (s, components) in components.iter().enumerate() {
+            let seen = self.graph.symbols_of(components);
+            let movers = seen.iter().filter_map(|symbol| moved_by.get(&symbol.symbol_name())).flatten();
+            coupled.extend(movers.filter(|&&r| r != s).map(|&r| (r.min(s), r.max(s))));
+        }
+        coupled.into_iter().collect()
     }
 
     /// The components b_is of X_s, the drift for s = 0.

@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 use pc_expr::Expr;
 
-use crate::frame::closure::pairs;
 use crate::frame::frame::Frame;
 use crate::identity::running_error::Weighed;
 use crate::identity::sample::{Neighbourhood, TRIALS};
@@ -56,7 +55,7 @@ impl<'g> Frame<'g> {
     pub fn integrability(&self, near: &Neighbourhood<'g>) -> Integrability {
         let columns = self.b().transpose().to_rows();
         let rank = self.graph().generic_rank(&columns);
-        for pair in pairs(self.operators()) {
+        for pair in self.coupled_pairs() {
             let terms = self.commutator_terms(pair.0, pair.1);
             let commutator: Vec<Expr<'g>> = terms.iter().map(|&[forth, back]| forth + back).collect();
             if commutator.iter().all(|x| x.is_zero()) {

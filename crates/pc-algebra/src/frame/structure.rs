@@ -1,19 +1,18 @@
 //! Structure coefficients of a frame.
 
-use std::convert::Infallible;
-
 use pc_expr::{Expr, Graph, Number};
 
 use crate::error::AlgebraError;
-use crate::lie_algebra::lie_algebra::{LieAlgebra, check_jacobi};
+use crate::lie_algebra::jacobi::check_jacobi;
+use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 /// The coefficients of [X_r, X_s] = c_rs^m X_m (5), for r, s = 0..k and m = 1..k; index 0 is time, c_rs^0 =
 /// 0.
 #[derive(Clone, Debug)]
 pub struct StructureCoefficients<'g> {
     operators: usize,
-    /// c_rs^m for r < s, at (r·(k+1) + s)·k + (m − 1).
-    upper: Vec<Expr<'g>>,
+    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): of k³ coefficients a frame has few.
+    nonzero: Vec<(usize, usize, usize, Expr<'g>)>,
 }
 
 impl<'g> StructureCoefficients<'g> {
@@ -36,31 +35,33 @@ impl<'g> StructureCoefficients<'g> {
     /// assert_eq!(c.get(2, 0, 1), rate);
     /// ```
     pub fn new(operators: usize, c: impl Fn(usize, usize, usize) -> Expr<'g>) -> StructureCoefficients<'g> {
-        let pair = |r: usize, s: usize| -> Result<Vec<Expr<'g>>, Infallible> {
-            Ok((0..operators).map(|m| c(r, s, m)).collect())
-        };
-        match StructureCoefficients::from_pairs(operators, pair) {
-            Ok(structure) => structure,
-            Err(never) => match never {},
-        }
+        let indices = pairs(operators).flat_map(|(r, s)| (0..operators).map(move |m| (r, s, m)));
+        StructureCoefficients::from_nonzero(operators, indices.map(|(r, s, m)| (r, s, m + 1, c(r, s, m))))
     }
 
-    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for r < s, r from 0.
+    /// The coefficients with c_rs^m for the (r, s, m) that are listed, r ≠ s from 0 and m from 1, none twice; the others are 0.
+    pub(crate) fn from_nonzero(
+        operators: usize,
+        listed: impl IntoIterator<Item = (usize, usize, usize, Expr<'g>)>,
+    ) -> StructureCoefficients<'g> {
+        let ordered =
+            |(r, s, m, c): (usize, usize, usize, Expr<'g>)| if r < s { (r, s, m, c) } else { (s, r, m, -c) };
+        let mut nonzero: Vec<_> = listed.into_iter().filter(|(.., c)| !c.is_zero()).map(ordered).collect();
+        nonzero.sort_unstable_by_key(|&(r, s, m, _)| (r, s, m));
+        StructureCoefficients { operators, nonzero }
+    }
+
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; the others commute.
     pub(crate) fn from_pairs<E>(
         operators: usize,
+        pairs: impl IntoIterator<Item = (usize, usize)>,
         mut c: impl FnMut(usize, usize) -> Result<Vec<Expr<'g>>, E>,
     ) -> Result<StructureCoefficients<'g>, E> {
-        let mut upper = Vec::with_capacity((operators + 1) * (operators + 1) * operators);
-        for r in 0..=operators {
-            for s in 0..=operators {
-                if r < s {
-                    upper.extend(c(r, s)?);
-                } else {
-                    upper.extend((0..operators).map(|_| Expr::ZERO));
-                }
-            }
+        let mut listed = Vec::new();
+        for (r, s) in pairs {
+            listed.extend(c(r, s)?.into_iter().enumerate().map(|(m, c)| (r, s, m + 1, c)));
         }
-        Ok(StructureCoefficients { operators, upper })
+        Ok(StructureCoefficients::from_nonzero(operators, listed))
     }
 
     /// The coefficients of the same operators in another order: `order` is a permutation of 0..k.
@@ -69,24 +70,24 @@ impl<'g> StructureCoefficients<'g> {
     /// If it is not.
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> StructureCoefficients<'g> {
-        let old = |s: usize| if s == 0 { 0 } else { order[s - 1] + 1 };
-        StructureCoefficients::new(self.operators, |r, s, m| self.get(old(r), old(s), old(m + 1)))
+        let mut new = vec![0; order.len() + 1];
+        order.iter().enumerate().for_each(|(new_place, &old)| new[old + 1] = new_place + 1);
+        let moved = self.nonzero.iter().map(|&(r, s, m, c)| (new[r], new[s], new[m], c));
+        StructureCoefficients::from_nonzero(self.operators, moved)
     }
 
     /// The coefficients c_rs^m with r, s, m ≤ `operators`, as many as there are at most.
     #[must_use]
     pub fn restricted(&self, operators: usize) -> StructureCoefficients<'g> {
-        let operators = operators.min(self.operators);
-        StructureCoefficients::new(operators, |r, s, m| self.get(r, s, m + 1))
+        let kept = self.nonzero.iter().copied().filter(|&(_, s, m, _)| s.max(m) <= operators);
+        StructureCoefficients::from_nonzero(operators.min(self.operators), kept)
     }
 
-    /// The coefficients passed through `f`.
+    /// The coefficients passed through `f`, which keeps 0.
     #[must_use]
-    pub fn map(&self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
-        StructureCoefficients {
-            operators: self.operators,
-            upper: self.upper.iter().copied().map(f).collect(),
-        }
+    pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
+        let mapped = self.nonzero.iter().map(|&(r, s, m, c)| (r, s, m, f(c)));
+        StructureCoefficients::from_nonzero(self.operators, mapped)
     }
 
     /// Number k of operators, time not counted.
@@ -102,8 +103,11 @@ impl<'g> StructureCoefficients<'g> {
     /// # Panics
     /// If an index is out of range.
     pub fn get(&self, r: usize, s: usize, m: usize) -> Expr<'g> {
-        let k = self.operators;
-        let at = |r: usize, s: usize| self.upper[(r * (k + 1) + s) * k + m - 1];
+        assert!(r.max(s) <= self.operators && (1..=self.operators).contains(&m), "an index is out of range");
+        let at = |r: usize, s: usize| {
+            let place = self.nonzero.binary_search_by_key(&(r, s, m), |&(r, s, m, _)| (r, s, m));
+            place.map_or(Expr::ZERO, |place| self.nonzero[place].3)
+        };
         match r.cmp(&s) {
             std::cmp::Ordering::Less => at(r, s),
             std::cmp::Ordering::Equal => Expr::ZERO,
@@ -113,30 +117,37 @@ impl<'g> StructureCoefficients<'g> {
 
     /// The coefficients that are not 0, as (r, s, m, c_rs^m) with r < s.
     pub fn nonzero(&self) -> impl Iterator<Item = (usize, usize, usize, Expr<'g>)> + '_ {
-        let k = self.operators;
-        (0..=k)
-            .flat_map(move |r| (r + 1..=k).flat_map(move |s| (1..=k).map(move |m| (r, s, m))))
-            .map(|(r, s, m)| (r, s, m, self.get(r, s, m)))
-            .filter(|(.., c)| !c.is_zero())
+        self.nonzero.iter().copied()
+    }
+
+    /// (c_rs^1, …, c_rs^k)
+    pub(crate) fn of_pair(&self, r: usize, s: usize) -> Vec<Expr<'g>> {
+        let mut c = vec![Expr::ZERO; self.operators];
+        let first = self.nonzero.partition_point(|&(p, q, ..)| (p, q) < (r, s));
+        let listed = self.nonzero[first..].iter().take_while(|&&(p, q, ..)| (p, q) == (r, s));
+        listed.for_each(|&(.., m, value)| c[m - 1] = value);
+        c
+    }
+
+    /// The c_rs^m that are not 0, (s, r, m) as well as (r, s, m), in order.
+    pub(crate) fn both_ways(&self) -> Vec<(usize, usize, usize, Expr<'g>)> {
+        let mut all: Vec<_> =
+            self.nonzero.iter().flat_map(|&(r, s, m, c)| [(r, s, m, c), (s, r, m, -c)]).collect();
+        all.sort_unstable_by_key(|&(r, s, m, _)| (r, s, m));
+        all
     }
 
     /// Whether all are constants: then the X_s form a Lie algebra.
     pub fn are_constant(&self) -> bool {
-        self.upper.iter().all(|c| c.constant().is_some())
+        self.nonzero.iter().all(|(.., c)| c.constant().is_some())
     }
 
     /// The algebra of X_1..X_k, if its coefficients are constant.
     pub fn lie_algebra(&self) -> Option<LieAlgebra> {
-        let k = self.operators;
-        let mut constants = Vec::with_capacity(k * k * k);
-        for r in 1..=k {
-            for s in 1..=k {
-                for m in 1..=k {
-                    constants.push(self.get(r, s, m).constant()?);
-                }
-            }
-        }
-        Some(LieAlgebra::from_constants(k, |r, s, m| constants[(r * k + s) * k + m]))
+        let constants = self.nonzero.iter().map(|&(r, s, m, c)| Some((r, s, m, c.constant()?)));
+        let constants: Vec<_> = constants.collect::<Option<_>>()?;
+        let stationary = constants.into_iter().filter(|&(r, ..)| r > 0);
+        Some(LieAlgebra::from_upper(self.operators, stationary.map(|(r, s, m, c)| (r - 1, s - 1, m - 1, c))))
     }
 
     /// v_s = (c_rs^m η_r + c_0s^m) p_m for s = 1..k, the terms that brackets give the equations (9).
@@ -161,7 +172,7 @@ impl<'g> StructureCoefficients<'g> {
 impl LieAlgebra {
     /// The structure coefficients of a stationary frame with this algebra (all c_0s = 0).
     pub fn structure_coefficients<'g>(&self) -> StructureCoefficients<'g> {
-        self.and_drift(|_, _| Number::ZERO)
+        self.and_drift(&[])
     }
 
     /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
@@ -183,18 +194,31 @@ impl LieAlgebra {
         &self,
         drift: impl Fn(usize, usize) -> Number,
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
-        check_jacobi(0..=self.dim(), |r, s, m| match (r, s) {
-            (0, 0) => Number::ZERO,
-            (0, s) => drift(s - 1, m - 1),
-            (r, 0) => -drift(r - 1, m - 1),
-            (r, s) => self.constant(r - 1, s - 1, m - 1),
-        })?;
-        Ok(self.and_drift(drift))
+        let drift = self.drift(&drift);
+        let stationary = self.nonzero().map(|(r, s, m, c)| (r + 1, s + 1, m + 1, c));
+        let opposite = drift.iter().map(|&(s, m, c)| (s, 0, m, -c));
+        let all: Vec<_> =
+            drift.iter().map(|&(s, m, c)| (0, s, m, c)).chain(opposite).chain(stationary).collect();
+        check_jacobi(self.dim(), &all)?;
+        Ok(self.and_drift(&drift))
     }
 
-    fn and_drift<'g>(&self, drift: impl Fn(usize, usize) -> Number) -> StructureCoefficients<'g> {
-        StructureCoefficients::new(self.dim(), |r, s, m| {
-            if r == 0 { drift(s - 1, m) } else { self.constant(r - 1, s - 1, m) }.into()
-        })
+    /// The c_0s^m that are not 0, s and m from 1.
+    fn drift(&self, drift: impl Fn(usize, usize) -> Number) -> Vec<(usize, usize, Number)> {
+        let k = self.dim();
+        let all = (0..k).flat_map(|s| (0..k).map(move |m| (s, m)));
+        all.map(|(s, m)| (s + 1, m + 1, drift(s, m))).filter(|(.., c)| !c.is_zero()).collect()
     }
+
+    fn and_drift<'g>(&self, drift: &[(usize, usize, Number)]) -> StructureCoefficients<'g> {
+        let stationary = self.nonzero().filter(|(r, s, ..)| r < s);
+        let stationary = stationary.map(|(r, s, m, c)| (r + 1, s + 1, m + 1, c.into()));
+        let drift = drift.iter().map(|&(s, m, c)| (0, s, m, c.into()));
+        StructureCoefficients::from_nonzero(self.dim(), drift.chain(stationary))
+    }
+}
+
+/// The pairs r < s of 0..=k.
+pub(crate) fn pairs(k: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..=k).flat_map(move |r| (r + 1..=k).map(move |s| (r, s)))
 }

@@ -1,6 +1,6 @@
 //! Numerical values of expressions at pseudo-random points, for tests that the graph cannot decide exactly.
 
-use pc_expr::{Expr, Function, Graph, Scalar};
+use pc_expr::{Expr, Function, Graph, Scalar, independent_blocks};
 
 use crate::identity::running_error::Weighed;
 
@@ -124,7 +124,13 @@ impl<'g> Neighbourhood<'g> {
             return None;
         }
         let samples = self.weighed(graph, &rows.concat(), TRIALS);
-        samples.into_iter().map(|entries| rank(&entries, columns)).max()
+        let entries = |row: &Vec<Expr<'g>>| (0..columns).filter(|&j| !row[j].is_zero()).collect();
+        let blocks = independent_blocks(columns, &rows.iter().map(entries).collect::<Vec<_>>());
+        let of_block = |sample: &[Weighed], (i, j): &(Vec<usize>, Vec<usize>)| {
+            rank(i.iter().map(|i| j.iter().map(|j| sample[i * columns + j]).collect()).collect(), j.len())
+        };
+        let of_sample = |sample: Vec<Weighed>| blocks.iter().map(|block| of_block(&sample, block)).sum();
+        samples.into_iter().map(of_sample).max()
     }
 
     /// Values at up to `count` points where all outputs are finite.
@@ -160,8 +166,7 @@ fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
 }
 
 /// The rank of a matrix of that many columns, by elimination with complete pivoting; what is no more than rounding is zero.
-fn rank(entries: &[Weighed], columns: usize) -> usize {
-    let mut rows: Vec<Vec<Weighed>> = entries.chunks(columns.max(1)).map(<[Weighed]>::to_vec).collect();
+fn rank(mut rows: Vec<Vec<Weighed>>, columns: usize) -> usize {
     let mut open: Vec<usize> = (0..columns).collect();
     let total = rows.len();
     while !rows.is_empty() {

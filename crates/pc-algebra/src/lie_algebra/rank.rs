@@ -68,10 +68,8 @@ impl LieAlgebra {
     /// The structure constants that are not 0, modulo the prime.
     fn residues(&self) -> Result<Vec<(usize, usize, usize, Residue)>, AlgebraError> {
         self.exact()?; // names a constant that is not rational
-        let nonzero = self.indices().filter(|&(r, s, m)| !self.constant(r, s, m).is_zero());
-        Ok(nonzero
-            .filter_map(|(r, s, m)| Some((r, s, m, Residue::of_number(self.constant(r, s, m))?)))
-            .collect())
+        let residue = |(r, s, m, c)| Some((r, s, m, Residue::of_number(c)?));
+        Ok(self.nonzero().filter_map(residue).collect())
     }
 }
 

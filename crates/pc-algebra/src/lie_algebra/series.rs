@@ -13,7 +13,7 @@ use crate::linear_algebra::echelon::Echelon;
 impl LieAlgebra {
     /// Whether all brackets are 0.
     pub fn is_abelian(&self) -> bool {
-        self.indices().all(|(r, s, m)| self.constant(r, s, m).is_zero())
+        self.nonzero().next().is_none()
     }
 
     /// The centre {x : [x, y] = 0 for all y}, the solutions of c_rs^m x_r = 0.

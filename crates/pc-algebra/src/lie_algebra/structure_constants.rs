@@ -122,8 +122,7 @@ impl LieAlgebra {
     /// [`AlgebraError::NotRational`] naming the first constant that is a rounded real.
     pub(crate) fn exact(&self) -> Result<ExactConstants, AlgebraError> {
         let mut pairs = vec![Vec::new(); self.dim() * self.dim()];
-        for (r, s, m) in self.indices().filter(|&(r, s, m)| !self.constant(r, s, m).is_zero()) {
-            let value = self.constant(r, s, m);
+        for (r, s, m, value) in self.nonzero() {
             let c = exact(value).ok_or_else(|| AlgebraError::NotRational {
                 r: r + 1,
                 s: s + 1,

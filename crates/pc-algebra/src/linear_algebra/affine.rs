@@ -23,7 +23,7 @@ pub fn affine<'g>(
     symbols: &[Expr<'g>],
 ) -> Option<(Vec<Expr<'g>>, Expr<'g>)> {
     let slopes = graph.gradient(value, symbols);
-    let known = smooth(graph, value, symbols) && !depend(&slopes, symbols);
+    let known = smooth(graph, value, symbols) && !depend(graph, &slopes, symbols);
     let (coefficients, rest) = at_zero(graph, &slopes, value, symbols)?;
     let polynomial = || rest + graph.dot(coefficients.iter().copied(), symbols.iter().copied());
     (known || vanishes(graph, value - polynomial())).then_some((coefficients, rest))
@@ -55,7 +55,7 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
     let k = symbols.len();
     let slopes = graph.gradient(value, symbols);
     let curvatures: Vec<Expr<'g>> = slopes.iter().flat_map(|&slope| graph.gradient(slope, symbols)).collect();
-    let known = smooth(graph, value, symbols) && !depend(&curvatures, symbols);
+    let known = smooth(graph, value, symbols) && !depend(graph, &curvatures, symbols);
     let (mut parts, constant) = at_zero(graph, &[curvatures, slopes].concat(), value, symbols)?;
     let linear = parts.split_off(k * k);
     let matrix = Matrix::from_fn(k, k, |r, s| parts[r.max(s) * k + r.min(s)]);
@@ -87,8 +87,10 @@ fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
     !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }
 
-fn depend<'g>(values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {
-    values.iter().any(|value| symbols.iter().any(|&symbol| value.depends_on(symbol)))
+fn depend<'g>(graph: &'g Graph, values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {
+    let written: Vec<Expr<'g>> =
+        graph.symbols_of(values).into_iter().filter(|symbol| symbols.contains(symbol)).collect();
+    values.iter().any(|value| written.iter().any(|&symbol| value.depends_on(symbol)))
 }
 
 /// Whether an expression is zero by its value, also where the graph merges only what is written alike.

@@ -1,6 +1,6 @@
 //! Inverses of matrices of expressions that are singular only where the matrix is.
 
-use pc_expr::{Expr, Graph, Number};
+use pc_expr::{Expr, Graph, Number, independent_blocks};
 
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::block_triangular::block_triangular;
@@ -22,7 +22,32 @@ const ROUNDING: f64 = 1e-13;
 /// determinant, larger ones by orthogonalisation: no divisor vanishes where the matrix is regular,
 /// whatever the state. Constants that cancel but for rounding are zero; so is a divisor that is nothing but rounding at
 /// random points, though the graph does not know it.
+///
+/// Rows and columns that have nothing to do with each other are inverted apart.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
+    let n = matrix.rows();
+    let entries = |i: usize| (0..n).filter(|&j| !matrix[(i, j)].is_zero()).collect();
+    let blocks = independent_blocks(n, &(0..n).map(entries).collect::<Vec<_>>());
+    if blocks.iter().map(|(rows, _)| rows.len()).sum::<usize>() < n {
+        return None;
+    }
+    let mut result = Matrix::from_fn(n, n, |_, _| Expr::ZERO);
+    for (rows, columns) in blocks {
+        if rows.len() != columns.len() {
+            return None;
+        }
+        let block = Matrix::from_fn(rows.len(), rows.len(), |i, j| matrix[(rows[i], columns[j])]);
+        let inverted = inverse_of_block(graph, &block)?;
+        for (j, &column) in columns.iter().enumerate() {
+            for (i, &row) in rows.iter().enumerate() {
+                result[(column, row)] = inverted[(j, i)];
+            }
+        }
+    }
+    Some(result)
+}
+
+fn inverse_of_block<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let n = matrix.rows();
     let mut work = Elimination::new(graph, matrix);
     while let Some(pivot) = work.constant_pivot() {

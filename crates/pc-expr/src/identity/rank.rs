@@ -5,20 +5,29 @@
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
 use crate::graph::node::Atom;
+use crate::identity::blocks::independent_blocks;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::Value;
 
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.
     pub fn generic_rank<'g>(&'g self, rows: &[Vec<Expr<'g>>]) -> usize {
+        let entries = |row: &Vec<Expr<'g>>| (0..row.len()).filter(|&j| !row[j].is_zero()).collect();
+        let entries: Vec<Vec<usize>> = rows.iter().map(entries).collect();
+        let blocks = independent_blocks(rows.first().map_or(0, Vec::len), &entries);
+        blocks.iter().map(|(i, j)| self.rank_of_block(rows, i, j)).sum()
+    }
+
+    /// The rank of some rows and columns of a matrix.
+    fn rank_of_block<'g>(&'g self, rows: &[Vec<Expr<'g>>], of_rows: &[usize], of_columns: &[usize]) -> usize {
         self.with(|dag| {
             let value = |x: &Expr<'g>| match x.atom() {
                 Atom::Constant(c) => Fingerprint::constant(c).into(),
                 Atom::Node(id) => dag.value(id),
             };
-            let mut rows: Vec<Vec<Value>> = rows.iter().map(|row| row.iter().map(value).collect()).collect();
-            let roots = dag.roots_mut();
-            let columns = rows.first().map_or(0, Vec::len);
+            let row = |&i: &usize| of_columns.iter().map(|&j| value(&rows[i][j])).collect();
+            let mut rows: Vec<Vec<Value>> = of_rows.iter().map(row).collect();
+            let (roots, columns) = (dag.roots_mut(), of_columns.len());
             let mut rank = 0;
             for column in 0..columns {
                 let Some(pivot) = (rank..rows.len()).find(|&r| !rows[r][column].is_zero()) else {

@@ -1,9 +1,11 @@
 //! First-order systems whose rates contain the solution of linear equations.
 
+use std::collections::{BTreeSet, HashMap};
+
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph, Inputs, Pattern};
 
-use crate::compiled::elimination::columns::nonzeros;
+use crate::compiled::elimination::columns::{SparseColumn, nonzeros, sparse};
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::equations::poincare::Equations;
 
@@ -95,7 +97,7 @@ impl<'g> FirstOrder<'g> {
         let k = self.unknowns.len();
         let column =
             |j| (0..k).map(|i| if i < j { Expr::ZERO } else { self.mass[(i, j)] }).collect::<Vec<_>>();
-        nonzeros(k, &(0..k).map(column).collect::<Vec<_>>())
+        nonzeros(k, (0..k).map(|j| sparse(&column(j))))
     }
 
     /// F = r − M w or r − p, in t, y and w.
@@ -173,8 +175,10 @@ pub(crate) struct Linearised<'a, 'g> {
     factors: &'a Factors<'g>,
     /// g, then F.
     rows: Vec<Expr<'g>>,
-    /// ∂g/∂w
-    coupling: Vec<Vec<Expr<'g>>>,
+    /// The rows that each symbol stands in, by its name.
+    rows_with: HashMap<Option<String>, Vec<usize>>,
+    /// ∂g/∂w: what is not 0 in each row, with its column.
+    coupling: Vec<SparseColumn<'g>>,
     /// The symbols w with their expressions in t and y.
     values: Vec<(Expr<'g>, Expr<'g>)>,
 }
@@ -188,23 +192,42 @@ impl<'a, 'g> Linearised<'a, 'g> {
     ) -> Linearised<'a, 'g> {
         let graph = system.graph;
         let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns.iter().copied()).collect();
-        let coupling = system.coupling().iter().map(|row| graph.substitute(row, &values)).collect();
-        let rows = system.rates.iter().copied().chain(system.balance()).collect();
-        Linearised { graph, factors, rows, coupling, values }
+        let nonzero = |row: &Vec<Expr<'g>>| sparse(&graph.substitute(row, &values));
+        let coupling = system.coupling().iter().map(nonzero).collect();
+        let rows: Vec<Expr<'g>> = system.rates.iter().copied().chain(system.balance()).collect();
+        let mut rows_with: HashMap<_, Vec<usize>> = HashMap::new();
+        for (place, &row) in rows.iter().enumerate() {
+            for symbol in graph.symbols_of(&[row]) {
+                rows_with.entry(symbol.symbol_name()).or_default().push(place);
+            }
+        }
+        Linearised { graph, factors, rows, rows_with, coupling, values }
     }
 
     /// ẏ′ when each symbol of `direction` changes at the rate beside it.
     pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let graph = self.graph;
-        let change = graph.substitute(&graph.directional(&self.rows, direction), &self.values);
+        let places = direction.iter().filter_map(|(symbol, _)| self.rows_with.get(&symbol.symbol_name()));
+        let places: BTreeSet<usize> = places.flatten().copied().collect();
+        let moved: Vec<Expr<'g>> = places.iter().map(|&place| self.rows[place]).collect();
+        let moved = graph.substitute(&graph.directional(&moved, direction), &self.values);
+        let mut change = vec![Expr::ZERO; self.rows.len()];
+        places.into_iter().zip(moved).for_each(|(place, moved)| change[place] = moved);
         let (rates, balance) = change.split_at(self.coupling.len());
         let unknowns = self.factors.solve(graph, balance);
-        let through = |row: &[Expr<'g>]| graph.dot(row.iter().copied(), unknowns.iter().copied());
-        rates.iter().zip(&self.coupling).map(|(&rate, row)| graph.sum([rate, through(row)])).collect()
+        let through = |row: &SparseColumn<'g>| -> Vec<Expr<'g>> {
+            let terms = row.iter().filter(|&&(column, _)| !unknowns[column].is_zero());
+            terms.map(|&(column, coefficient)| coefficient * unknowns[column]).collect()
+        };
+        let total = |(&rate, row): (&Expr<'g>, &SparseColumn<'g>)| match through(row) {
+            terms if terms.is_empty() => rate,
+            terms => graph.sum([rate, graph.sum(terms)]),
+        };
+        rates.iter().zip(&self.coupling).map(total).collect()
     }
 
     /// ∂ẏ/∂q for each symbol q of `symbols`, column after column.
-    pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
-        symbols.iter().map(|&symbol| self.along(&[(symbol, Expr::ONE)])).collect()
+    pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<SparseColumn<'g>> {
+        symbols.iter().map(|&symbol| sparse(&self.along(&[(symbol, Expr::ONE)]))).collect()
     }
 }

@@ -119,11 +119,15 @@ impl<'g> Equations<'g> {
             &motion,
             |i| (format!("[{i}]"), rates[i].clone()),
         )?];
+        let mut jacobian = vec![Expr::ZERO; dim * dim];
+        for (j, column) in linearised.columns(&writer.system.state).into_iter().enumerate() {
+            column.into_iter().for_each(|(i, entry)| jacobian[i + dim * j] = entry);
+        }
         routines.push(writer.routine(
             "jacobian",
             format!("the Jacobian of `rhs`, column after column: `jac[i + {dim}*j] = ∂ydot[i]/∂y[j]`"),
             ("jac", Extent::StateSquared),
-            &linearised.columns(&writer.system.state).concat(),
+            &jacobian,
             |e| {
                 let (i, j) = (e % dim, e / dim);
                 (format!("[{i} + {dim}*{j}]"), format!("∂{}/∂{}", rates[i], state[j]))

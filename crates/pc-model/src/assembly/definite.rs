@@ -20,10 +20,14 @@ impl<'g> Assembly<'g> {
         let at = [system.parameters(), &self.at_start()].concat();
         let Ok(values) = graph.evaluate(&expressions, &at) else { return false };
         let (mass, constraints) = values.split_at(k * k);
-        let allowed = complement(constraints.chunks(k.max(1)), k);
-        let entry =
-            |u: &[f64], v: &[f64]| (0..k).map(|r| u[r] * dot(&mass[r * k..(r + 1) * k], v)).sum::<f64>();
-        is_negative_somewhere(allowed.iter().map(|u| allowed.iter().map(|v| entry(u, v)).collect()).collect())
+        let form: Vec<Vec<f64>> = mass.chunks(k.max(1)).map(<[f64]>::to_vec).collect();
+        if constraints.is_empty() {
+            return is_negative_somewhere(form);
+        }
+        let allowed = complement(constraints.chunks(k), k);
+        let momenta: Vec<Vec<f64>> =
+            allowed.iter().map(|v| form.iter().map(|row| dot(row, v)).collect()).collect();
+        is_negative_somewhere(allowed.iter().map(|u| momenta.iter().map(|p| dot(u, p)).collect()).collect())
     }
 }
 
@@ -34,11 +38,11 @@ fn dot(u: &[f64], v: &[f64]) -> f64 {
 /// An orthonormal basis of the vectors of k components that are normal to all rows (Gram–Schmidt).
 fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut add = |vector: &[f64]| {
+    let add = |basis: &mut Vec<Vec<f64>>, vector: &[f64]| {
         let mut rest = vector.to_vec();
         // Twice is enough.
         for _ in 0..2 {
-            for known in &basis {
+            for known in basis.iter() {
                 let share = dot(&rest, known);
                 rest.iter_mut().zip(known).for_each(|(x, known)| *x -= share * known);
             }
@@ -48,15 +52,12 @@ fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f6
             basis.push(rest.iter().map(|x| x / length).collect());
         }
     };
-    let mut normals = 0;
-    for row in rows {
-        add(row);
-        normals += 1;
-    }
+    rows.for_each(|row| add(&mut basis, row));
+    let normals = basis.len(); // rows that depend on others add none
     for i in 0..k {
-        add(&(0..k).map(|j| f64::from(u8::from(i == j))).collect::<Vec<_>>());
+        add(&mut basis, &(0..k).map(|j| f64::from(u8::from(i == j))).collect::<Vec<_>>());
     }
-    basis.split_off(normals.min(basis.len()))
+    basis.split_off(normals)
 }
 
 /// Whether Gauss's elimination meets a negative pivot before one that vanishes.
@@ -72,8 +73,10 @@ fn is_negative_somewhere(mut form: Vec<Vec<f64>>) -> bool {
         }
         for i in p + 1..form.len() {
             let share = form[i][p] / pivot;
-            for j in p..form.len() {
-                form[i][j] -= share * form[p][j];
+            if share != 0.0 {
+                for j in p..form.len() {
+                    form[i][j] -= share * form[p][j];
+                }
             }
         }
     }
@@ -94,5 +97,10 @@ mod tests {
         let basis = complement([&rows[..]].into_iter(), 3);
         assert_eq!(basis.len(), 2);
         assert!(basis.iter().all(|v| dot(v, &rows).abs() < 1e-15));
+        assert_eq!(
+            complement([&rows[..], &rows[..]].into_iter(), 3).len(),
+            2,
+            "a row that follows binds nothing"
+        );
     }
 }

@@ -32,13 +32,23 @@ pub(crate) fn derivative<'g>(
     Ok(Evaluator::new(program, if long { Backend::Interpreter } else { backend }))
 }
 
+/// What is not 0 of a column, with the row where it stands; or of a row, with its column.
+pub(crate) type SparseColumn<'g> = Vec<(usize, Expr<'g>)>;
+
+/// What is not 0 of a column.
+pub(crate) fn sparse<'g>(column: &[Expr<'g>]) -> SparseColumn<'g> {
+    column.iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect()
+}
+
 /// The places of a matrix that are not zero everywhere, and what stands there, column after column.
-pub(crate) fn nonzeros<'g>(rows: usize, columns: &[Vec<Expr<'g>>]) -> (Pattern, Vec<Expr<'g>>) {
-    let pattern = Pattern::from_columns(
-        rows,
-        columns.iter().map(|column| (0..rows).filter(|&i| !column[i].is_zero()).collect::<Vec<_>>()),
-    );
-    let values = pattern.entries().map(|(i, j)| columns[j][i]).collect();
+pub(crate) fn nonzeros<'g>(
+    rows: usize,
+    columns: impl IntoIterator<Item = SparseColumn<'g>>,
+) -> (Pattern, Vec<Expr<'g>>) {
+    let columns: Vec<SparseColumn<'g>> = columns.into_iter().collect();
+    let places = columns.iter().map(|column| column.iter().map(|&(row, _)| row));
+    let pattern = Pattern::from_columns(rows, places);
+    let values = columns.iter().flatten().map(|&(_, value)| value).collect();
     (pattern, values)
 }
 
@@ -58,7 +68,7 @@ impl Columns {
     pub(crate) fn new<'g>(
         graph: &'g Graph,
         inputs: &Inputs<'g>,
-        columns: &[Vec<Expr<'g>>],
+        columns: Vec<SparseColumn<'g>>,
         backend: Backend,
     ) -> Result<Columns, ExprError> {
         let (pattern, values) = nonzeros(inputs.state.len(), columns);

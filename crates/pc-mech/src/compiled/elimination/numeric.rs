@@ -3,7 +3,7 @@
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
-use crate::compiled::elimination::columns::{Storage, derivative, nonzeros};
+use crate::compiled::elimination::columns::{SparseColumn, Storage, derivative, nonzeros, sparse};
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
@@ -214,15 +214,14 @@ impl Stage {
     fn new<'g>(system: &FirstOrder<'g>, symbols: &[Expr<'g>], backend: Backend) -> Result<Stage, ExprError> {
         let graph = system.graph;
         let (dim, k) = (system.state.len(), system.unknowns.len());
-        let columns = |rows: &[Expr<'g>]| -> Vec<Vec<Expr<'g>>> {
-            symbols.iter().map(|&symbol| graph.directional(rows, &[(symbol, Expr::ONE)])).collect()
+        let columns = |rows: &[Expr<'g>]| -> Vec<SparseColumn<'g>> {
+            symbols.iter().map(|&symbol| sparse(&graph.directional(rows, &[(symbol, Expr::ONE)]))).collect()
         };
         let coupling = system.coupling();
-        let coupling: Vec<Vec<Expr<'g>>> =
-            (0..k).map(|s| coupling.iter().map(|row| row[s]).collect()).collect();
-        let (balance, mut parts) = nonzeros(k, &columns(&system.balance()));
-        let (rates, rates_parts) = nonzeros(dim, &columns(&system.rates));
-        let (coupling, coupling_parts) = nonzeros(dim, &coupling);
+        let coupling = (0..k).map(|s| sparse(&coupling.iter().map(|row| row[s]).collect::<Vec<_>>()));
+        let (balance, mut parts) = nonzeros(k, columns(&system.balance()));
+        let (rates, rates_parts) = nonzeros(dim, columns(&system.rates));
+        let (coupling, coupling_parts) = nonzeros(dim, coupling);
         parts.extend(rates_parts);
         parts.extend(coupling_parts);
         Ok(Stage {

@@ -45,7 +45,7 @@ impl Unrolled {
         let linearised = Linearised::new(system, &factors, &unknowns);
         let columns = |wanted: bool, symbols: &[Expr<'_>]| {
             wanted
-                .then(|| Columns::new(graph, &inputs, &linearised.columns(symbols), options.backend))
+                .then(|| Columns::new(graph, &inputs, linearised.columns(symbols), options.backend))
                 .transpose()
         };
         let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();

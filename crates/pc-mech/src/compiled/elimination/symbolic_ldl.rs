@@ -1,5 +1,7 @@
 //! M = L D Lᵀ, unrolled over expressions.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
@@ -27,9 +29,14 @@ pub(crate) struct Watched<'g> {
 /// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
-    lower: Matrix<Expr<'g>>,
+    /// The L_iq of each row i that are neither 0 nor on the diagonal, as (q, L_iq).
+    rows: Vec<Entries<'g>>,
+    /// The same of each column q, as (i, L_iq).
+    columns: Vec<Entries<'g>>,
     diagonal: Vec<Expr<'g>>,
 }
+
+type Entries<'g> = Vec<(usize, Expr<'g>)>;
 
 impl<'g> Factors<'g> {
     /// Factorises a matrix that is regular at almost all states.
@@ -76,7 +83,8 @@ impl<'g> Factors<'g> {
 impl<'g> Ldl<'g> {
     /// √D_s L_is η_i
     pub(crate) fn orthonormal(&self, graph: &'g Graph, s: usize, eta: &[Expr<'g>]) -> Expr<'g> {
-        self.diagonal[s].sqrt() * graph.dot(self.lower.column(s), eta.iter().copied())
+        let below = self.columns[s].iter().map(|&(i, l)| l * eta[i]);
+        self.diagonal[s].sqrt() * graph.sum(below.chain([eta[s]]))
     }
 
     /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
@@ -94,45 +102,51 @@ impl<'g> Ldl<'g> {
     /// the fewest entries left; `None` if the diagonal that is left is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
-        let mut schur = m.clone();
-        let mut lower = Matrix::from_fn(k, k, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
-        let mut diagonal = vec![Expr::ONE; k];
-        let mut open: Vec<usize> = (0..k).collect();
-        let mut order = Vec::with_capacity(k);
+        let entries = |i: usize| m.row(i).iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect();
+        let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(entries).collect();
+        let mut ldl = Ldl {
+            order: Vec::new(),
+            rows: vec![Vec::new(); k],
+            columns: vec![Vec::new(); k],
+            diagonal: vec![Expr::ONE; k],
+        };
+        let mut open: BTreeSet<usize> = (0..k).collect();
         while !open.is_empty() {
-            let entries = |p: usize| open.iter().filter(|&&i| !schur[(i, p)].is_zero()).count();
-            let pivot =
-                open.iter().copied().filter(|&p| !schur[(p, p)].is_zero()).min_by_key(|&p| entries(p))?;
-            open.retain(|&i| i != pivot);
-            order.push(pivot);
-            diagonal[pivot] = schur[(pivot, pivot)];
-            for &i in &open {
-                lower[(i, pivot)] = schur[(i, pivot)] / diagonal[pivot];
-            }
-            for &i in &open {
-                for &j in open.iter().filter(|&&j| j <= i) {
-                    let product = lower[(i, pivot)] * schur[(j, pivot)];
-                    if !product.is_zero() {
-                        let reduced = graph.sum([schur[(i, j)], -product]);
-                        schur[(i, j)] = reduced;
-                        schur[(j, i)] = reduced;
+            let usable = open.iter().copied().filter(|&p| schur[p].contains_key(&p));
+            let pivot = usable.min_by_key(|&p| schur[p].len())?;
+            open.remove(&pivot);
+            ldl.order.push(pivot);
+            let mut eliminated = std::mem::take(&mut schur[pivot]);
+            let d = eliminated.remove(&pivot)?; // the pivot is there, as its row was usable
+            ldl.diagonal[pivot] = d;
+            for (&i, &s) in &eliminated {
+                let l = s / d;
+                schur[i].remove(&pivot);
+                ldl.rows[i].push((pivot, l));
+                ldl.columns[pivot].push((i, l));
+                for (&j, &t) in eliminated.range(..=i) {
+                    let reduced = graph.sum([schur[i].get(&j).copied().unwrap_or(Expr::ZERO), -(l * t)]);
+                    for (row, column) in [(i, j), (j, i)] {
+                        match reduced.is_zero() {
+                            true => schur[row].remove(&column),
+                            false => schur[row].insert(column, reduced),
+                        };
                     }
                 }
             }
         }
-        Some(Ldl { order, lower, diagonal })
+        Some(ldl)
     }
 
     fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let l = &self.lower;
         let mut z = right.to_vec();
-        for (done, &i) in self.order.iter().enumerate() {
-            let known = self.order[..done].iter().map(|&q| -(l[(i, q)] * z[q]));
+        for &i in &self.order {
+            let known = self.rows[i].iter().map(|&(q, l)| -(l * z[q]));
             z[i] = graph.sum(known.chain([z[i]]).collect::<Vec<_>>());
         }
         let mut x: Vec<Expr<'g>> = z.iter().zip(&self.diagonal).map(|(&z, &d)| z / d).collect();
-        for (done, &i) in self.order.iter().enumerate().rev() {
-            let known = self.order[done + 1..].iter().map(|&q| -(l[(q, i)] * x[q]));
+        for &i in self.order.iter().rev() {
+            let known = self.columns[i].iter().map(|&(q, l)| -(l * x[q]));
             x[i] = graph.sum(known.chain([x[i]]).collect::<Vec<_>>());
         }
         x
