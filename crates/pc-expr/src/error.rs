@@ -1,5 +1,7 @@
 //! What can go wrong with expressions.
 
+use crate::graph::budget::Spent;
+
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExprError {
@@ -17,6 +19,16 @@ pub enum ExprError {
     UnboundSymbol {
         /// Its name.
         symbol: String,
+    },
+    /// The [budget](crate::Budget) of the expressions is spent.
+    #[error("{stage}: {what} ({nodes} expressions were made)")]
+    Spent {
+        /// What is spent.
+        what: Spent,
+        /// What was being made.
+        stage: &'static str,
+        /// How many expressions there are.
+        nodes: usize,
     },
     /// Values to evaluate at that are not finite numbers: no expression is at fault.
     #[error("the values given are not finite: {}", listed(given))]

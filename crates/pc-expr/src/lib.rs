@@ -44,6 +44,7 @@ mod time_profile;
 pub use calculus::collect::Polynomial;
 pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
+pub use graph::budget::{Budget, Cancel, Limits, Spent};
 pub use graph::evaluate::Scalar;
 pub use graph::expr::Expr;
 pub use graph::function::Function;

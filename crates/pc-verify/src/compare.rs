@@ -1,6 +1,6 @@
 //! The comparison of the two derivations.
 
-use pc_mech::{Folding, Graph};
+use pc_mech::Folding;
 use pc_model::{Assembly, Flow, Model, Variables};
 
 use crate::agreement::{Agreement, Passed};
@@ -47,7 +47,7 @@ impl Default for Options {
 pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError> {
     let mut observed = model.clone();
     observed.observe_reactions(true);
-    let graph = Graph::new();
+    let graph = model.graph();
     let assembly = observed.assemble(&graph)?;
     let second = Second::new(&observed, &assembly)?;
     let mut agreement = second.nothing_yet();
@@ -60,13 +60,13 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         Ok(flow) => firsts.push(First::flow("canonical", flow, &second, &assembly, &mut agreement)),
         Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
     }
-    let plain_graph = Graph::new();
+    let plain_graph = model.graph();
     let plain = model.assemble(&plain_graph)?;
     match First::emitted(&plain, &second, &mut agreement) {
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }
-    let page = Graph::with_folding(Folding::Structural);
+    let page = graph.page(Folding::Structural);
     let printable = FORMS.into_iter().filter(|&form| match second.too_large_for(form, &plain) {
         Some(reason) => {
             agreement.leave_out(&printed_name(form), reason);

@@ -33,6 +33,10 @@ impl<'g> Frame<'g> {
         &self,
         near: &Neighbourhood<'g>,
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
+        self.graph().stage("the brackets of the frame", || self.brackets(near))
+    }
+
+    fn brackets(&self, near: &Neighbourhood<'g>) -> Result<StructureCoefficients<'g>, AlgebraError> {
         let k = self.operators();
         let rank = self.rank();
         if self.coordinates().is_empty() && k > 0 {
@@ -159,8 +163,9 @@ impl<'g> Frame<'g> {
                 add((r, s, u), m, first * second);
             }
         }
+        let movers = self.movers();
         for &(r, s, m, c) in all.iter().filter(|(.., c)| c.constant().is_none()) {
-            for u in 0..=self.operators() {
+            for u in movers.of(&[c]) {
                 add((r, s, u), m, -self.apply(u, &[c])[0]);
             }
         }

@@ -132,7 +132,7 @@ impl<'g> Frame<'g> {
         _: &Neighbourhood<'g>,
     ) -> Option<Vec<Vec<Expr<'g>>>> {
         let (k, n) = (operators.len(), self.coordinates().len());
-        let page = Graph::with_folding(self.graph().folding());
+        let page = self.graph().page(self.graph().folding());
         let columns = [operators, targets].concat();
         let entries: Vec<Expr<'g>> =
             (0..n).flat_map(|i| columns.iter().map(move |column| column[i])).collect();

@@ -124,7 +124,8 @@ impl<'g> Frame<'g> {
     pub fn velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         (0..self.coordinates.len())
             .map(|i| {
-                let moving = self.b.row(i).iter().zip(eta).map(|(&b, &eta)| b * eta);
+                let row = self.b.row(i).iter().zip(eta).filter(|(b, _)| !b.is_zero());
+                let moving = row.map(|(&b, &eta)| b * eta);
                 self.graph.sum(moving.chain([self.b0[i]]))
             })
             .collect()
@@ -173,7 +174,8 @@ impl<'g> Frame<'g> {
 
     /// X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
     pub fn contract(&self, gradient: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        (0..self.operators()).map(|s| self.graph.dot(self.b.column(s), gradient.iter().copied())).collect()
+        let moved = |s| self.b.column(s).zip(gradient).filter(|(b, _)| !b.is_zero());
+        (0..self.operators()).map(|s| self.graph.sum(moved(s).map(|(b, &slope)| b * slope))).collect()
     }
 
     /// The components [X_r, X_s]^i = X_r(b_is) − X_s(b_ir), i = 1..n, with r, s = 0..k and b_i0 the drift.
@@ -191,21 +193,24 @@ impl<'g> Frame<'g> {
     /// The pairs r < s of 0..k whose commutator may not vanish, in order: one of the operators moves what the other's
     /// components depend on.
     pub(crate) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
-        let components: Vec<Vec<Expr<'g>>> = (0..=self.operators()).map(|s| self.operator(s)).collect();
-        let mut moved_by: HashMap<Option<String>, Vec<usize>> = HashMap::new();
-        moved_by.entry(self.time.symbol_name()).or_default().push(0);
-        for (s, components) in components.iter().enumerate() {
-            for (&x, _) in self.coordinates.iter().zip(components).filter(|(_, b)| !b.is_zero()) {
-                moved_by.entry(x.symbol_name()).or_default().push(s);
-            }
-        }
+        let movers = self.movers();
         let mut coupled = BTreeSet::new();
-        for (s, components) in components.iter().enumerate() {
-            let seen = self.graph.symbols_of(components);
-            let movers = seen.iter().filter_map(|symbol| moved_by.get(&symbol.symbol_name())).flatten();
-            coupled.extend(movers.filter(|&&r| r != s).map(|&r| (r.min(s), r.max(s))));
+        for s in 0..=self.operators() {
+            let moving = movers.of(&self.operator(s)).into_iter().filter(|&r| r != s);
+            coupled.extend(moving.map(|r| (r.min(s), r.max(s))));
         }
         coupled.into_iter().collect()
+    }
+
+    /// Which operators move what.
+    pub(crate) fn movers(&self) -> Movers<'g> {
+        let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
+        by_name.entry(self.time.symbol_name()).or_default().push(0);
+        for s in 0..=self.operators() {
+            let moving = self.coordinates.iter().zip(self.operator(s)).filter(|(_, b)| !b.is_zero());
+            moving.for_each(|(x, _)| by_name.entry(x.symbol_name()).or_default().push(s));
+        }
+        Movers { graph: self.graph, by_name }
     }
 
     /// The components b_is of X_s, the drift for s = 0.
@@ -241,6 +246,20 @@ impl<'g> Frame<'g> {
         let known = self.graph.generic_rank(&rows);
         let seen = Neighbourhood::anywhere(self.graph, self.b.entries()).rank(self.graph, &rows);
         seen.map_or(known, |seen| seen.min(known))
+    }
+}
+
+/// The operators that move each coordinate, and time.
+pub(crate) struct Movers<'g> {
+    graph: &'g Graph,
+    by_name: HashMap<Option<String>, Vec<usize>>,
+}
+
+impl<'g> Movers<'g> {
+    /// The operators X_s, s = 0..k, with X_s f ≠ 0 for some of the functions, or at least not evidently 0.
+    pub(crate) fn of(&self, functions: &[Expr<'g>]) -> BTreeSet<usize> {
+        let symbols = self.graph.symbols_of(functions);
+        symbols.iter().filter_map(|x| self.by_name.get(&x.symbol_name())).flatten().copied().collect()
     }
 }
 

@@ -98,7 +98,7 @@ fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
     if x.is_zero() || graph.folding() == Folding::ByValue {
         return x.is_zero();
     }
-    let judge = Graph::new();
+    let judge = graph.page(Folding::ByValue);
     let named = |symbol: Expr<'g>| Some((symbol, judge.symbol(&symbol.symbol_name()?)));
     let symbols: Vec<_> = graph.symbols_of(&[x]).into_iter().filter_map(named).collect();
     graph.evaluate(&[x], &symbols).is_ok_and(|values| values[0].is_zero())

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::{Add, Mul, Neg};
 
-use pc_expr::{Expr, Function, Graph, Number, Scalar};
+use pc_expr::{Expr, Folding, Function, Graph, Number, Scalar};
 
 /// Whether `expression` is zero wherever it is defined, as far as the graph tells, its roots being related to each other
 /// here.
@@ -15,7 +15,7 @@ pub(crate) fn vanishes<'g>(graph: &'g Graph, expression: Expr<'g>) -> bool {
     if expression.is_zero() {
         return true;
     }
-    let rational = Graph::new();
+    let rational = graph.page(Folding::ByValue);
     let roots = RefCell::new(Vec::new());
     let place = Some((&rational, &roots));
     let renamed = |i: usize| Rooted { value: rational.symbol(&format!("x{i}")), roots: place };

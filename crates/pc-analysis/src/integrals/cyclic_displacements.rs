@@ -1,5 +1,7 @@
 //! Cyclic displacements: operators whose momentum is an integral.
 
+use std::collections::BTreeMap;
+
 use pc_mech::{Expr, Number, System};
 
 use crate::integrals::polynomials::combination;
@@ -47,9 +49,12 @@ impl<'g> CyclicDisplacement<'g> {
 
 /// a_s c_rs^m = 0 for r = 0..k, m = 1..k
 fn is_central<'g>(system: &System<'g>, a: &[Number]) -> bool {
-    let k = a.len();
-    let along = |r: usize, m: usize| -> Expr<'g> {
-        (1..=k).map(|s| system.structure().get(r, s, m) * Expr::from(a[s - 1])).sum()
-    };
-    (0..=k).all(|r| (1..=k).all(|m| along(r, m).is_zero()))
+    let mut along: BTreeMap<(usize, usize), Vec<Expr<'g>>> = BTreeMap::new();
+    for (r, s, m, c) in system.structure().nonzero() {
+        along.entry((r, m)).or_default().push(c * Expr::from(a[s - 1]));
+        if r > 0 {
+            along.entry((s, m)).or_default().push(-(c * Expr::from(a[r - 1])));
+        }
+    }
+    along.into_values().all(|terms| terms.into_iter().sum::<Expr<'g>>().is_zero())
 }

@@ -299,12 +299,15 @@ impl<'a, 'g> Search<'a, 'g> {
         if !(self.unconstrained && stationary) {
             return;
         }
+        let variables = frame.coordinates().len() + frame.operators();
+        let Some(degree) = (1..=2).rev().find(|&d| binomial(variables + d, d) <= MOST_FUNCTIONS) else {
+            return;
+        };
         let bracket = PoissonBracket::new(&self.bound);
-        let degree = (1..=2).rev().find(|&d| binomial(bracket.variables().len() + d, d) <= MOST_FUNCTIONS);
         let momenta: Vec<_> =
             self.bound.momentum_symbols().into_iter().zip(self.system().momenta()).collect();
-        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = degree
-            .map_or_else(Vec::new, |degree| bracket.casimirs(degree as u32))
+        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = bracket
+            .casimirs(degree as u32)
             .into_iter()
             .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
             .map(|(casimir, value)| {

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use pc_analysis::{AnalysisError, PoissonBracket};
 use pc_expr::Evaluator;
-use pc_mech::{Expr, Graph, MechError};
+use pc_mech::{Expr, MechError};
 use pc_model::{Assembly, ModelError};
 
 use crate::api::rates::{State, Target, slices};
@@ -50,7 +50,7 @@ pub unsafe extern "C" fn pc_system_bracket(
 
 /// (f, g) as a function of t and (x, η), η those of the state.
 fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallError> {
-    let (model, graph) = (&inventory.model, Graph::new());
+    let (model, graph) = (&inventory.model, inventory.model.graph());
     let assembly = model.assemble(&graph)?;
     if assembly.constraints.nonlinear().is_some() {
         let why = "a constraint is not affine in the velocities";

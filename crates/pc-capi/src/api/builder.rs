@@ -2,8 +2,6 @@
 
 use std::ffi::c_char;
 
-use pc_mech::Graph;
-
 use crate::api::model::{Contents, Origin, boxed, change, pc_model};
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -41,7 +39,8 @@ pub unsafe extern "C" fn pc_model_new(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
     let check = |contents: &mut Contents| {
-        contents.model()?.assemble(&Graph::new())?;
+        let model = contents.model()?;
+        model.assemble(&model.graph())?;
         Ok(())
     };
     // SAFETY: as the preamble demands; the contents are not changed.

@@ -1,6 +1,6 @@
 //! From quasi-velocities to momenta and back.
 
-use pc_mech::{Graph, LegendreTransform, MechError};
+use pc_mech::{LegendreTransform, MechError};
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -13,7 +13,7 @@ impl Inner {
     pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
         if self.legendre.is_none() {
             let model = &inventory.model;
-            let graph = Graph::new();
+            let graph = model.graph();
             let assembly = model.assemble(&graph)?;
             let mut transform = assembly.legendre_transform(inventory.variables)?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());

@@ -3,7 +3,7 @@
 use std::ffi::{c_char, c_int};
 
 use ::pc_model::Variables;
-use pc_mech::{EmitOptions, Graph, Language};
+use pc_mech::{EmitOptions, Language};
 use pc_print::{Form, Page};
 
 use crate::ffi::boundary::entry;
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn pc_system_print(
 }
 
 fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
-    let (model, graph) = (&inventory.model, Graph::new());
+    let (model, graph) = (&inventory.model, inventory.model.graph());
     let assembly = model.assemble(&graph)?;
     let form = match inventory.variables {
         Variables::QuasiVelocities => Form::Poincare,
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
 }
 
 fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
-    let (model, graph) = (&inventory.model, Graph::new());
+    let (model, graph) = (&inventory.model, inventory.model.graph());
     let assembly = model.assemble(&graph)?;
     let equations = assembly.equations()?;
     let mut options = EmitOptions::new(Language::C, name);

@@ -107,6 +107,7 @@ impl CallError {
                 Category::Text => pc_status::PC_INVALID_MODEL,
                 Category::Unsupported => pc_status::PC_UNSUPPORTED,
                 Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
+                Category::Spent => pc_status::PC_LIMIT,
             },
             CallError::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
             CallError::Unsupported { .. } | CallError::Verify(_) => pc_status::PC_UNSUPPORTED,

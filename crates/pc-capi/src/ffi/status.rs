@@ -41,6 +41,9 @@ pub enum pc_status {
     PC_INVALID_CHECKPOINT = 13,
     /// Two derivations of one model give different motions: a defect of the library.
     PC_DISAGREEMENT = 14,
+    /// The equations of the model would take more memory or time than they may, or somebody
+    /// cancelled the work.
+    PC_LIMIT = 15,
     /// None.
     PC_STATUS_LAST = 0x7fff_ffff,
 }
@@ -64,6 +67,7 @@ pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
         12 => c"PC_EVENT",
         13 => c"PC_INVALID_CHECKPOINT",
         14 => c"PC_DISAGREEMENT",
+        15 => c"PC_LIMIT",
         _ => c"unknown status",
     };
     name.as_ptr()

@@ -2,7 +2,7 @@
 
 use ::pc_model::{Model, Variables};
 use pc_expr::{Evaluator, Inputs, Program};
-use pc_mech::{Backend, Equations, Expr, Graph, MechError};
+use pc_mech::{Backend, Equations, Expr, MechError};
 
 use crate::ffi::call_error::CallError;
 
@@ -22,7 +22,7 @@ pub(crate) struct Mechanics {
 
 impl Mechanics {
     pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
-        let graph = Graph::new();
+        let graph = model.graph();
         let assembly = model.assemble(&graph)?;
         let equations = assembly.equations_in()?;
         let structure = equations.system().structure();

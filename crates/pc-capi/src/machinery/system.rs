@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
 use pc_expr::{Event, Events, Pattern};
-use pc_mech::{Graph, LegendreTransform, VectorField};
+use pc_mech::{LegendreTransform, VectorField};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -78,7 +78,7 @@ pub(crate) struct Inner {
 impl pc_system {
     /// `reactions` says whether there are reactions among the outputs.
     pub(crate) fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, CallError> {
-        let graph = Graph::new();
+        let graph = model.graph();
         let assembly = model.assemble(&graph)?;
         let flow = Flow::new(&model, &assembly, variables)?;
         let motion = &flow.motion;

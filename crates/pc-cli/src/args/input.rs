@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
+use pc_expr::Limits;
 use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
@@ -20,6 +21,7 @@ use crate::error::CliError;
 /// [`CliError`] if it cannot be found, read or understood, or has no such parameter.
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
+    model.limit(Limits { memory: arguments.limit_memory, time: arguments.limit_time, ..Limits::default() });
     model.project_start(arguments.project_start);
     for name in &arguments.keep {
         model.hold_start(name)?;

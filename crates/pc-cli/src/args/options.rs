@@ -1,6 +1,7 @@
 //! The options of the commands.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use pc_model::Variables;
@@ -23,6 +24,38 @@ pub struct ModelArguments {
     /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep the start values of the file
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "project_start")]
     pub keep: Vec<String>,
+    /// What the expressions of the equations may take in memory, such as 500M or 8G
+    #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
+    pub limit_memory: u64,
+    /// How many seconds the equations may take to be derived; no limit unless given
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub limit_time: Option<Duration>,
+}
+
+/// A number of bytes: `500M` are 500·2²⁰.
+fn bytes(text: &str) -> Result<u64, String> {
+    let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
+        Some(end) => text.split_at(end),
+        None => (text, ""),
+    };
+    let shift = match unit.to_ascii_lowercase().trim_end_matches("ib").trim_end_matches('b') {
+        "" => 0,
+        "k" => 10,
+        "m" => 20,
+        "g" => 30,
+        "t" => 40,
+        _ => return Err("write a number of bytes, such as 500M or 8G".to_owned()),
+    };
+    let bytes = number.parse::<u64>().ok().and_then(|number| number.checked_mul(1 << shift));
+    bytes.filter(|&bytes| bytes > 0).ok_or_else(|| "write a number of bytes, such as 500M or 8G".to_owned())
+}
+
+/// A positive number of seconds.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse::<f64>().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds
+        .filter(|time| !time.is_zero())
+        .ok_or_else(|| "write a positive number of seconds, such as 60".to_owned())
 }
 
 /// `NAME=VALUE`, the value as written.

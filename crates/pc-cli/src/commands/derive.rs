@@ -1,6 +1,5 @@
 //! `pc derive`: the equations of motion, printed.
 
-use pc_mech::Graph;
 use pc_print::page;
 
 use crate::args::input;
@@ -15,10 +14,11 @@ use crate::report::notes::{say_dropped, say_moved};
 /// [`CliError`].
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
-    let graph = Graph::new();
+    let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
     let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly)?;
+    assembly.within_limits()?;
     print(|out| write!(out, "{page}"))
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use pc_mech::{EmitOptions, Graph, Language};
+use pc_mech::{EmitOptions, Language};
 use pc_print::energy_remark;
 
 use crate::args::input;
@@ -25,7 +25,7 @@ const NO_TABLES: &str = "The tables of inputs are not part of this source: their
 /// [`CliError`].
 pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
-    let graph = Graph::new();
+    let graph = model.graph();
     let (assembly, equations) = input::derive(&model, &graph)?;
     let language = match arguments.lang {
         Lang::C => Language::C,

@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use pc_mech::Graph;
 use pc_model::{Flow, Model};
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
@@ -84,7 +83,7 @@ pub fn integrate_with_checkpoints(
     checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    let graph = Graph::new();
+    let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_moved(&assembly);
     say_negative_energy(&assembly);

@@ -10,7 +10,6 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use pc_mech::Graph;
 use pc_model::{Category, Model};
 use pc_solve::{Ending, Ensemble};
 
@@ -107,7 +106,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
 /// That the text of the model is right. What the values of its parameters make inconsistent may be consistent in a
 /// member.
 fn look(model: &Model) -> Result<(), CliError> {
-    let graph = Graph::new();
+    let graph = model.graph();
     match model.assemble(&graph) {
         Ok(assembly) => {
             notes::say_dropped(&assembly);

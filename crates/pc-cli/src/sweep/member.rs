@@ -4,7 +4,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-use pc_mech::{Graph, VectorField};
+use pc_mech::VectorField;
 use pc_model::{Flow, Model, ModelError};
 use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
 
@@ -51,7 +51,7 @@ impl Prototype {
         if form != RunForm::Poincare || model.derives_start() {
             return None;
         }
-        let graph = Graph::new();
+        let graph = model.graph();
         let assembly = model.assemble(&graph).ok()?;
         if !assembly.constraints.redundant().is_empty() {
             return None;
@@ -114,7 +114,8 @@ impl Members {
             values,
             rows: vec![f64::NAN; self.width()],
         };
-        let model = self.design.model(&self.model, &blank.values);
+        let mut model = self.design.model(&self.model, &blank.values);
+        model.limit(model.budget().limits().clone()); // each member on its own
         let mut flow = match self.flow(&model) {
             Ok(flow) => flow,
             Err(error) => return Some(Record { message: line(&error.diagnostic().message), ..blank }),
@@ -163,7 +164,7 @@ impl Members {
         if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.t_start)) {
             return Ok(flow);
         }
-        let graph = Graph::new();
+        let graph = model.graph();
         Flow::new(model, &model.assemble(&graph)?, self.form.into())
     }
 

@@ -2,9 +2,12 @@
 //!
 //! Children always have smaller indices than their parents, so ascending index order is a topological order.
 
+use std::sync::Arc;
+
 use hashbrown::HashTable;
 use rustc_hash::FxHashMap;
 
+use crate::graph::budget::Meter;
 use crate::graph::divisors::{DivisorSets, Divisors};
 use crate::graph::function::Function;
 use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId, Slice, hash_of};
@@ -12,9 +15,13 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
+    /// None where constants are combined without a graph.
+    meter: Option<Arc<Meter>>,
+    /// Bytes taken from it.
+    taken: u64,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
     /// The values of nodes with roots, as sums of products of these.
@@ -42,9 +49,38 @@ pub(crate) struct Dag {
     pub(super) zero_divisions: Vec<Atom>,
 }
 
+impl Drop for Dag {
+    fn drop(&mut self) {
+        if let Some(meter) = &self.meter {
+            meter.give_back(self.taken);
+        }
+    }
+}
+
 impl Dag {
-    pub(crate) fn new(folding: Folding) -> Dag {
-        Dag { folding, ..Dag::default() }
+    pub(crate) fn new(folding: Folding, meter: Option<Arc<Meter>>) -> Dag {
+        Dag {
+            folding,
+            meter,
+            taken: 0,
+            nodes: Vec::new(),
+            fingerprints: Vec::new(),
+            expansions: FxHashMap::default(),
+            roots: Roots::default(),
+            nonnegative: Vec::new(),
+            costs: Vec::new(),
+            symbols: Vec::new(),
+            divisors: Vec::new(),
+            limits: Vec::new(),
+            divisor_sets: DivisorSets::default(),
+            successor: Vec::new(),
+            terms: Vec::new(),
+            factors: Vec::new(),
+            names: Vec::new(),
+            by_structure: HashTable::new(),
+            by_value: HashTable::new(),
+            zero_divisions: Vec::new(),
+        }
     }
 
     pub(crate) fn folding(&self) -> Folding {
@@ -152,7 +188,12 @@ impl Dag {
     /// Of two forms of one function the better is the one that divides by less, as (x² − 1)/(x − 1) has no value at
     /// x = 1 and x + 1 has, and takes fewer roots, as (√x − 1)² + 2√x has none below 0; where neither is worse, the shorter.
     /// A form that divides by what the other does not, and conversely, stays a node of its own.
+    ///
+    /// Where the budget is spent the answer is undefined, so that what goes on ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
+        if self.meter.as_ref().is_some_and(|meter| meter.is_spent()) {
+            return Atom::Constant(Number::UNDEFINED);
+        }
         if self.folding == Folding::Structural {
             return self.intern(candidate);
         }
@@ -256,6 +297,13 @@ impl Dag {
             }
             Candidate::Call(function, args) => Node::Call { function, args },
         };
+        let operands = match node {
+            Node::Sum { terms: slice, .. } | Node::Product { factors: slice } => slice.range().len(),
+            _ => 0,
+        };
+        if let Some(meter) = &self.meter {
+            self.taken += meter.take(operands + value.own_terms());
+        }
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.fingerprints.push(value.fingerprint);

@@ -111,7 +111,7 @@ impl<'g> Expr<'g> {
         }
         // Constants that belong to no graph: any graph gives the same number, if there is one.
         let atoms: Vec<Atom> = operands.iter().map(|x| x.atom).collect();
-        match f(&mut Dag::new(Folding::Structural), &atoms) {
+        match f(&mut Dag::new(Folding::Structural, None), &atoms) {
             Atom::Constant(c) => c.into(),
             Atom::Node(_) => Number::UNDEFINED.into(),
         }

@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::fmt;
 
+use crate::error::ExprError;
+use crate::graph::budget::Budget;
 use crate::graph::dag::Dag;
 use crate::graph::node::Folding;
 
@@ -22,6 +24,7 @@ use crate::graph::node::Folding;
 /// ```
 pub struct Graph {
     dag: RefCell<Dag>,
+    budget: Budget,
 }
 
 impl Default for Graph {
@@ -44,7 +47,48 @@ impl Graph {
 
     /// An empty graph with the given rule for merging.
     pub fn with_folding(folding: Folding) -> Graph {
-        Graph { dag: RefCell::new(Dag::new(folding)) }
+        Graph::of(folding, Budget::default())
+    }
+
+    fn of(folding: Folding, budget: Budget) -> Graph {
+        Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
+    }
+
+    /// An empty graph like this one that takes from a budget, which others may share.
+    #[must_use]
+    pub fn within(self, budget: &Budget) -> Graph {
+        Graph::of(self.folding(), budget.clone())
+    }
+
+    /// An empty graph that takes from the same budget as this one.
+    pub fn page(&self, folding: Folding) -> Graph {
+        Graph::of(folding, self.budget.clone())
+    }
+
+    /// Does some work in this graph, unless its budget is spent, before or by it: what was made then is not what it should
+    /// be, and the error names the stage of the work.
+    ///
+    /// # Errors
+    /// [`ExprError::Spent`], and those of the work.
+    pub fn stage<T, E: From<ExprError>>(
+        &self,
+        name: &'static str,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        let before = self.budget.meter().enter(name);
+        let result = self.check_budget().map_err(E::from).and_then(|()| work());
+        let result = self.check_budget().map_err(E::from).and(result);
+        self.budget.meter().enter(before);
+        result
+    }
+
+    /// # Errors
+    /// [`ExprError::Spent`] if the budget is.
+    pub fn check_budget(&self) -> Result<(), ExprError> {
+        match self.budget.spent() {
+            None => Ok(()),
+            Some((what, stage)) => Err(ExprError::Spent { what, stage, nodes: self.len() }),
+        }
     }
 
     /// The rule for merging.

@@ -16,8 +16,9 @@ impl Graph {
     ///
     /// # Errors
     /// If not, [`ExprError::DivisionByZero`] with the dividend of the first division by an expression that is
-    /// identically zero, or [`ExprError::Undefined`] if there was none.
+    /// identically zero, or [`ExprError::Undefined`] if there was none; [`ExprError::Spent`] if the budget is.
     pub fn check<'g>(&'g self, expressions: &[Expr<'g>]) -> Result<(), ExprError> {
+        self.check_budget()?;
         if !expressions.iter().any(|x| x.is_undefined()) {
             return Ok(());
         }

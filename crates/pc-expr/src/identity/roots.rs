@@ -15,6 +15,8 @@ use crate::identity::fingerprint::Fingerprint;
 const MOST_TERMS: usize = 48;
 /// Products of sums of more terms than this, all told, are not multiplied out.
 const MOST_PRODUCTS: usize = 512;
+/// Once so many products of roots are known, products of sums are not multiplied out any more.
+const MOST_MONOMIALS: usize = 1 << 16;
 /// A sum with more square roots than this is not inverted by its conjugates.
 const MOST_CONJUGATES: usize = 3;
 
@@ -56,6 +58,11 @@ impl Value {
 
     pub(crate) fn is_zero(&self) -> bool {
         self.fingerprint == Fingerprint::ZERO
+    }
+
+    /// The number of its terms, if they are kept.
+    pub(crate) fn own_terms(&self) -> usize {
+        self.terms.as_ref().map_or(0, |terms| terms.len())
     }
 
     /// q·x of a number q.
@@ -192,7 +199,9 @@ impl Roots {
         match (&x.terms, &y.terms) {
             (None, _) => return y.scaled(x.fingerprint),
             (_, None) => return x.scaled(y.fingerprint),
-            _ if x.len() * y.len() > MOST_PRODUCTS => return x.fingerprint.times(y.fingerprint).into(),
+            _ if x.len() * y.len() > MOST_PRODUCTS || self.monomials.len() > MOST_MONOMIALS => {
+                return x.fingerprint.times(y.fingerprint).into();
+            }
             _ => {}
         }
         let mut pairs = Vec::with_capacity(x.len() * y.len());

@@ -10,17 +10,23 @@ use crate::program::program::Program;
 /// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// Machine code where the host allows it, else the interpreter.
+    /// Machine code where the host allows it and the program is not too long, else the interpreter.
     #[default]
     Fastest,
     /// The interpreter, which needs no compiling.
     Interpreter,
 }
 
-/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made.
+/// Machine code of more operations would take longer to make, and more memory, than it saves.
+const LONGEST_MACHINE_CODE: usize = 100_000;
+
+/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made or the program has
+/// more than 100 000 operations.
 pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
-    if let Ok(jit) = crate::kernel::jit::Jit::new(&program) {
+    if program.code().len() <= LONGEST_MACHINE_CODE
+        && let Ok(jit) = crate::kernel::jit::Jit::new(&program)
+    {
         return Box::new(jit);
     }
     Box::new(Interpreter::new(program))

@@ -102,7 +102,8 @@ impl<'g> FirstOrder<'g> {
 
     /// F = r − M w or r − p, in t, y and w.
     pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
-        let product = |s| self.graph.dot(self.mass.row(s).iter().copied(), self.unknowns.iter().copied());
+        let nonzero = |s| self.mass.row(s).iter().zip(&self.unknowns).filter(|(m, _)| !m.is_zero());
+        let product = |s| self.graph.sum(nonzero(s).map(|(&m, &w)| m * w));
         let left = |s: usize| self.implicit.as_ref().map_or_else(|| product(s), |p| p.left[s]);
         self.right.iter().enumerate().map(|(s, &right)| right - left(s)).collect()
     }

@@ -2,7 +2,9 @@
 
 use std::ops::{Add, Mul, Neg};
 
-use pc_expr::{Backend, Evaluator, Expr, ExprError, Function, Graph, Inputs, Number, Program, Scalar};
+use pc_expr::{
+    Backend, Evaluator, Expr, ExprError, Folding, Function, Graph, Inputs, Number, Program, Scalar,
+};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 
@@ -35,7 +37,7 @@ impl Measured {
         backend: Backend,
     ) -> Result<Measured, ExprError> {
         // A graph of its own, for none can grow while it is gone through.
-        let measuring = Graph::new();
+        let measuring = graph.page(Folding::ByValue);
         let named = |symbol: &Expr<'g>| measuring.symbol(&symbol.to_string());
         let inputs_here = Inputs {
             time: inputs.time.as_ref().map(named),

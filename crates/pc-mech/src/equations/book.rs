@@ -38,7 +38,7 @@ pub(crate) fn expanded<'g>(
     style: Style,
 ) -> String {
     // Written in a graph of its own, which merges nothing back to the nested form.
-    let page = Graph::with_folding(Folding::Structural);
+    let page = system.graph().page(Folding::Structural);
     let written = sum_of_products(system, expression, variables, &page);
     written.map_or_else(|| expression.display(style), |written| written.display(style))
 }

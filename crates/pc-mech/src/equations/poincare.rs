@@ -41,9 +41,11 @@ impl<'g> System<'g> {
     /// # Errors
     /// [`MechError::DegenerateLagrangian`]; [`MechError::Shape`] if there are fewer than `free` quasi-velocities.
     pub fn poincare_constrained(&self, free: usize) -> Result<Equations<'g>, MechError> {
-        let equations = self.equations(free)?;
-        equations.system.check_regular(&equations.mass)?;
-        Ok(equations)
+        self.graph().stage("Poincaré's equations", || {
+            let equations = self.equations(free)?;
+            equations.system.check_regular(&equations.mass)?;
+            Ok(equations)
+        })
     }
 
     /// The same whether or not M is singular.

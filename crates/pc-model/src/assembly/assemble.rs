@@ -22,7 +22,9 @@ impl Model {
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
         self.refuse_unsupported()?;
         self.parameter_values().check(self.document())?;
-        Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble()
+        let assembler =
+            || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
+        self.document().stage(graph, "the mechanical system", assembler)
     }
 
     fn refuse_unsupported(&self) -> Result<(), ModelError> {

@@ -47,6 +47,14 @@ impl<'g> Assembly<'g> {
         derived.map_err(|error| self.document.constraint_error(error.into()))
     }
 
+    /// That what was made of this system until now is what it should be.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent) if the [limits](crate::Model::limit) were reached.
+    pub fn within_limits(&self) -> Result<(), ModelError> {
+        self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
+    }
+
     /// That something could not be derived from this system, for a reason that has no place in the file but that of the
     /// energy.
     pub fn not_derived(&self, message: String) -> ModelError {
@@ -58,7 +66,8 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`ModelError`] if they cannot be derived.
     pub fn equations(&self) -> Result<Equations<'g>, ModelError> {
-        self.placed(self.constraints.equations(&self.system, &self.at_start()))
+        let equations = || self.placed(self.constraints.equations(&self.system, &self.at_start()));
+        self.document.stage(self.system.graph(), "the equations of motion", equations)
     }
 
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.

@@ -9,6 +9,8 @@ pub enum Category {
     Unsupported,
     /// The text is right, but what it says contradicts itself.
     Inconsistent,
+    /// The text may be right, but its equations would take more than they may.
+    Spent,
 }
 
 impl Category {
@@ -16,7 +18,7 @@ impl Category {
     pub fn exit_code(self) -> u8 {
         match self {
             Self::Text | Self::Unsupported => 3,
-            Self::Inconsistent => 4,
+            Self::Inconsistent | Self::Spent => 4,
         }
     }
 }

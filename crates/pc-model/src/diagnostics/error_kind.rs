@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use pc_expr::Spent;
 use pc_expr::parse::{FUNCTIONS, ParseError};
 use thiserror::Error;
 
@@ -31,6 +32,16 @@ pub enum ErrorKind {
     DuplicateKey {
         /// The key as written.
         key: String,
+    },
+    /// What its equations may take is spent.
+    #[error("{stage}: {what} ({nodes} expressions were made)")]
+    Spent {
+        /// What is spent.
+        what: Spent,
+        /// What was being made.
+        stage: &'static str,
+        /// How many expressions there were.
+        nodes: usize,
     },
     /// Nothing in the file.
     #[error("the model is empty")]
@@ -267,6 +278,7 @@ impl ErrorKind {
     pub fn category(&self) -> Category {
         match self {
             Self::Unsupported { .. } => Category::Unsupported,
+            Self::Spent { .. } => Category::Spent,
             Self::Meaning(fault) => fault.category(),
             _ => Category::Text,
         }
@@ -277,6 +289,10 @@ impl ErrorKind {
         match self {
             Self::NotText { .. } => "save the model as plain text in UTF-8".into(),
             Self::Toml { help, .. } => (*help).into(),
+            Self::Spent { .. } => {
+                "raise the limit (`--limit-memory`, `--limit-time`), or write the model with fewer or shorter expressions"
+                    .into()
+            }
             Self::DuplicateKey { .. } => "keep one of them".into(),
             Self::Empty | Self::NoLagrangian | Self::NothingMoves => LEAST.into(),
             Self::UnknownSection { nearest, .. } => possible(*nearest, "sections", SECTIONS),

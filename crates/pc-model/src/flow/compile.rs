@@ -12,6 +12,9 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
+/// A stage of the work.
+const PROGRAM: &str = "the program of the equations";
+
 impl Model {
     /// Compiles the motion of this model and tries it at the start, which is returned with it: (x, η) with the free
     /// quasi-velocities if constraints say that the others vanish, with all otherwise.
@@ -19,6 +22,10 @@ impl Model {
     /// # Errors
     /// [`ModelError`] if it cannot be evaluated there.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
+        self.document().stage(assembly.system.graph(), PROGRAM, || self.compile_formulation(assembly))
+    }
+
+    fn compile_formulation(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
         match assembly.constraints.formulation() {
             ConstraintFormulation::Multipliers(held) => {
                 let (compiled, start) =
@@ -45,9 +52,11 @@ impl Model {
         t_start: f64,
         start: &[f64],
     ) -> Result<Motion, ModelError> {
-        let compiled = equations.compile_for(self.options());
-        let (motion, _) = self.started(compiled, || equations.kept(self.kept()), t_start, start.to_vec())?;
-        Ok(motion)
+        self.document().stage(equations.system().graph(), PROGRAM, || {
+            let compiled = equations.compile_for(self.options());
+            let kept = || equations.kept(self.kept());
+            Ok(self.started(compiled, kept, t_start, start.to_vec())?.0)
+        })
     }
 
     /// Compiles the canonical equations of this model with multipliers, and tries them at the start (x, y).
@@ -60,9 +69,11 @@ impl Model {
         assembly: &Assembly<'_>,
         start: &[f64],
     ) -> Result<Motion, ModelError> {
-        let compiled = multipliers.compile_in_momenta(self.options(), &assembly.start_velocities());
-        let kept = || multipliers.kept(self.kept());
-        Ok(self.started(compiled, kept, assembly.t_start, start.to_vec())?.0)
+        self.document().stage(assembly.system.graph(), PROGRAM, || {
+            let compiled = multipliers.compile_in_momenta(self.options(), &assembly.start_velocities());
+            let kept = || multipliers.kept(self.kept());
+            Ok(self.started(compiled, kept, assembly.t_start, start.to_vec())?.0)
+        })
     }
 
     /// The derivative by external forces is part of the Jacobian under them.

@@ -1,7 +1,5 @@
 //! Derivatives by parameters of a start, and of what is shown of a state.
 
-use pc_mech::Graph;
-
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
@@ -47,7 +45,7 @@ impl Flow {
                     "give those numbers, by --set say, or put them into the expressions of the model",
                 ));
             }
-            let graph = Graph::new();
+            let graph = moved.graph();
             moved.differentiate_by_parameters(false);
             ends.push(Flow::new(&moved, &moved.assemble(&graph)?, variables)?.start);
         }

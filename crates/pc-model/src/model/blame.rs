@@ -1,6 +1,6 @@
 //! Errors of the derivation, at the place in the file that is to blame.
 
-use pc_mech::{AlgebraError, MechError};
+use pc_mech::{AlgebraError, ExprError, Graph, MechError};
 use pc_nonholo::NonholoError;
 
 use crate::diagnostics::error::ModelError;
@@ -10,6 +10,22 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
+    /// Does some work in a graph, unless its budget is spent, before or by it: that is the error then, whatever the work says.
+    pub(crate) fn stage<T>(
+        &self,
+        graph: &Graph,
+        name: &'static str,
+        work: impl FnOnce() -> Result<T, ModelError>,
+    ) -> Result<T, ModelError> {
+        match graph.stage(name, || Ok::<_, ExprError>(work())) {
+            Ok(done) => done,
+            Err(ExprError::Spent { what, stage, nodes }) => {
+                Err(self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes }))
+            }
+            Err(other) => Err(self.derivation_error(other.into())),
+        }
+    }
+
     /// Puts an error of the derivation under constraints at the place in the file that is to blame.
     pub(crate) fn constraint_error(&self, error: NonholoError) -> ModelError {
         let message = error.to_string();

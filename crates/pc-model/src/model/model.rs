@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pc_expr::{Budget, Graph, Limits};
+
 use crate::assembly::parameters::Parameters;
 use crate::diagnostics::source::Place;
 use crate::document::Document;
@@ -21,6 +23,8 @@ pub struct Model {
     by_parameters: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
+    /// What its derivations may take.
+    budget: Budget,
     /// The quasi-velocities, or coordinates, on which external forces act.
     pub(crate) external: Vec<String>,
 }
@@ -58,8 +62,24 @@ impl Model {
             observes_reactions: false,
             by_parameters: false,
             kept,
+            budget: Budget::default(),
             external: Vec::new(),
         }
+    }
+
+    /// Limits what all further derivations of this model and its clones may take together, from now on.
+    pub fn limit(&mut self, limits: Limits) {
+        self.budget = Budget::new(limits);
+    }
+
+    /// What is left of the limits.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
+    /// An empty graph within the limits of the model, to derive its equations in.
+    pub fn graph(&self) -> Graph {
+        Graph::new().within(&self.budget)
     }
 
     /// The document it was made from.

@@ -1,7 +1,5 @@
 //! The start of a motion with other values than those of the file.
 
-use pc_expr::Graph;
-
 use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
 use crate::model::model::Model;
@@ -83,6 +81,6 @@ impl Model {
     /// [`ModelError`] where a start value is not a number.
     pub fn start(&self) -> Result<Vec<f64>, ModelError> {
         self.parameter_values().check(self.document())?;
-        start::start(self, &Graph::new())
+        start::start(self, &self.graph())
     }
 }

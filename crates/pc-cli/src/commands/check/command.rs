@@ -1,7 +1,7 @@
 //! `pc check`: whether a model holds together.
 
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
-use pc_mech::{Equations, Expr, Graph, Identity, MechError, Motion, Neighbourhood, System, VectorField};
+use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
 use pc_nonholo::{Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
@@ -25,7 +25,7 @@ use crate::report::verification;
 /// [`CliError`]; of an inconsistent model that is the answer.
 pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
-    let graph = Graph::new();
+    let graph = model.graph();
     let (assembly, equations) = input::derive(&model, &graph)?;
     say_moved(&assembly);
     let second = match verify(&model, &Options::default()) {
@@ -33,6 +33,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
         outcome => outcome,
     };
     let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
+    assembly.within_limits()?;
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", report.text()),
         Format::Json => writeln!(out, "{:#}", report.json()),
