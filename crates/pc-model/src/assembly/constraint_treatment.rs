@@ -1,7 +1,7 @@
 //! How constraints bind a system, and its equations of motion under them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers, System};
-use pc_nonholo::{Adapted, Constrained, Kind, NonholoError, Redundant};
+use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
 
 /// What a constraint does.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +110,20 @@ impl<'g> ConstraintTreatment<'g> {
     /// [`ConstraintClassification::integrable_combinations`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
+    }
+
+    /// Those of these combinations that are found in closed form, `at` values of time and state where the constraints are
+    /// regular.
+    ///
+    /// # Errors
+    /// [`NonholoError`], none for constraints that could be classified there.
+    pub fn combinations_found(
+        &self,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Vec<IntegrableCombination<'g>>, NonholoError> {
+        let Some(multipliers) = &self.multipliers else { return Ok(Vec::new()) };
+        let kinds: Vec<Kind> = self.classified.iter().map(|verdict| verdict.kind).collect();
+        IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
     }
 
     /// The constraints that follow from others and were dropped.
