@@ -7,6 +7,7 @@ mod combinations;
 mod command;
 mod frame;
 mod integrals;
+mod measure;
 mod steady;
 
 pub use command::command;

@@ -126,6 +126,18 @@ impl<'g> ConstraintTreatment<'g> {
         IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
     }
 
+    /// The f of those conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
+    pub fn positions(&self, system: &System<'g>) -> Option<Vec<Expr<'g>>> {
+        let is_holonomic =
+            |verdict: &ClassifiedConstraint| matches!(verdict.kind, Kind::Position | Kind::Integrable);
+        if !self.classified.iter().all(is_holonomic) {
+            return None;
+        }
+        let ConstraintFormulation::Multipliers(held) = &self.formulation else { return Some(Vec::new()) };
+        let positions = held.multipliers.constraints().iter().filter(|c| c.is_holonomic(system));
+        Some(positions.map(Constraint::expression).collect())
+    }
+
     /// The constraints that follow from others and were dropped.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant

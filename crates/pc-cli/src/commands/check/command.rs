@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::combinations;
 use super::frame;
 use super::integrals;
+use super::measure::Measure;
 use super::steady;
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
@@ -71,6 +72,7 @@ struct Report<'g> {
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     integrals: Integrals<'g>,
+    measure: Measure<'g>,
     steady: SteadySearch,
     operations: Operations,
     second: Option<Result<Agreement, VerifyError>>,
@@ -133,6 +135,7 @@ impl<'g> Report<'g> {
             integrable_combinations: assembly.constraints.integrable_combinations(),
             combinations: assembly.placed(assembly.constraints.combinations_found(&assembly.at_start()))?,
             start_residual: start_residual(assembly, &near),
+            measure: Measure::of(assembly, &near.centre),
             steady: steady_motion(assembly, equations, motion, integrals.list()),
             integrals,
             operations,
@@ -204,6 +207,7 @@ impl<'g> Report<'g> {
             );
         }
         text += &labelled("integrals", LABEL, &kept);
+        text += &labelled("invariant measure", LABEL, &self.measure.lines());
         text + &labelled("steady motion", LABEL, &steady::lines(&self.steady, WIDTH))
     }
 
@@ -245,6 +249,7 @@ impl<'g> Report<'g> {
             "negative_energy": self.negative_energy,
             "start_residual": self.start_residual,
             "integrals": integrals,
+            "invariant_measure": self.measure.object(),
             "steady_motion": steady::object(&self.steady),
             "second_derivation": self.second.as_ref().map(verification::object),
         })
