@@ -34,12 +34,14 @@ pub enum MeasureSearch<'g> {
 pub struct PhaseMeasure<'g> {
     /// Whether it is Liouville's, that of a holonomic system by its frame, whatever the Lagrangian.
     pub liouville: bool,
-    /// N of N dx dy, positive at the start; none where 1/det b is no short expression.
+    /// N of N dx dy, positive at the start; none where it is no short expression, 1/det b or det(∂f/∂x_D)/det b_I.
     pub density: Option<Expr<'g>>,
     /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none where it is no short expression.
     pub in_velocities: Option<Expr<'g>>,
     /// The momenta where they vanish of which N is zero or infinite.
     pub singular: Vec<Expr<'g>>,
+    /// Whether momenta or ẋ are written with what may jump, a sign, a step or an angle: the measure is kept where they do not.
+    pub jumps: bool,
 }
 
 impl<'g> MeasureSearch<'g> {
@@ -122,8 +124,17 @@ impl<'g> MeasureSearch<'g> {
             density: density.map(|density| positive(system, density, at)),
             in_velocities: all,
             singular: momenta,
+            jumps: jumps(system),
         }))
     }
+}
+
+/// Whether momenta or ẋ may jump as functions of (t, x, η).
+fn jumps(system: &System<'_>) -> bool {
+    let eta = system.quasi_velocities();
+    let state: Vec<Expr<'_>> = system.state().into_iter().chain([system.frame().time()]).collect();
+    let parts = [system.momenta(), system.frame().velocities(eta)].concat();
+    parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
 }
 
 /// The density by which (10), (11) keep phase volume whatever the Lagrangian; `Some(None)` for one that is no short expression.
@@ -139,11 +150,16 @@ fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Optio
     if frame.coordinates().len() == frame.operators() && frame.rank() == frame.operators() {
         return Some(product_of_blocks(graph, frame.b()).map(|det| 1.0 / det));
     }
-    of_surfaces(system, positions, &growth).or_else(|| of_factors(system, growth)).map(Some)
+    of_surfaces(system, positions, &growth).or_else(|| of_factors(system, growth).map(Some))
 }
 
-/// det(∂f/∂x_D)/det b_I of the first functions f that no motion changes, those of `positions` and integrals of the place.
-fn of_surfaces<'g>(system: &System<'g>, positions: &[Expr<'g>], growth: &[Expr<'g>]) -> Option<Expr<'g>> {
+/// det(∂f/∂x_D)/det b_I of the first functions f that no motion changes, those of `positions` and integrals of the place;
+/// `Some(None)` where it is no short expression.
+fn of_surfaces<'g>(
+    system: &System<'g>,
+    positions: &[Expr<'g>],
+    growth: &[Expr<'g>],
+) -> Option<Option<Expr<'g>>> {
     let (graph, frame) = (system.graph(), system.frame());
     let (x, k) = (frame.coordinates(), frame.operators());
     let parameters = system.parameters().iter().map(|(parameter, _)| parameter);
@@ -166,11 +182,12 @@ fn of_surfaces<'g>(system: &System<'g>, positions: &[Expr<'g>], growth: &[Expr<'
     let of = |rows: usize, entry: &dyn Fn(usize, usize) -> Expr<'g>| {
         product_of_blocks(graph, &Matrix::from_fn(rows, rows, entry))
     };
-    let held = of(dependent.len(), &|a, i| slopes[a][dependent[i]])?;
-    let free = of(others.len(), &|i, s| frame.b()[(others[i], s)])?;
+    let held = of(dependent.len(), &|a, i| slopes[a][dependent[i]]);
+    let free = of(others.len(), &|i, s| frame.b()[(others[i], s)]);
+    let (Some(held), Some(free)) = (held, free) else { return Some(None) };
     let density = graph.shorten(&[held / free], &[])[0];
-    let changes = (0..=k).map(|r| frame.apply(r, &[density])[0] / density + growth[r]);
-    changes.into_iter().all(|change| change.is_zero()).then_some(density)
+    let mut changes = (0..=k).map(|r| frame.apply(r, &[density])[0] / density + growth[r]);
+    changes.all(Expr::is_zero).then_some(Some(density))
 }
 
 /// A density that is a product of powers of coordinates, their sines and cosines.

@@ -58,11 +58,11 @@ impl<'g> Expr<'g> {
     /// The number that stands before all else, 1 where none does; that of a constant is itself.
     ///
     /// ```
-    /// # use pc_expr::Graph;
+    /// # use pc_expr::{Graph, Number};
     /// let graph = Graph::new();
     /// let [x, y] = graph.symbols(["x", "y"]);
-    /// assert_eq!((-3 * x / y).numerical_factor(), (-3).into());
-    /// assert_eq!((2 * x + y).numerical_factor(), 1.into());
+    /// assert_eq!((-3.0 * x / y).numerical_factor(), Number::integer(-3));
+    /// assert_eq!((2.0 * x + y).numerical_factor(), Number::ONE);
     /// ```
     pub fn numerical_factor(self) -> Number {
         let (Some(graph), Atom::Node(id)) = (self.graph, self.atom) else {

@@ -1,6 +1,6 @@
 //! Combinations of constraints that have an integral though none of them has.
 
-use pc_mech::{Expr, Graph, Multipliers, Number, System};
+use pc_mech::{Constraint, Expr, Graph, Multipliers, Number, System};
 
 use crate::classification::classification::Kind;
 use crate::classification::involutive::along;
@@ -89,7 +89,7 @@ impl<'g> IntegrableCombination<'g> {
                 }
             }
         }
-        let names: Vec<&str> = multipliers.constraints().iter().map(|constraint| constraint.name()).collect();
+        let names: Vec<&str> = multipliers.constraints().iter().map(Constraint::name).collect();
         let named = |form: Form<'g>| {
             let all = names.iter().map(|&name| name.to_owned()).zip(form.coefficients);
             all.filter(|(_, mu)| !mu.is_zero()).collect()

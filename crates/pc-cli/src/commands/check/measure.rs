@@ -1,7 +1,7 @@
 //! The measure that the motion keeps, in words.
 
 use pc_analysis::{MeasureSearch, PhaseMeasure, ReducingMultiplier};
-use pc_mech::{Expr, Style};
+use pc_mech::{Expr, Style, System};
 use pc_model::Assembly;
 use pc_nonholo::Voronets;
 use pc_print::{columns, combination};
@@ -15,6 +15,8 @@ const WIDEST: usize = 80;
 pub(super) struct Measure<'g> {
     /// None where a constraint is not affine in the velocities.
     search: Option<MeasureSearch<'g>>,
+    /// Whether there are as many free quasi-velocities as coordinates.
+    square: bool,
     /// Whether an event may change what the motion keeps between events.
     jumps: bool,
     /// Chaplygin's reducing multiplier.
@@ -26,16 +28,18 @@ impl<'g> Measure<'g> {
     pub(super) fn of(assembly: &Assembly<'g>, at: &[(Expr<'g>, f64)]) -> Measure<'g> {
         let jumps = assembly.events.iter().any(|event| !event.resets.is_empty());
         if assembly.constraints.nonlinear().is_some() {
-            return Measure { search: None, jumps, multiplier: None };
+            return Measure { search: None, square: false, jumps, multiplier: None };
         }
         let positions = assembly.constraints.positions(&assembly.system);
         // Equations that have been derived before: an error is that these have no closed form.
-        let found = assembly.free_system().ok();
-        let found = found.and_then(|free| MeasureSearch::of(&free, positions.as_deref(), at).ok());
+        let free = assembly.free_system().ok();
+        let frame = free.as_ref().map(System::frame);
+        let square = frame.is_some_and(|frame| frame.coordinates().len() == frame.operators());
+        let found = free.and_then(|free| MeasureSearch::of(&free, positions.as_deref(), at).ok());
         let search = found.unwrap_or(MeasureSearch::None);
         let is_positive = matches!(&search, MeasureSearch::Found(measure) if measure.singular.is_empty());
         let multiplier = if is_positive && positions.is_none() { multiplier(assembly) } else { None };
-        Measure { search: Some(search), jumps, multiplier }
+        Measure { search: Some(search), square, jumps, multiplier }
     }
 
     /// What to print.
@@ -47,7 +51,8 @@ impl<'g> Measure<'g> {
             Some(MeasureSearch::TooLong) => "not looked for: the equations are too long".to_owned(),
             Some(MeasureSearch::Found(measure)) => {
                 let between = if self.jumps { ", between events" } else { "" };
-                format!("{}{between}", words(measure))
+                let jumps = if measure.jumps { ", where nothing jumps" } else { "" };
+                format!("{}{jumps}{between}", words(measure, self.square))
             }
         };
         let changing = self.multiplier.filter(|multiplier| multiplier.constant().is_none());
@@ -66,20 +71,20 @@ impl<'g> Measure<'g> {
             "density": text(&measure.density),
             "density_in_velocities": text(&measure.in_velocities),
             "singular": measure.singular.iter().map(Expr::to_string).collect::<Vec<_>>(),
-            "jumps": self.jumps,
+            "jumps": self.jumps || measure.jumps,
             "reducing_multiplier": text(&self.multiplier),
         })
     }
 }
 
 /// `r dx dy, r³ dx dη, Liouville's`
-fn words(measure: &PhaseMeasure<'_>) -> String {
+fn words(measure: &PhaseMeasure<'_>, square: bool) -> String {
     let written = |density: Option<Expr<'_>>| {
         let formula = density.map(|density| density.display(Style::Book));
         formula.filter(|formula| columns(formula) <= WIDEST / 2)
     };
     let (density, in_velocities) = (written(measure.density), written(measure.in_velocities));
-    let name = if measure.density.is_none() { "1/det(b)" } else { "N" };
+    let name = if measure.density.is_none() && square { "1/det(b)" } else { "N" };
     let density = density.unwrap_or_else(|| name.to_owned());
     let other = match in_velocities {
         _ if measure.density.is_some() && measure.density == measure.in_velocities => {
