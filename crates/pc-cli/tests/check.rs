@@ -339,6 +339,20 @@ fn measures_for_programs() {
     assert_eq!(disk["singular"], json!([]));
     let sleigh = &report("chaplygin-sleigh")["invariant_measure"];
     assert_eq!(sleigh["singular"], json!(["p_ω"]));
+    // A determinant of five rows is not written out.
+    let rows = (0..5).map(|i| {
+        let terms: Vec<String> = (0..5).map(|j| format!("cos({} + q{j})*q{j}'", i * j)).collect();
+        format!("u{i} = {{ start = 0.1, is = \"3*q{i}' + {}\" }}\n", terms.join(" + "))
+    });
+    let coordinates: String = (0..5).map(|i| format!("q{i} = 0.{i}\n")).collect();
+    let kinetic: Vec<String> = (0..5).map(|i| format!("u{i}^2/2")).collect();
+    let dense = format!(
+        "[coordinates]\n{coordinates}[quasi_velocities]\n{}[lagrangian]\nkinetic = \"{}\"\n",
+        rows.collect::<String>(),
+        kinetic.join(" + ")
+    );
+    let dense = &report(&dense)["invariant_measure"];
+    assert_eq!((&dense["liouville"], &dense["density"]), (&json!(true), &Value::Null));
     assert_eq!(sleigh["jumps"], false);
     assert_eq!(report("bouncing-ball")["invariant_measure"]["jumps"], true);
     // A mass that changes at a place: x' keeps its value there, and phase volume is that of another mass.

@@ -77,14 +77,14 @@ impl<'g> Measure<'g> {
     }
 }
 
-/// `r dx dy, r³ dx dη, Liouville's`
+/// `r dx dy, r³ dx dη, Liouville's`; `square` is whether det b is a determinant.
 fn words(measure: &PhaseMeasure<'_>, square: bool) -> String {
     let written = |density: Option<Expr<'_>>| {
         let formula = density.map(|density| density.display(Style::Book));
         formula.filter(|formula| columns(formula) <= WIDEST / 2)
     };
     let (density, in_velocities) = (written(measure.density), written(measure.in_velocities));
-    let name = if measure.density.is_none() && square { "1/det(b)" } else { "N" };
+    let name = if measure.liouville && square { "1/det(b)" } else { "N" };
     let density = density.unwrap_or_else(|| name.to_owned());
     let other = match in_velocities {
         _ if measure.density.is_some() && measure.density == measure.in_velocities => {
