@@ -15,6 +15,9 @@ const MOST_PRODUCTS: usize = 64;
 /// The most functions that are combined: some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
+/// The longest components, in operations written out; how deep they are nested is bounded by that, too.
+const LONGEST: u32 = 1_000;
+
 /// The greatest power of a sum that is multiplied out.
 const MOST_POWER: i32 = 4;
 
@@ -40,6 +43,9 @@ impl Graph {
     /// ```
     pub fn potential<'g>(&'g self, form: &[Expr<'g>], variables: &[Expr<'g>]) -> Option<Expr<'g>> {
         assert_eq!(form.len(), variables.len(), "a component for each variable");
+        if form.iter().any(|f| f.tree_cost() > LONGEST) {
+            return None;
+        }
         let mut functions: Vec<Expr<'g>> = Vec::new();
         for (&f, &z) in form.iter().zip(variables) {
             for product in self.products(f)? {
@@ -248,5 +254,15 @@ mod tests {
             assert_eq!(graph.potential(&form, &[x, y, z]), None);
         }
         assert_eq!(graph.potential(&[0.into(), 0.into(), 0.into()], &[x, y, z]), Some(0.into()));
+    }
+
+    /// Deep ones are given up, not descended into for ever.
+    #[test]
+    fn deep_forms_are_given_up() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        let nested = |depth: usize| (0..depth).fold(y, |f, _| (f * x + 1.0) * y + 2.0);
+        assert!(graph.potential(&[nested(4), y], &[x, y]).is_none());
+        assert!(graph.potential(&[nested(100_000), y], &[x, y]).is_none());
     }
 }
