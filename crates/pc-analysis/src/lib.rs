@@ -157,6 +157,7 @@
 //! is by every system with potential forces, and by some under nonholonomic constraints. Those have a bracket as well, the
 //! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems a time in which they are Lagrangian,
 //! by a [`ReducingMultiplier`].
+//! [`MeasureSearch::of`] asks for all that is known of a motion.
 
 mod brackets;
 mod error;
@@ -177,6 +178,7 @@ pub use integrals::cyclic_displacements::CyclicDisplacement;
 pub use integrals::rates::{Conservation, Rates};
 pub use integrals::search::{ConservationVerdict, Integral, Integrals, Origin};
 pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
+pub use measures::phase_measure::{MeasureSearch, PhaseMeasure};
 pub use measures::reducing_multiplier::ReducingMultiplier;
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};

@@ -24,6 +24,7 @@ Heavy top of Lagrange
                      norm    conserved (proved), a Casimir
                      spin    conserved for these parameters (proved)
                      energy  conserved (proved)
+  invariant measure  dx dy, and so dx dη, Liouville's
   steady motion      γ1 = 0, γ2 = 0, γ3 = 1, ω1 = 0, ω2 = 0, ω3 = 2.52
                      0.825 from the start, with its area, norm
                      eigenvalues 0.7766 ± 1.89i, 0 (twice), -0.7766 ± 1.89i
@@ -47,6 +48,7 @@ Euler's top
   second derivation  agrees at 100 states
   integrals          momentum  conserved (proved), a Casimir
                      energy    conserved (proved)
+  invariant measure  dx dy, and so dx dη, Liouville's
   steady motion      ω1 = 0, ω2 = 0, ω3 = 1.05409
                      1 from the start, with its momentum
                      eigenvalues ±1.054i, 0
@@ -71,6 +73,7 @@ Charged particle in a pulsating magnetic field
   second derivation  agrees at 100 states
   integrals          momentum  conserved (proved)
                      energy    dE/dt = -½ B0 ε ρ η2 cos(t), -0.25 at the start
+  invariant measure  ρ dx dy, and so dx dη, Liouville's
 ";
 
 const PLANE: &str = "[parameters]\nm = 2.0\n[coordinates]\nx = 1.0\ny = 0.0\n[quasi_velocities]\n\"y'\" = 0.5\n\
@@ -144,7 +147,7 @@ fn a_check_in_print() {
 fn every_check_fits_on_a_screen() {
     for model in pc_model::BUILTIN {
         let text = check(model.name);
-        assert!(text.lines().count() <= 28, "{text}");
+        assert!(text.lines().count() <= 30, "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 130), "{text}");
     }
 }
@@ -293,6 +296,70 @@ fn no_steady_motion_is_claimed_where_there_is_none() {
         assert!(!check(model).contains("steady motion"), "{model} is not autonomous");
         assert_eq!(report(model)["steady_motion"], Value::Null);
     }
+}
+
+/// What is said of the invariant measure of a model of the program.
+#[track_caller]
+fn measure(model: &str) -> String {
+    let text = check(model);
+    let line = text.lines().find_map(|line| line.strip_prefix("  invariant measure  "));
+    line.unwrap_or_else(|| panic!("{text}")).to_owned()
+}
+
+#[test]
+fn the_measure_that_a_motion_keeps_is_written() {
+    for (model, said) in [
+        ("heavy-top-euler", "sin(θ) dx dy, and so dx dη, Liouville's"),
+        ("relativistic-particle", "ρ dx dy, (ρ/((η1² + η2²)/c² - 1)²) dx dη, Liouville's"),
+        (
+            "spherical-pendulum-cartesian",
+            "-z dx dy, (-z ((x²/z² + 1) (y²/z² + 1) - x² y²/z⁴)) dx dη, Liouville's",
+        ),
+        ("turning-wire", "(α t + 1) dx dy, (1/(α t + 1)) dx dη, Liouville's"),
+        ("bouncing-ball", "dx dy, and so dx dη, Liouville's, between events"),
+        // Constraints, and no potential.
+        ("tilted-disk", "sin(θ) dx dy, and so dx dη"),
+        ("turntable", "dx dy, and so dx dη"),
+        // Towards the steady motion volume would shrink to nothing, but for the density.
+        ("chaplygin-sleigh", "(1/p_ω) dx dy, (1/ω) dx dη, singular where p_ω = 0"),
+        ("suslov", "none found"),
+        ("appell-hamel", "not looked for: a constraint is not affine in the velocities"),
+    ] {
+        assert_eq!(measure(model), said, "{model}");
+    }
+}
+
+/// With resistance ẍ = −ẋ/10 phase volume shrinks at a rate that no function of the place makes up for.
+#[test]
+fn measures_for_programs() {
+    assert_eq!(report(PENDULUM)["invariant_measure"], Value::Null);
+    let disk = &report("vertical-disk")["invariant_measure"];
+    assert_eq!(disk["liouville"], false);
+    assert_eq!(disk["density"], disk["reducing_multiplier"]);
+    assert_eq!(disk["singular"], json!([]));
+    let sleigh = &report("chaplygin-sleigh")["invariant_measure"];
+    assert_eq!(sleigh["singular"], json!(["p_ω"]));
+    // A determinant of five rows is not written out.
+    let rows = (0..5).map(|i| {
+        let terms: Vec<String> = (0..5).map(|j| format!("cos({} + q{j})*q{j}'", i * j)).collect();
+        format!("u{i} = {{ start = 0.1, is = \"3*q{i}' + {}\" }}\n", terms.join(" + "))
+    });
+    let coordinates: String = (0..5).map(|i| format!("q{i} = 0.{i}\n")).collect();
+    let kinetic: Vec<String> = (0..5).map(|i| format!("u{i}^2/2")).collect();
+    let dense = format!(
+        "[coordinates]\n{coordinates}[quasi_velocities]\n{}[lagrangian]\nkinetic = \"{}\"\n",
+        rows.collect::<String>(),
+        kinetic.join(" + ")
+    );
+    let dense = &report(&dense)["invariant_measure"];
+    assert_eq!((&dense["liouville"], &dense["density"]), (&json!(true), &Value::Null));
+    assert_eq!(sleigh["jumps"], false);
+    assert_eq!(report("bouncing-ball")["invariant_measure"]["jumps"], true);
+    // A mass that changes at a place: x' keeps its value there, and phase volume is that of another mass.
+    let step = "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"step(x, 1, 2)*x'^2/2\"\n";
+    assert_eq!(report(step)["invariant_measure"]["jumps"], true);
+    let top = &report("euler-top")["invariant_measure"];
+    assert_eq!((&top["density"], &top["liouville"]), (&json!("1"), &json!(true)));
 }
 
 /// What resets change is conserved between them; what they leave as it is, always.

@@ -178,6 +178,7 @@ mod reduction;
 
 pub use classification::binding::{Binding, Redundant};
 pub use classification::classification::{ConstraintClassification, Kind};
+pub use classification::combinations::IntegrableCombination;
 pub use error::NonholoError;
 pub use n_trailer::{NTrailer, Wagon};
 pub use reduction::adapted::Adapted;

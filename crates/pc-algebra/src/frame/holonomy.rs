@@ -11,7 +11,7 @@ pub enum Holonomy<'g> {
     /// c_rs^m = 0 for all r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n
     /// > k.
     Holonomic {
-        /// π_m, where it is elementary to find and vanishes at x = 0, t = 0.
+        /// π_m, where it is elementary to find.
         coordinate: Option<Expr<'g>>,
     },
     /// There is no such coordinate.
@@ -29,8 +29,7 @@ impl<'g> Frame<'g> {
     /// closed if and only if c_rs^m = 0 for all r, s = 0..k, and then locally ω^m = dπ_m. Where n > k this
     /// holds on each submanifold that the constraints leave.
     ///
-    /// π_m is returned where n = k and the coefficients of ω^m are polynomials of moderate degree in x and t,
-    /// by π_m = ∫₀¹ (a_mi x_i + a_m0 t)(τx, τt) dτ; it satisfies X_s π_m = δ_ms.
+    /// π_m is returned where n = k and it is [found](pc_expr::Graph::potential); it satisfies X_s π_m = δ_ms.
     ///
     /// # Panics
     /// If m is not in 1..=k.
@@ -55,24 +54,15 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// π_m with dπ_m = ω^m, if the coefficients are polynomials.
+    /// π_m with dπ_m = ω^m, if it is found.
     fn quasi_coordinate(&self, m: usize) -> Option<Expr<'g>> {
         if self.coordinates().len() != self.operators() {
             return None;
         }
         let (a, a0) = self.definitions().ok()?;
         let variables: Vec<Expr<'g>> = self.coordinates().iter().copied().chain([self.time()]).collect();
-        let form = a.row(m - 1).iter().copied().chain([a0[m - 1]]);
-        let mut terms = Vec::new();
-        for (coefficient, &variable) in form.zip(&variables) {
-            for (exponents, c) in self.graph().polynomial(coefficient, &variables)?.terms {
-                let degree: u32 = exponents.iter().sum();
-                let powers = exponents.iter().zip(&variables).map(|(&e, &z)| z.powi(e.cast_signed()));
-                let monomial = powers.fold(variable, |product, power| product * power);
-                terms.push(c * monomial * Expr::ratio(1, i64::from(degree) + 1));
-            }
-        }
-        let coordinate = self.graph().sum(terms);
+        let form: Vec<Expr<'g>> = a.row(m - 1).iter().copied().chain([a0[m - 1]]).collect();
+        let coordinate = self.graph().potential(&form, &variables)?;
         let derivatives = (0..=self.operators()).map(|s| self.apply(s, &[coordinate])[0]);
         let expected = (0..=self.operators()).map(|s| if s == m { Expr::ONE } else { Expr::ZERO });
         derivatives.eq(expected).then_some(coordinate)

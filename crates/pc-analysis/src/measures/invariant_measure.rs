@@ -4,7 +4,7 @@ use pc_mech::{Expr, Graph, Matrix, Number, System, determinant};
 
 use crate::error::AnalysisError;
 
-/// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of the coordinates and c_i rational.
+/// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of (t, x, y) and c_i rational.
 #[derive(Clone, Debug)]
 pub struct InvariantMeasure<'g> {
     /// The ψ_i with their powers c_i, none of them 0.
@@ -15,6 +15,20 @@ impl<'g> InvariantMeasure<'g> {
     /// The density N.
     pub fn density(&self) -> Expr<'g> {
         self.density_to(Number::ONE)
+    }
+
+    /// That of growths ψ̇_i/ψ_i c_i, a column each, which cancel the last column.
+    pub(crate) fn of_relation(
+        graph: &'g Graph,
+        factors: &[Expr<'g>],
+        columns: &[Vec<Expr<'g>>],
+    ) -> Option<InvariantMeasure<'g>> {
+        // A relation in which the last column stands gives the powers.
+        let last = factors.len();
+        let relation = graph.linear_relations(columns).into_iter().find(|c| !c[last].is_zero())?;
+        let scale = relation[last].recip();
+        let powers = factors.iter().copied().zip(relation.into_iter().map(|c| c * scale));
+        Some(InvariantMeasure { factors: powers.filter(|(_, power)| !power.is_zero()).collect() })
     }
 
     /// N^p
@@ -56,8 +70,8 @@ pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
 }
 
 /// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of `factors`, functions of
-/// the coordinates that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved.
-/// Without `factors` det b, the entries of the mass matrix and its determinant are tried: with n = k and forces that have a
+/// (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved.
+/// Without `factors` the coordinates, their sines and cosines, det b, the entries of the mass matrix and its determinant are tried: with n = k and forces that have a
 /// potential dx dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of their
 /// [free system](pc_nonholo::Constrained::free_system).
 ///
@@ -111,32 +125,36 @@ pub fn invariant_measure<'g>(
     let factors = if factors.is_empty() { candidates(system)? } else { factors.to_vec() };
     let x = system.frame().coordinates().iter().copied();
     let z = states(system).into_iter().zip(canonical.state_rates().iter().copied());
+    let y = canonical.momenta().iter().copied().zip(canonical.right_hand_side().iter().copied());
     let along: Vec<_> = x
         .zip(canonical.velocities().iter().copied())
+        .chain(y)
         .chain(z)
         .chain([(system.frame().time(), Expr::ONE)])
         .collect();
     let rates = graph.directional(&factors, &along);
     let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);
     let columns: Vec<Vec<Expr<'g>>> = growth.chain([vec![divergence]]).collect();
-    // The last column is the divergence: a relation in which it stands gives the powers.
-    let relation = graph.linear_relations(&columns).into_iter().find(|c| !c[factors.len()].is_zero());
-    Ok(relation.map(|c| {
-        let scale = c[factors.len()].recip();
-        let powers = factors.into_iter().zip(c.into_iter().map(|c| c * scale));
-        InvariantMeasure { factors: powers.filter(|(_, power)| !power.is_zero()).collect() }
-    }))
+    Ok(InvariantMeasure::of_relation(graph, &factors, &columns))
 }
 
-/// The factors of det b where b is square, the diagonal of the mass matrix and its determinant, as far as they are not constant.
-fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
+/// The coordinates on which some expressions depend, with their sines and cosines.
+pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let symbols = system.graph().symbols_of(parts);
+    let moving = system.frame().coordinates().iter().filter(|x| symbols.contains(x));
+    moving.flat_map(|&x| [x, x.sin(), x.cos()]).collect()
+}
+
+/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as far as they are not
+/// constant.
+pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();
     let equations = system.poincare()?;
     let mass = equations.mass_matrix();
     let frame = determinants_of_blocks(graph, system.frame().b());
     let inertias = (0..mass.rows()).map(|s| mass[(s, s)]);
-    let mut candidates: Vec<Expr<'g>> = Vec::new();
-    for candidate in frame.into_iter().chain(inertias).chain(determinant(graph, mass)) {
+    let mut candidates = simple_factors(system, &[mass.entries(), system.frame().b().entries()].concat());
+    for candidate in frame.into_iter().flatten().chain(inertias).chain(determinant(graph, mass)) {
         if candidate.constant().is_none() && !candidates.contains(&candidate) {
             candidates.push(candidate);
         }
@@ -144,9 +162,12 @@ fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     Ok(candidates)
 }
 
-/// The determinants of the blocks into which rows and columns of a matrix fall by its zeros, up to signs; those of blocks that
-/// are no short expressions are left out.
-fn determinants_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Vec<Expr<'g>> {
+/// The determinants of the blocks into which rows and columns of a matrix fall by its zeros, up to signs; none for blocks
+/// that are not square, and of which they are no short expressions.
+pub(crate) fn determinants_of_blocks<'g>(
+    graph: &'g Graph,
+    matrix: &Matrix<Expr<'g>>,
+) -> Vec<Option<Expr<'g>>> {
     let mut determinants = Vec::new();
     let mut open: Vec<usize> = (0..matrix.rows()).collect();
     while let Some(first) = open.first().copied() {
@@ -162,11 +183,12 @@ fn determinants_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Ve
             }
         }
         if rows.is_empty() {
-            break; // a row of zeros: no determinant is a factor of a density
+            determinants.push(None); // a row of zeros: no determinant is a factor of a density
+            break;
         }
         open.retain(|i| !rows.contains(i));
         let block = Matrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])]);
-        determinants.extend(determinant(graph, &block).filter(|_| block.rows() == block.columns()));
+        determinants.push(determinant(graph, &block).filter(|_| block.rows() == block.columns()));
     }
     determinants
 }

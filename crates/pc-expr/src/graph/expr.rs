@@ -55,6 +55,28 @@ impl<'g> Expr<'g> {
         matches!(self.atom, Atom::Constant(c) if !c.is_finite())
     }
 
+    /// The number that stands before all else, 1 where none does; that of a constant is itself.
+    ///
+    /// ```
+    /// # use pc_expr::{Graph, Number};
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert_eq!((-3.0 * x / y).numerical_factor(), Number::integer(-3));
+    /// assert_eq!((2.0 * x + y).numerical_factor(), Number::ONE);
+    /// ```
+    pub fn numerical_factor(self) -> Number {
+        let (Some(graph), Atom::Node(id)) = (self.graph, self.atom) else {
+            return self.constant().unwrap_or(Number::ONE);
+        };
+        graph.with(|dag| match dag.node(id) {
+            Node::Sum { constant, terms } if constant.is_zero() => match dag.terms(terms) {
+                [(_, factor)] => *factor,
+                _ => Number::ONE,
+            },
+            _ => Number::ONE,
+        })
+    }
+
     /// The name, if this is a symbol.
     pub fn symbol_name(self) -> Option<String> {
         let (Some(graph), Atom::Node(id)) = (self.graph, self.atom) else { return None };

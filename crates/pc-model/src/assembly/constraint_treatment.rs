@@ -1,7 +1,7 @@
 //! How constraints bind a system, and its equations of motion under them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers, System};
-use pc_nonholo::{Adapted, Constrained, Kind, NonholoError, Redundant};
+use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
 
 /// What a constraint does.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +110,32 @@ impl<'g> ConstraintTreatment<'g> {
     /// [`ConstraintClassification::integrable_combinations`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
+    }
+
+    /// Those of these combinations that are found in closed form, `at` values of time and state where the constraints are
+    /// regular.
+    ///
+    /// # Errors
+    /// [`NonholoError`], none for constraints that could be classified there.
+    pub fn combinations_found(
+        &self,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Vec<IntegrableCombination<'g>>, NonholoError> {
+        let Some(multipliers) = &self.multipliers else { return Ok(Vec::new()) };
+        let kinds: Vec<Kind> = self.classified.iter().map(|verdict| verdict.kind).collect();
+        IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
+    }
+
+    /// The f of those conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
+    pub fn positions(&self, system: &System<'g>) -> Option<Vec<Expr<'g>>> {
+        let is_holonomic =
+            |verdict: &ClassifiedConstraint| matches!(verdict.kind, Kind::Position | Kind::Integrable);
+        if !self.classified.iter().all(is_holonomic) {
+            return None;
+        }
+        let ConstraintFormulation::Multipliers(held) = &self.formulation else { return Some(Vec::new()) };
+        let positions = held.multipliers.constraints().iter().filter(|c| c.is_holonomic(system));
+        Some(positions.map(Constraint::expression).collect())
     }
 
     /// The constraints that follow from others and were dropped.

@@ -1,11 +1,10 @@
 //! Constraints sorted by what they do.
 
-use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
+use pc_mech::{Constraint, Expr, Multipliers, Neighbourhood, System};
 
 use crate::classification::binding::{Binding, Redundant};
-use crate::classification::involutive::{OperatorField, involutive_closure};
+use crate::classification::reach::{Reach, affine};
 use crate::error::NonholoError;
-use crate::reduction::adapted::independent;
 
 /// What a constraint does, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +81,7 @@ impl<'g> ConstraintClassification<'g> {
     }
 
     /// How many combinations of the nonholonomic constraints, with coefficients that are functions of time and place, are integrable though
-    /// none of them is: the l + m dimensions of all velocities, l of them allowed, less those of the least involutive family of
+    /// none of them is (which they are says [`IntegrableCombination`](crate::IntegrableCombination)): the l + m dimensions of all velocities, l of them allowed, less those of the least involutive family of
     /// fields that contains the allowed ones, less the integrable constraints.
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
@@ -104,14 +103,8 @@ fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],
 ) -> Result<(Vec<Kind>, usize), NonholoError> {
-    let all = multipliers.constraints();
-    let affine: Vec<usize> = (0..all.len()).filter(|&a| !all[a].is_nonlinear()).collect();
-    let mut kinds = vec![Kind::Nonlinear; all.len()];
-    if affine.is_empty() {
-        return Ok((kinds, 0));
-    }
-    let without: Vec<Constraint<'g>> = affine.iter().map(|&a| all[a].clone()).collect();
-    let without = multipliers.equations().system().with_multipliers(&without)?;
+    let mut kinds = vec![Kind::Nonlinear; multipliers.constraints().len()];
+    let (affine, Some(without)) = affine(multipliers)? else { return Ok((kinds, 0)) };
     let (of_affine, combinations) = kinds_of_affine(&without, at)?;
     for (a, kind) in affine.into_iter().zip(of_affine) {
         kinds[a] = kind;
@@ -128,20 +121,14 @@ fn kinds_of_affine<'g>(
         return Ok((vec![Kind::Position; m], 0));
     }
     let system = multipliers.equations().system();
-    let rows = multipliers.constraints().iter().map(|constraint| constraint.coefficients(system));
-    let (rows, rests): (Vec<Vec<Expr<'g>>>, Vec<Expr<'g>>) =
-        rows.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-    let allowed = allowed(system, &independent(multipliers, at)?, &rows, &rests)?;
-    let mut near = Neighbourhood { centre: at.to_vec() };
-    near.centre.extend(system.parameters().iter().copied());
-    let reached = involutive_closure(system, &allowed, &rows, &near);
-    let graph = system.graph();
+    let reach = Reach::new(multipliers, at)?;
+    let (graph, near) = (system.graph(), &reach.near);
     let kinds: Vec<Kind> = (0..m)
         .map(|a| {
             if multipliers.is_holonomic(a) {
                 return Kind::Position;
             }
-            let components: Vec<Vec<Expr<'g>>> = reached.iter().map(|along| along[a].clone()).collect();
+            let components: Vec<Vec<Expr<'g>>> = reach.reached.iter().map(|along| along[a].clone()).collect();
             if near.residual(graph, &components) <= Neighbourhood::ROUNDING {
                 return Kind::Integrable;
             }
@@ -150,27 +137,5 @@ fn kinds_of_affine<'g>(
         })
         .collect();
     let nonholonomic = kinds.iter().filter(|kind| matches!(kind, Kind::Nonholonomic { .. })).count();
-    Ok((kinds, nonholonomic.saturating_sub(reached.len())))
-}
-
-/// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k: the l quasi-velocities
-/// `independent` are theirs.
-///
-/// # Errors
-/// [`MechError::Algebra`] of constraints that are dependent everywhere.
-fn allowed<'g>(
-    system: &System<'g>,
-    independent: &[usize],
-    rows: &[Vec<Expr<'g>>],
-    rests: &[Expr<'g>],
-) -> Result<Vec<OperatorField<'g>>, NonholoError> {
-    let l = independent.len();
-    let a = Matrix::from_fn(l + rows.len(), system.quasi_velocities().len(), |u, s| match u.checked_sub(l) {
-        Some(alpha) => rows[alpha][s],
-        None if independent[u] == s => Expr::ONE,
-        None => Expr::ZERO,
-    });
-    let drift: Vec<Expr<'g>> = independent.iter().map(|_| Expr::ZERO).chain(rests.iter().copied()).collect();
-    let change = system.frame().changed_by(&a, &drift).map_err(MechError::from)?;
-    Ok((0..=l).map(|s| change.old_components(s)).collect())
+    Ok((kinds, nonholonomic.saturating_sub(reach.reached.len())))
 }

@@ -62,7 +62,7 @@ fn commutator<'g>(system: &System<'g>, u: &OperatorField<'g>, v: &OperatorField<
 }
 
 /// U f = U^p X_p f for each f.
-fn along<'g>(system: &System<'g>, u: &OperatorField<'g>, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub(crate) fn along<'g>(system: &System<'g>, u: &OperatorField<'g>, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let (graph, frame) = (system.graph(), system.frame());
     let rate = |i: usize| {
         let row = std::iter::once(frame.b0()[i]).chain(frame.b().row(i).iter().copied());

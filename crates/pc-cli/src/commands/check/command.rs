@@ -3,13 +3,15 @@
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
-use pc_nonholo::{Kind, Redundant};
+use pc_nonholo::{IntegrableCombination, Kind, Redundant};
 use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
 use pc_verify::{Agreement, Options, VerifyError, verify};
 use serde_json::{Value, json};
 
+use super::combinations;
 use super::frame;
 use super::integrals;
+use super::measure::Measure;
 use super::steady;
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
@@ -65,9 +67,13 @@ struct Report<'g> {
     constraints: Vec<(String, String)>,
     classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
+    /// How many there are.
     integrable_combinations: usize,
+    /// Those of them that are found.
+    combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     integrals: Integrals<'g>,
+    measure: Measure<'g>,
     steady: SteadySearch,
     operations: Operations,
     second: Option<Result<Agreement, VerifyError>>,
@@ -128,7 +134,9 @@ impl<'g> Report<'g> {
             classified: assembly.constraints.classified().to_vec(),
             redundant: assembly.constraints.redundant().to_vec(),
             integrable_combinations: assembly.constraints.integrable_combinations(),
+            combinations: assembly.placed(assembly.constraints.combinations_found(&assembly.at_start()))?,
             start_residual: start_residual(assembly, &near),
+            measure: Measure::of(assembly, &near.centre),
             steady: steady_motion(assembly, equations, motion, integrals.list()),
             integrals,
             operations,
@@ -200,6 +208,7 @@ impl<'g> Report<'g> {
             );
         }
         text += &labelled("integrals", LABEL, &kept);
+        text += &labelled("invariant measure", LABEL, &self.measure.lines());
         text + &labelled("steady motion", LABEL, &steady::lines(&self.steady, WIDTH))
     }
 
@@ -213,13 +222,7 @@ impl<'g> Report<'g> {
         match self.constraints.as_slice() {
             [] => vec!["none".to_owned()],
             all => {
-                let combinations = match self.integrable_combinations {
-                    0 => None,
-                    1 => Some("one combination of the nonholonomic ones is integrable".to_owned()),
-                    n => {
-                        Some(format!("{n} independent combinations of the nonholonomic ones are integrable"))
-                    }
-                };
+                let combinations = combinations::lines(&self.combinations, self.integrable_combinations);
                 all.iter().map(|(name, what)| format!("{name}: {what}")).chain(combinations).collect()
             }
         }
@@ -240,12 +243,14 @@ impl<'g> Report<'g> {
             "constraints": self.classified.iter().map(constraint).collect::<Vec<_>>(),
             "dropped_constraints": self.redundant.iter().map(dropped_object).collect::<Vec<_>>(),
             "integrable_combinations": self.integrable_combinations,
+            "combinations_found": self.combinations.iter().map(combinations::object).collect::<Vec<_>>(),
             "jacobi_residual": self.jacobi_residual,
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,
             "negative_energy": self.negative_energy,
             "start_residual": self.start_residual,
             "integrals": integrals,
+            "invariant_measure": self.measure.object(),
             "steady_motion": steady::object(&self.steady),
             "second_derivation": self.second.as_ref().map(verification::object),
         })

@@ -1,0 +1,294 @@
+//! The measure that a motion is known to keep: Liouville's, or one that is found.
+
+use pc_mech::{Expr, Graph, Matrix, MechError, System};
+
+use crate::error::AnalysisError;
+use crate::measures::invariant_measure::{
+    InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
+};
+
+/// The most free quasi-velocities of motions of which a measure is looked for, where no theorem has one.
+const MOST_VELOCITIES: usize = 6;
+
+/// The most factors of a density that are tried together.
+const MOST_FACTORS: usize = 60;
+
+/// The longest equations of such motions, in operations written out: some tenths of a second.
+const LONGEST: u32 = 4_000;
+
+/// What is known of the measures that a motion keeps.
+#[derive(Clone, Debug)]
+pub enum MeasureSearch<'g> {
+    /// This one.
+    Found(PhaseMeasure<'g>),
+    /// None is found.
+    None,
+    /// It depends on forces that are computed outside.
+    External,
+    /// No theorem has one, and the equations are too long to look for one.
+    TooLong,
+}
+
+/// A measure in the phase space of (x, y) and first-order states that a motion keeps.
+#[derive(Clone, Debug)]
+pub struct PhaseMeasure<'g> {
+    /// Whether it is Liouville's, that of a holonomic system by its frame, whatever the Lagrangian.
+    pub liouville: bool,
+    /// N of N dx dy, positive at the start; none where it is no short expression, 1/det b or det(∂f/∂x_D)/det b_I.
+    pub density: Option<Expr<'g>>,
+    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none where it is no short expression.
+    pub in_velocities: Option<Expr<'g>>,
+    /// The momenta where they vanish of which N is zero or infinite.
+    pub singular: Vec<Expr<'g>>,
+    /// Whether momenta or ẋ are written with what may jump, a sign, a step or an angle: the measure is kept where they do not.
+    pub jumps: bool,
+}
+
+impl<'g> MeasureSearch<'g> {
+    /// What is known of the motion (10), (11) of a system, under constraints of their [free
+    /// system](pc_nonholo::Constrained::free_system).
+    ///
+    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at the rate
+    /// η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that of c_rs^m by its
+    /// antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N = 1/det b, by which dx dy is
+    /// Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are kept, with any choice of as many dependent
+    /// coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det b_I: that of Liouville on each surface f = const. Where no f are
+    /// known N is tried as a product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
+    /// `positions` are f of a holonomic system, declared integrals of the place are others; `None` says that it is not
+    /// holonomic.
+    ///
+    /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its factors also;
+    /// this is left out for more than six quasi-velocities and for long equations.
+    ///
+    /// `at` are values of time, state and parameters, where N is positive.
+    ///
+    /// # Errors
+    /// Those of the equations (9).
+    ///
+    /// ```
+    /// use pc_analysis::MeasureSearch;
+    /// use pc_mech::{Graph, System};
+    ///
+    /// // r' = u, φ' = w/r with an inertia m(r) of w: dx dy r, dx dη r m.
+    /// let graph = Graph::new();
+    /// let particle = System::builder(&graph)
+    ///     .coordinates(["r", "φ"])
+    ///     .quasi_velocities(["u", "w"])
+    ///     .kinematics(|_, x, eta| [eta[0], eta[1] / x[0]])
+    ///     .lagrangian(|_, x, eta| (eta[0].square() + x[0].exp() * eta[1].square()) / 2.0)
+    ///     .build()?;
+    /// let r = graph.symbol("r");
+    /// let MeasureSearch::Found(measure) = MeasureSearch::of(&particle, Some(&[]), &[(r, 2.0)])? else { panic!() };
+    /// assert!(measure.liouville);
+    /// assert_eq!(measure.density, Some(r));
+    /// assert_eq!(measure.in_velocities, Some(r * r.exp()));
+    /// # Ok::<(), pc_analysis::AnalysisError>(())
+    /// ```
+    pub fn of(
+        system: &System<'g>,
+        positions: Option<&[Expr<'g>]>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<MeasureSearch<'g>, AnalysisError> {
+        let external = system.external_forces().iter();
+        if external.clone().any(|(_, force)| system.forces().iter().any(|q| q.depends_on(*force))) {
+            return Ok(MeasureSearch::External);
+        }
+        let equations = system.poincare()?;
+        let mass = equations.mass_matrix();
+        let (liouville, density, momenta) = match positions
+            .and_then(|positions| of_the_frame(system, positions))
+        {
+            Some(density) => (true, density, Vec::new()),
+            None => {
+                let cost =
+                    |parts: &[Expr<'g>]| parts.iter().map(|e| e.tree_cost()).fold(0, u32::saturating_add);
+                let length = cost(mass.entries()).saturating_add(cost(equations.right_hand_side()));
+                if mass.rows() > MOST_VELOCITIES || length > LONGEST {
+                    return Ok(MeasureSearch::TooLong);
+                }
+                let Some(measure) = found(system)? else { return Ok(MeasureSearch::None) };
+                let momenta = system.momentum_symbols();
+                let singular = |factor: &Expr<'g>| momenta.contains(factor);
+                let singular = measure.factors.iter().map(|&(factor, _)| factor).filter(singular).collect();
+                (false, Some(measure.density()), singular)
+            }
+        };
+        let known: Vec<_> = system.momentum_symbols().into_iter().zip(system.momenta()).collect();
+        let graph = system.graph();
+        let all = product_of_blocks(graph, mass).zip(density).map(|(of_mass, density)| {
+            let density = graph.substitute(&[density], &known)[0];
+            positive(system, graph.shorten(&[density * of_mass], &[])[0], at)
+        });
+        Ok(MeasureSearch::Found(PhaseMeasure {
+            liouville,
+            density: density.map(|density| positive(system, density, at)),
+            in_velocities: all,
+            singular: momenta,
+            jumps: jumps(system),
+        }))
+    }
+}
+
+/// Whether momenta or ẋ may jump as functions of (t, x, η).
+fn jumps(system: &System<'_>) -> bool {
+    let eta = system.quasi_velocities();
+    let state: Vec<Expr<'_>> = system.state().into_iter().chain([system.frame().time()]).collect();
+    let parts = [system.momenta(), system.frame().velocities(eta)].concat();
+    parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
+}
+
+/// The density by which (10), (11) keep phase volume whatever the Lagrangian; `Some(None)` for one that is no short expression.
+fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Option<Expr<'g>>> {
+    if !system.states().is_empty() || has_resistance(system) {
+        return None;
+    }
+    let (graph, frame) = (system.graph(), system.frame());
+    let growth = growth(system);
+    if growth.iter().all(|growth| growth.is_zero()) {
+        return Some(Some(Expr::ONE));
+    }
+    if frame.coordinates().len() == frame.operators() && frame.rank() == frame.operators() {
+        return Some(product_of_blocks(graph, frame.b()).map(|det| 1.0 / det));
+    }
+    of_surfaces(system, positions, &growth).or_else(|| of_factors(system, growth).map(Some))
+}
+
+/// det(∂f/∂x_D)/det b_I of the first functions f that no motion changes, those of `positions` and integrals of the place;
+/// `Some(None)` where it is no short expression.
+fn of_surfaces<'g>(
+    system: &System<'g>,
+    positions: &[Expr<'g>],
+    growth: &[Expr<'g>],
+) -> Option<Option<Expr<'g>>> {
+    let (graph, frame) = (system.graph(), system.frame());
+    let (x, k) = (frame.coordinates(), frame.operators());
+    let parameters = system.parameters().iter().map(|(parameter, _)| parameter);
+    let known: Vec<Expr<'g>> = x.iter().chain(parameters).copied().chain([frame.time()]).collect();
+    let of_place = |f: &Expr<'g>| graph.symbols_of(&[*f]).iter().all(|symbol| known.contains(symbol));
+    let integrals = system.integrals().iter().map(|&(_, f)| f).filter(of_place);
+    let mut slopes: Vec<Vec<Expr<'g>>> = Vec::new();
+    for f in positions.iter().copied().chain(integrals) {
+        let is_kept = (0..=k).all(|r| frame.apply(r, &[f])[0].is_zero());
+        let known = [slopes.as_slice(), &[graph.gradient(f, x)]].concat();
+        if is_kept && slopes.len() + k < x.len() && graph.generic_rank(&known) == known.len() {
+            slopes = known;
+        }
+    }
+    let dependent = independent_columns(graph, &slopes);
+    let others: Vec<usize> = (0..x.len()).filter(|i| !dependent.contains(i)).collect();
+    if others.len() != k {
+        return None;
+    }
+    let of = |rows: usize, entry: &dyn Fn(usize, usize) -> Expr<'g>| {
+        product_of_blocks(graph, &Matrix::from_fn(rows, rows, entry))
+    };
+    let held = of(dependent.len(), &|a, i| slopes[a][dependent[i]]);
+    let free = of(others.len(), &|i, s| frame.b()[(others[i], s)]);
+    let (Some(held), Some(free)) = (held, free) else { return Some(None) };
+    let density = graph.shorten(&[held / free], &[])[0];
+    let mut changes = (0..=k).map(|r| frame.apply(r, &[density])[0] / density + growth[r]);
+    changes.all(Expr::is_zero).then_some(Some(density))
+}
+
+/// A density that is a product of powers of coordinates, their sines and cosines.
+fn of_factors<'g>(system: &System<'g>, growth: Vec<Expr<'g>>) -> Option<Expr<'g>> {
+    let (graph, frame) = (system.graph(), system.frame());
+    let factors = simple_factors(system, frame.b().entries());
+    if factors.len() > MOST_FACTORS {
+        return None;
+    }
+    let rates = (0..=frame.operators()).map(|r| frame.apply(r, &factors)).collect::<Vec<_>>();
+    let of_factor = |j: usize| rates.iter().map(|rates| rates[j] / factors[j]).collect();
+    let columns: Vec<Vec<Expr<'g>>> = (0..factors.len()).map(of_factor).chain([growth]).collect();
+    Some(InvariantMeasure::of_relation(graph, &factors, &columns)?.density())
+}
+
+/// The first columns that are independent at almost all places.
+fn independent_columns<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::new();
+    for column in 0..rows.first().map_or(0, Vec::len) {
+        let chosen = |row: &Vec<Expr<'g>>| kept.iter().chain([&column]).map(|&j| row[j]).collect();
+        if graph.generic_rank(&rows.iter().map(chosen).collect::<Vec<_>>()) > kept.len() {
+            kept.push(column);
+        }
+    }
+    kept
+}
+
+/// Whether ∂Q_s/∂η_r + ∂Q_r/∂η_s is not identically zero: by the symmetry of M the trace of ∂Q/∂y vanishes if it is.
+fn has_resistance(system: &System<'_>) -> bool {
+    let (graph, eta) = (system.graph(), system.quasi_velocities());
+    let slopes: Vec<_> = system.forces().iter().map(|&q| graph.gradient(q, eta)).collect();
+    let k = slopes.len();
+    (0..k).any(|s| (0..=s).any(|r| !(slopes[s][r] + slopes[r][s]).is_zero()))
+}
+
+/// ∂b_ir/∂x_i + c_rs^s, r = 0..k: what X_r N/N cancels for a density N.
+fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    let (graph, frame, structure) = (system.graph(), system.frame(), system.structure());
+    let mut traces = vec![Vec::new(); frame.operators() + 1];
+    // Of c_rs^m and c_sr^m only that with r < s stands in the list.
+    for (r, s, m, c) in structure.nonzero() {
+        if m == s {
+            traces[r].push(c);
+        }
+        if m == r {
+            traces[s].push(-c);
+        }
+    }
+    let component = |r: usize, i: usize| match r.checked_sub(1) {
+        None => frame.b0()[i],
+        Some(s) => frame.b()[(i, s)],
+    };
+    let of = |(r, trace): (usize, Vec<Expr<'g>>)| {
+        let x = frame.coordinates().iter().enumerate();
+        graph.sum(x.map(|(i, &x)| component(r, i).derivative(x)).chain(trace))
+    };
+    traces.into_iter().enumerate().map(of).collect()
+}
+
+/// The determinant of a square matrix up to its sign, as the product of those of its blocks; none if one is no short
+/// expression.
+fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
+    let blocks = determinants_of_blocks(graph, matrix);
+    let product = blocks.iter().try_fold(Expr::ONE, |product, block| Some(product * (*block)?))?;
+    (!product.is_zero()).then_some(product)
+}
+
+/// One that is found, of positive density if there is such a one.
+fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
+    let known = |error| match error {
+        AnalysisError::Mech(MechError::NotQuadratic { .. }) => Ok(None),
+        error => Err(error),
+    };
+    let factors = candidates(system)?;
+    match invariant_measure(system, &factors).or_else(known)? {
+        Some(measure) => Ok(Some(measure)),
+        None => {
+            let momenta = system.momentum_symbols();
+            invariant_measure(system, &[factors, momenta].concat()).or_else(known)
+        }
+    }
+}
+
+/// The density without factors that never change, positive at the values `at`.
+fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) -> Expr<'g> {
+    let graph = system.graph();
+    let variables: Vec<Expr<'g>> = [system.frame().time()]
+        .into_iter()
+        .chain(system.state_with(&[system.quasi_velocities(), &system.momentum_symbols()].concat()))
+        .collect();
+    let fixed = |factor: Expr<'g>| !variables.iter().any(|&z| factor.depends_on(z));
+    let without = |density: Expr<'g>, parameter: Expr<'g>| {
+        let short = graph.substitute(&[density], &[(parameter, Expr::ONE)])[0];
+        let is_factor = !short.is_undefined() && !short.is_zero() && fixed(density / short);
+        if is_factor { short } else { density }
+    };
+    let density = system.parameters().iter().fold(density, |density, &(p, _)| without(density, p));
+    let density = if fixed(density) { Expr::ONE } else { density };
+    let density = density * density.numerical_factor().recip();
+    let momenta: Vec<_> = system.momentum_symbols().into_iter().zip(system.momenta()).collect();
+    let of_velocities = graph.substitute(&[density], &momenta);
+    let value = graph.evaluate(&of_velocities, at).map_or(1.0, |values| values[0]);
+    if value < 0.0 { -density } else { density }
+}

@@ -1,0 +1,117 @@
+//! The measure that the motion keeps, in words.
+
+use pc_analysis::{MeasureSearch, PhaseMeasure, ReducingMultiplier};
+use pc_mech::{Expr, Style, System};
+use pc_model::Assembly;
+use pc_nonholo::Voronets;
+use pc_print::{columns, combination};
+use serde_json::{Value, json};
+
+/// A formula of more columns is not printed.
+const WIDEST: usize = 80;
+
+/// What is known of it.
+#[derive(Clone, Debug)]
+pub(super) struct Measure<'g> {
+    /// None where a constraint is not affine in the velocities.
+    search: Option<MeasureSearch<'g>>,
+    /// Whether there are as many free quasi-velocities as coordinates.
+    square: bool,
+    /// Whether an event may change what the motion keeps between events.
+    jumps: bool,
+    /// Chaplygin's reducing multiplier.
+    multiplier: Option<Expr<'g>>,
+}
+
+impl<'g> Measure<'g> {
+    /// That of a model; `at` are values of time, state and parameters at the start.
+    pub(super) fn of(assembly: &Assembly<'g>, at: &[(Expr<'g>, f64)]) -> Measure<'g> {
+        let jumps = assembly.events.iter().any(|event| !event.resets.is_empty());
+        if assembly.constraints.nonlinear().is_some() {
+            return Measure { search: None, square: false, jumps, multiplier: None };
+        }
+        let positions = assembly.constraints.positions(&assembly.system);
+        // Equations that have been derived before: an error is that these have no closed form.
+        let free = assembly.free_system().ok();
+        let frame = free.as_ref().map(System::frame);
+        let square = frame.is_some_and(|frame| frame.coordinates().len() == frame.operators());
+        let found = free.and_then(|free| MeasureSearch::of(&free, positions.as_deref(), at).ok());
+        let search = found.unwrap_or(MeasureSearch::None);
+        let is_positive = matches!(&search, MeasureSearch::Found(measure) if measure.singular.is_empty());
+        let multiplier = if is_positive && positions.is_none() { multiplier(assembly) } else { None };
+        Measure { search: Some(search), square, jumps, multiplier }
+    }
+
+    /// What to print.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let known = match &self.search {
+            None => "not looked for: a constraint is not affine in the velocities".to_owned(),
+            Some(MeasureSearch::None) => "none found".to_owned(),
+            Some(MeasureSearch::External) => "not looked for: forces are computed outside".to_owned(),
+            Some(MeasureSearch::TooLong) => "not looked for: the equations are too long".to_owned(),
+            Some(MeasureSearch::Found(measure)) => {
+                let between = if self.jumps { ", between events" } else { "" };
+                let jumps = if measure.jumps { ", where nothing jumps" } else { "" };
+                format!("{}{jumps}{between}", words(measure, self.square))
+            }
+        };
+        let changing = self.multiplier.filter(|multiplier| multiplier.constant().is_none());
+        let formula = changing.map(|multiplier| multiplier.display(Style::Book));
+        let multiplier = formula.filter(|formula| columns(formula) <= WIDEST);
+        let multiplier = multiplier.map(|formula| format!("Chaplygin's multiplier N = {formula}, dτ = N dt"));
+        [known].into_iter().chain(multiplier).collect()
+    }
+
+    /// For programs; null where none is known.
+    pub(super) fn object(&self) -> Value {
+        let Some(MeasureSearch::Found(measure)) = &self.search else { return Value::Null };
+        let text = |value: &Option<Expr<'_>>| value.map(|value| value.to_string());
+        json!({
+            "liouville": measure.liouville,
+            "density": text(&measure.density),
+            "density_in_velocities": text(&measure.in_velocities),
+            "singular": measure.singular.iter().map(Expr::to_string).collect::<Vec<_>>(),
+            "jumps": self.jumps || measure.jumps,
+            "reducing_multiplier": text(&self.multiplier),
+        })
+    }
+}
+
+/// `r dx dy, r³ dx dη, Liouville's`; `square` is whether det b is a determinant.
+fn words(measure: &PhaseMeasure<'_>, square: bool) -> String {
+    let written = |density: Option<Expr<'_>>| {
+        let formula = density.map(|density| density.display(Style::Book));
+        formula.filter(|formula| columns(formula) <= WIDEST / 2)
+    };
+    let (density, in_velocities) = (written(measure.density), written(measure.in_velocities));
+    let name = if measure.liouville && square { "1/det(b)" } else { "N" };
+    let density = density.unwrap_or_else(|| name.to_owned());
+    let other = match in_velocities {
+        _ if measure.density.is_some() && measure.density == measure.in_velocities => {
+            "and so dx dη".to_owned()
+        }
+        Some(formula) => combination([(formula, "dx dη".to_owned())]),
+        None => combination([(density.clone(), "det(M) dx dη".to_owned())]),
+    };
+    let density = combination([(density, "dx dy".to_owned())]);
+    let whose = if measure.liouville { ", Liouville's" } else { "" };
+    let zeros: Vec<String> = measure.singular.iter().map(|p| format!("{p} = 0")).collect();
+    let singular = match zeros.as_slice() {
+        [] => String::new(),
+        zeros => format!(", singular where {}", zeros.join(" or ")),
+    };
+    format!("{density}, {other}{whose}{singular}")
+}
+
+/// Chaplygin's reducing multiplier; none also where the equations are not Voronets' in independent coordinates, or have no
+/// closed form.
+fn multiplier<'g>(assembly: &Assembly<'g>) -> Option<Expr<'g>> {
+    let held = assembly.constraints.multipliers()?.in_velocities().ok()?;
+    let mut transform = assembly.system.velocity_transform().ok()?;
+    let start = transform.to_velocities(assembly.t_start, &assembly.start);
+    let lagrange = held.equations().system();
+    let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
+    at.push((lagrange.frame().time(), assembly.t_start));
+    let voronets = Voronets::new(&held, &at).ok()?;
+    ReducingMultiplier::of(&voronets).ok()?.map(|reduced| reduced.multiplier)
+}
