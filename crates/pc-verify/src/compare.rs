@@ -20,6 +20,10 @@ use crate::tolerance::{ORDINARY, TOLERANCE};
 /// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
 const OTHER: f64 = 1e-9;
 
+/// By how much the first derivation may be rounded worse than the second: forms other than those chosen here lose half of the
+/// digits at most. What it scatters further is no number but noise, and none that is right.
+const WORSE: f64 = 1e4;
+
 /// How much is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -280,7 +284,8 @@ impl Second {
     }
 
     /// Raises sizes to how far the values of the first derivation scatter, in units of rounding, at states that differ by
-    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly.
+    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly. They do so within
+    /// bounds: a value that is noise scatters by its own size, and would agree with any.
     fn scatter_first(
         &self,
         first: &mut First<'_>,
@@ -288,13 +293,14 @@ impl Second {
         values: &[f64],
         seconds: &mut [Sized],
     ) {
+        let most: Vec<f64> = seconds.iter().map(|second| WORSE * second.size).collect();
         for (_, near) in scattered {
             // Where it has no values there it says nothing of rounding.
             let Ok(moved) = first.values(&self.derivation, near) else { continue };
-            for ((second, value), moved) in seconds.iter_mut().zip(values).zip(moved) {
+            for (((second, value), moved), most) in seconds.iter_mut().zip(values).zip(moved).zip(&most) {
                 let scatter = (moved - value).abs() / UNIT;
                 if scatter.is_finite() {
-                    second.size = second.size.max(scatter);
+                    second.size = second.size.max(scatter.min(*most));
                 }
             }
         }
