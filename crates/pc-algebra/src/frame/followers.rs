@@ -54,3 +54,40 @@ impl<'g> Frame<'g> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear_algebra::matrix::Matrix;
+    use pc_expr::Graph;
+
+    fn followers<'g>(graph: &'g Graph, x: &[Expr<'g>], rows: &[&[Expr<'g>]]) -> Vec<bool> {
+        let b = Matrix::from_fn(rows.len(), rows[0].len(), |i, s| rows[i][s]);
+        let zeros = vec![Expr::ZERO; rows.len()];
+        Frame::new(graph, graph.symbol("t"), x.to_vec(), b, zeros).unwrap().followers()
+    }
+
+    #[test]
+    fn a_function_of_a_coordinate_follows_it() {
+        let graph = Graph::new();
+        let [x, y, z, c] = graph.symbols(["x", "y", "z", "c"]);
+        let (a, slope) = (1.0 + x.square(), -x.sin());
+        let rows: [&[Expr<'_>]; 4] =
+            [&[Expr::ONE, a], &[Expr::ZERO, y.square()], &[slope, slope * a], &[Expr::ZERO, Expr::ZERO]];
+        assert_eq!(followers(&graph, &[x, y, z, c], &rows), [false, false, true, true]);
+    }
+
+    #[test]
+    fn on_a_circle_neither_coordinate_follows() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        assert_eq!(followers(&graph, &[x, y], &[&[-y], &[x]]), [false, false]);
+    }
+
+    #[test]
+    fn of_two_that_follow_each_other_one_is_left() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        assert_eq!(followers(&graph, &[x, y], &[&[x], &[3.0 * x]]), [false, true]);
+    }
+}
