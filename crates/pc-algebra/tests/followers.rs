@@ -29,7 +29,7 @@ fn brackets_are_known_to_rounding_near_a_place_where_the_frame_is_singular() {
     let velocities = [1.27 * eta[2], phi.square() * eta[0], turning, -phi.sin() * turning];
     let frame = Frame::from_velocities(&graph, t, vec![x, y, phi, z], &eta, &velocities).unwrap();
     let c = frame.structure_coefficients(&Neighbourhood::default()).unwrap();
-    for at in [-0.008_133_851, 0.7, 1e-3] {
+    for at in [-0.008_133_851_f64, 0.7, 1e-3] {
         let place = [(x, 0.18), (y, 0.51), (phi, at), (z, at.cos())];
         let slope = 0.48 * at / (2.0 + at * at).powi(2);
         assert_coefficient(&graph, &c, [2, 1, 1], &place, 2.0 / at);
