@@ -60,6 +60,11 @@ impl<F: VectorField> VectorField for Variation<F> {
         self.field.enter(t, end)
     }
 
+    fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        let own = self.field.dim();
+        self.field.leads((from.0, &from.1[..own]), (to.0, &to.1[..own]))
+    }
+
     fn time_dependence(&self) -> TimeDependence {
         self.field.time_dependence()
     }

@@ -1,10 +1,11 @@
 //! Derivatives of expressions, and short forms of what they lead to.
 //!
 //! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts expressions in place of
-//! symbols; `collect` rebuilds an expression as a polynomial whose coefficients have forgotten what they do not depend on;
-//! `potential` finds a function by its gradient.
+//! symbols; `collect` rebuilds an expression as a polynomial whose coefficients have forgotten what they do not depend on,
+//! where `numbers` finds the same values; `potential` finds a function by its gradient.
 
 pub(crate) mod collect;
 pub(crate) mod derivative;
+pub(crate) mod numbers;
 pub(crate) mod potential;
 pub(crate) mod substitution;

@@ -5,8 +5,9 @@
 //! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
 //! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the
 //! motion of momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds
-//! rounding, and `failure` says why there are no rates.
+//! rounding, `chart` sees where quasi-velocities do not determine velocities, and `failure` says why there are no rates.
 
+pub(crate) mod chart;
 pub(crate) mod elimination;
 pub(crate) mod failure;
 pub(crate) mod projection;

@@ -139,6 +139,17 @@ pub enum MechError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Definitions that determine velocities before and after a place, but not there.
+    #[error(
+        "between t = {from} and t = {to} the definitions of the quasi-velocities become dependent: they do not say how the \
+         motion goes on there"
+    )]
+    Undetermined {
+        /// Time at the start of the step that passes it.
+        from: f64,
+        /// Time at its end.
+        to: f64,
+    },
     /// A constraint that was left to follow from the others, which it does not everywhere.
     #[error(
         "the constraint `{constraint}`, which followed from the others, does not at t = {t}{}",

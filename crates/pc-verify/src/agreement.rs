@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::{Irregular, VerifyError};
+use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::projected::DIRECTIONS;
 
 /// That, and how closely, two derivations agree.
@@ -67,6 +67,7 @@ impl Agreement {
     pub(crate) fn pass_over(&mut self, passed: Passed) -> Result<(), VerifyError> {
         match passed {
             Passed::Error(error) => Err(error),
+            Passed::Noise(disagreement) => Err(VerifyError::Disagreement(disagreement)),
             Passed::Irregular(irregular) => {
                 self.skipped += 1;
                 self.reason = Some(irregular.to_string());
@@ -82,6 +83,8 @@ pub(crate) enum Passed {
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),
+    /// They do, by what rounding makes of the first there.
+    Noise(Box<Disagreement>),
 }
 
 impl From<Irregular> for Passed {

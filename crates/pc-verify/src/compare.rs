@@ -20,6 +20,10 @@ use crate::tolerance::{ORDINARY, TOLERANCE};
 /// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
 const OTHER: f64 = 1e-9;
 
+/// By how much the first derivation may be rounded worse than the second: forms other than those chosen here lose half of the
+/// digits at most. Where it scatters further there is nothing to be compared.
+const WORSE: f64 = 1e4;
+
 /// How much is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -105,6 +109,11 @@ const TRIES: usize = 3;
 
 impl Agreement {
     fn finished(mut self, firsts: &[First<'_>], tried: usize) -> Result<Agreement, VerifyError> {
+        // What is noise wherever it was looked at says nothing, though it may be near what is right.
+        let noise = firsts.iter().filter(|first| first.compared == 0).find_map(|first| first.noise.as_ref());
+        if let Some(noise) = noise {
+            return Err(VerifyError::Disagreement(noise.clone()));
+        }
         if self.states == 0 {
             let reason = self.reason.unwrap_or_else(|| "none was tried".to_owned());
             return Err(VerifyError::NothingCompared { tried, reason });
@@ -218,6 +227,11 @@ impl Second {
                     first.reason = Some(reason.to_string());
                     irregular = Some(reason);
                 }
+                Err(Passed::Noise(disagreement)) => {
+                    first.reason = Some(Irregular::IllConditioned.to_string());
+                    first.noise = Some(disagreement);
+                    irregular = Some(Irregular::IllConditioned);
+                }
                 Err(error) => return Err(error),
             }
         }
@@ -238,6 +252,7 @@ impl Second {
         let free = first.free.clone();
         let mut seconds = self.derivation.quantities(&here.derived, &wanted, free.as_deref(), &exact)?;
         let values = first.values(&self.derivation, here)?;
+        let mut noise = vec![0.0; values.len()];
         if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
             if scattered.is_none() {
                 *scattered = Some(self.scattered(&here.derived)?);
@@ -245,7 +260,7 @@ impl Second {
             let scattered = scattered.as_deref().unwrap_or_default();
             self.derivation.scatter(&mut seconds, scattered, &wanted, free.as_deref())?;
             if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
-                self.scatter_first(first, scattered, &values, &mut seconds);
+                noise = self.scatter_first(first, scattered, &values, &mut seconds);
                 if self.has_other_velocities(first, &here.derived, &values, &seconds)? {
                     let why = "at some states the momenta are those of other velocities, too";
                     agreement.leave_out(&first.form, why);
@@ -254,9 +269,9 @@ impl Second {
             }
         }
         let pairs = || first.wanted.iter().zip(values.iter().zip(&seconds));
-        for ((label, _), (&one, &two)) in pairs() {
+        for (((label, _), (&one, &two)), noise) in pairs().zip(noise) {
             if !within(error(one, two), TOLERANCE) {
-                return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
+                let disagreement = Box::new(Disagreement {
                     form: first.form.clone(),
                     quantity: label.clone(),
                     first: one,
@@ -264,7 +279,12 @@ impl Second {
                     size: two.size,
                     t: here.derived.place.t,
                     state: self.named(&here.derived.place, &here.columns),
-                }))));
+                });
+                let is_noise = within(error(one, Sized { size: noise, ..two }), TOLERANCE);
+                return Err(match is_noise {
+                    true => Passed::Noise(disagreement),
+                    false => Passed::Error(VerifyError::Disagreement(disagreement)),
+                });
             }
         }
         for ((label, _), (&one, &two)) in pairs() {
@@ -280,24 +300,29 @@ impl Second {
     }
 
     /// Raises sizes to how far the values of the first derivation scatter, in units of rounding, at states that differ by
-    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly.
+    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly. They do so within
+    /// bounds: a value that is noise scatters by its own size, and would agree with any. Given back are the sizes without bounds.
     fn scatter_first(
         &self,
         first: &mut First<'_>,
         scattered: &[(Rounding, Here)],
         values: &[f64],
         seconds: &mut [Sized],
-    ) {
+    ) -> Vec<f64> {
+        let mut noise = vec![0.0f64; values.len()];
+        let most: Vec<f64> = seconds.iter().map(|second| WORSE * second.size).collect();
         for (_, near) in scattered {
             // Where it has no values there it says nothing of rounding.
             let Ok(moved) = first.values(&self.derivation, near) else { continue };
-            for ((second, value), moved) in seconds.iter_mut().zip(values).zip(moved) {
-                let scatter = (moved - value).abs() / UNIT;
+            for (i, moved) in moved.into_iter().enumerate() {
+                let scatter = (moved - values[i]).abs() / UNIT;
                 if scatter.is_finite() {
-                    second.size = second.size.max(scatter);
+                    noise[i] = noise[i].max(scatter);
+                    seconds[i].size = seconds[i].size.max(scatter.min(most[i]));
                 }
             }
         }
+        noise
     }
 
     /// Whether a form in momenta reads other velocities from those of a place, which satisfy the constraints, too, and have the

@@ -31,6 +31,9 @@ pub(crate) struct Derived {
     /// ẇ, each with the size of its terms.
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
+    /// How large the terms of the forces are, reactions among them, and the accelerations that each would give its own mass.
+    pub(crate) force_sizes: Vec<f64>,
+    pub(crate) unconstrained_sizes: Vec<f64>,
     /// λ of the constraints kept, each with the size of its terms.
     pub(crate) reactions: Vec<f64>,
     pub(crate) reaction_sizes: Vec<f64>,
@@ -101,6 +104,12 @@ impl Derivation {
         self.require_followed(at, &in_time, &accelerations)?;
         let inertia = |s: usize| (0..k).map(|r| mass[(s, r)] * accelerations[r]).sum::<f64>();
         let inertia_size = |s: usize| (0..k).map(|r| (mass[(s, r)] * sizes[r]).abs()).fold(0.0, f64::max);
+        let reacting =
+            |s: usize| rows.iter().zip(&values[k..]).map(move |(row, lambda)| (row[s] * lambda).abs());
+        let force_sizes: Vec<f64> = (0..k).map(|s| reacting(s).fold(terms[s], f64::max)).collect();
+        let unconstrained =
+            |s: usize| if mass[(s, s)] == 0.0 { 0.0 } else { force_sizes[s] / mass[(s, s)].abs() };
+        let unconstrained_sizes = (0..k).map(unconstrained).collect();
         let momentum_sizes: Vec<f64> =
             (0..k).map(|s| (0..k).map(|r| (mass[(s, r)] * at.w[r]).abs()).fold(0.0, f64::max)).collect();
         let led = |s: usize| {
@@ -114,6 +123,8 @@ impl Derivation {
             velocities: velocity,
             state_rates,
             acceleration_sizes: sizes[..k].to_vec(),
+            force_sizes,
+            unconstrained_sizes,
             reactions: values[k..].to_vec(),
             reaction_sizes: sizes[k..].to_vec(),
             momentum_rates: (0..k).map(|s| transport[s] + inertia(s)).collect(),

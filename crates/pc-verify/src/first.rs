@@ -7,7 +7,7 @@ use pc_model::{Assembly, Flow};
 
 use crate::agreement::Agreement;
 use crate::derivation::Derivation;
-use crate::error::Irregular;
+use crate::error::{Disagreement, Irregular};
 use crate::here::Here;
 use crate::printed::Printed;
 use crate::quantity::{Free, Quantity};
@@ -26,6 +26,8 @@ pub(crate) struct First<'g> {
     /// Number of states at which it was compared, and why it was not at the last of the others.
     pub(crate) compared: usize,
     pub(crate) reason: Option<String>,
+    /// What differed at the last state at which its values were noise.
+    pub(crate) noise: Option<Box<Disagreement>>,
 }
 
 /// Where its values come from.
@@ -200,7 +202,7 @@ impl<'g> First<'g> {
                 None => agreement.leave_out(&label, "it does not have it"),
             }
         }
-        First { form: form.to_owned(), wanted, places, free, source, compared: 0, reason: None }
+        First { form: form.to_owned(), wanted, places, free, source, compared: 0, reason: None, noise: None }
     }
 
     pub(crate) fn quantities(&self) -> Vec<Quantity> {

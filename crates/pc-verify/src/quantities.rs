@@ -100,7 +100,8 @@ impl Derivation {
         };
         let mut quantities =
             wanted.iter().enumerate().map(sized).collect::<Result<Vec<Sized>, Irregular>>()?;
-        raise(&mut quantities, wanted, |quantity| natural_size(derived, quantity));
+        let [drift, _] = self.drift(at, &derived.velocities, &Rounding::none())?;
+        raise(&mut quantities, wanted, |quantity| natural_size(derived, &drift, quantity));
         Ok(quantities)
     }
 
@@ -276,23 +277,28 @@ impl Derivation {
 }
 
 /// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
-/// known to roundings of this.
-fn natural_size(derived: &Derived, quantity: &Quantity) -> f64 {
+/// known to roundings of this, as forces are that reactions take up to the last digit. Where η = a ẋ + a_0 the first derivation has ẋ as b η less the `drift` b a_0, and momenta
+/// likewise, however much of these cancels.
+fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity) -> f64 {
     let largest =
         |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
-    let velocity = largest(&[&derived.place.w, &derived.velocities]);
+    let moving = largest(&[&derived.place.w, &derived.velocities]);
+    let velocity = moving.max(largest(&[drift]));
     let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
+    let momentum = if moving > 0.0 { momentum * (velocity / moving) } else { momentum };
     match quantity {
         Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
         Quantity::ColumnRate(_) | Quantity::Acceleration(_) => {
-            (velocity * velocity).max(largest(&[&derived.accelerations]))
+            (velocity * velocity).max(largest(&[&derived.accelerations, &derived.unconstrained_sizes]))
         }
         Quantity::Momentum(_) => momentum,
         Quantity::MomentumRate(_)
         | Quantity::Reaction(_)
         | Quantity::Energy
         | Quantity::FreeEnergy
-        | Quantity::FreeEnergyRate => (momentum * velocity).max(largest(&[&derived.momentum_rates])),
+        | Quantity::FreeEnergyRate => {
+            (momentum * velocity).max(largest(&[&derived.momentum_rates, &derived.force_sizes]))
+        }
         Quantity::StateRate(_) | Quantity::Observed(_) | Quantity::Resultant(_) => 0.0,
     }
 }

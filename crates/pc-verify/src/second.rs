@@ -64,6 +64,7 @@ impl Second {
         let stated = Passed::from;
         let refused = |passed: Passed| match passed {
             Passed::Error(error) => error,
+            Passed::Noise(disagreement) => VerifyError::Disagreement(disagreement),
             Passed::Irregular(irregular) => {
                 VerifyError::NothingCompared { tried: 1, reason: irregular.to_string() }
             }

@@ -173,12 +173,24 @@ impl<'g> Frame<'g> {
     }
 
     /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
+    ///
+    /// Coordinates that only [follow](Self::followers) others have no part in it: b⁻¹ is the rest where that is square, known
+    /// to the rounding of b, while bᵀb squares the condition of b and hides in rounded constants what cancels in it.
     pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
         if b.rows() == k {
             return inverse(graph, b);
         }
-        let weights = self.weights();
+        let follows = self.followers();
+        let leading: Vec<usize> = (0..b.rows()).filter(|&i| !follows[i]).collect();
+        if leading.len() == k {
+            let inverted = inverse(graph, &Matrix::from_fn(k, k, |i, s| b[(leading[i], s)]))?;
+            let place = |i: usize| leading.iter().position(|&leading| leading == i);
+            let entry = |m: usize, i: usize| place(i).map_or(Expr::ZERO, |i| inverted[(m, i)]);
+            return Some(Matrix::from_fn(k, b.rows(), entry));
+        }
+        let weights: Vec<Expr<'g>> =
+            (0..).zip(self.weights()).map(|(i, w)| if follows[i] { Expr::ZERO } else { w }).collect();
         let weighted = Matrix::from_fn(b.rows(), k, |i, s| weights[i] * b[(i, s)]);
         let gram = Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), weighted.column(j)));
         let inverted = inverse(graph, &gram)?;

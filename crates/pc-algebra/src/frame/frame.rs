@@ -21,6 +21,8 @@ pub struct Frame<'g> {
     coordinates: Vec<Expr<'g>>,
     b: Matrix<Expr<'g>>,
     b0: Vec<Expr<'g>>,
+    /// a, where b is a⁻¹ by definition.
+    a: Option<Matrix<Expr<'g>>>,
 }
 
 impl<'g> Frame<'g> {
@@ -38,7 +40,7 @@ impl<'g> Frame<'g> {
         let n = coordinates.len();
         shape("the matrix b", b.rows(), n)?;
         shape("the drift b_0", b0.len(), n)?;
-        Ok(Frame { graph, time, coordinates, b, b0 })
+        Ok(Frame { graph, time, coordinates, b, b0, a: None })
     }
 
     /// The frame of ẋ = `velocities`, expressions affine in the symbols `eta` (3).
@@ -80,14 +82,20 @@ impl<'g> Frame<'g> {
         })?;
         let b = inverse(graph, &a).ok_or(AlgebraError::SingularDefinitions)?;
         let b0 = (0..n).map(|i| -graph.dot(b.row(i).iter().copied(), a0.iter().copied())).collect();
-        Frame::new(graph, time, coordinates, b, b0)
+        Ok(Frame { a: Some(a), ..Frame::new(graph, time, coordinates, b, b0)? })
     }
 
     /// The coordinate frame η = ẋ, X_s = ∂/∂x_s.
     pub fn coordinate(graph: &'g Graph, time: Expr<'g>, coordinates: Vec<Expr<'g>>) -> Frame<'g> {
         let n = coordinates.len();
         let b = Matrix::from_fn(n, n, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
-        Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n] }
+        Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
+    }
+
+    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions): where det a = 0 these
+    /// do not determine ẋ.
+    pub fn definition_matrix(&self) -> Option<&Matrix<Expr<'g>>> {
+        self.a.as_ref()
     }
 
     /// The graph of all its expressions.
@@ -222,7 +230,7 @@ impl<'g> Frame<'g> {
     #[must_use]
     pub fn restricted(&self, operators: usize) -> Frame<'g> {
         let columns = operators.min(self.operators());
-        Frame { b: Matrix::from_fn(self.b.rows(), columns, |i, s| self.b[(i, s)]), ..self.clone() }
+        Frame { b: Matrix::from_fn(self.b.rows(), columns, |i, s| self.b[(i, s)]), a: None, ..self.clone() }
     }
 
     /// The frame of the operators listed, numbered from 0, in the order of the list, and X_0.
@@ -231,13 +239,18 @@ impl<'g> Frame<'g> {
     /// If a number is out of range.
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> Frame<'g> {
-        Frame { b: Matrix::from_fn(self.b.rows(), order.len(), |i, s| self.b[(i, order[s])]), ..self.clone() }
+        Frame {
+            b: Matrix::from_fn(self.b.rows(), order.len(), |i, s| self.b[(i, order[s])]),
+            a: None,
+            ..self.clone()
+        }
     }
 
     /// The frame with every coefficient passed through `f`.
     #[must_use]
     pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Frame<'g> {
-        Frame { b: self.b.map(&mut f), b0: self.b0.iter().map(|&x| f(x)).collect(), ..self.clone() }
+        let (b, a) = (self.b.map(&mut f), self.a.as_ref().map(|a| a.map(&mut f)));
+        Frame { b, b0: self.b0.iter().map(|&x| f(x)).collect(), a, ..self.clone() }
     }
 
     /// Rank of b at almost all points, as the graph knows it; less where numbers show that its operators are dependent.

@@ -207,6 +207,10 @@ impl VectorField for MotionField {
         delegate!(self, field => field.enter(t, end))
     }
 
+    fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        delegate!(self, field => field.leads(from, to))
+    }
+
     fn component_name(&self, i: usize) -> String {
         delegate!(self, field => field.component_name(i))
     }

@@ -306,15 +306,23 @@ impl Graph {
         })
     }
 
-    /// Whether the first expression has a value wherever the second has one, as far as is seen.
-    fn is_as_regular<'g>(&'g self, some: Expr<'g>, other: Expr<'g>) -> bool {
+    /// Whether the first expression divides by nothing that vanishes where the second has a value, as far as is seen from the
+    /// factors of what they divide by.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.is_as_regular((x * y) / y, x) && !graph.is_as_regular(y / x, x));
+    /// ```
+    pub fn is_as_regular<'g>(&'g self, some: Expr<'g>, other: Expr<'g>) -> bool {
         let (some, other) = (some.atom_in(self), other.atom_in(self));
         self.with(|dag| dag.is_as_regular(some, other))
     }
 
-    /// Whether two expressions have the same fingerprint.
-    fn is_same_value<'g>(&'g self, a: Expr<'g>, b: Expr<'g>) -> bool {
-        (a - b).is_zero()
+    /// Whether a form has the fingerprint of an expression, and its numbers.
+    fn is_same_value<'g>(&'g self, form: Expr<'g>, e: Expr<'g>) -> bool {
+        (form - e).is_zero() && self.has_numbers_of(form, e)
     }
 }
 

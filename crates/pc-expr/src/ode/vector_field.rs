@@ -150,6 +150,15 @@ pub trait VectorField {
         false
     }
 
+    /// Whether the motion that is at `from` may be that at `to`, both times and states, to which a step of an integrator led: a
+    /// field may have places between which no motion leads.
+    ///
+    /// # Errors
+    /// [`Failure`] where the one does not follow from the other.
+    fn leads(&mut self, _from: (f64, &[f64]), _to: (f64, &[f64])) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Name of component `i` of y, for messages.
     fn component_name(&self, i: usize) -> String {
         format!("y[{i}]")
@@ -219,6 +228,9 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn enter(&mut self, t: f64, end: f64) -> bool {
         (**self).enter(t, end)
+    }
+    fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        (**self).leads(from, to)
     }
     fn component_name(&self, i: usize) -> String {
         (**self).component_name(i)

@@ -344,6 +344,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.enter(t, end)
     }
 
+    fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        self.motion.leads(from, to)
+    }
+
     fn component_name(&self, i: usize) -> String {
         self.motion.component_name(i)
     }

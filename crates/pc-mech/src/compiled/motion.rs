@@ -2,6 +2,7 @@
 
 use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, VectorField};
 
+use crate::compiled::chart::Chart;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
@@ -16,6 +17,7 @@ use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::equations::poincare::Equations;
 use crate::error::MechError;
 use crate::system::signals::Signals;
+use crate::system::system::System;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
 /// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
@@ -40,6 +42,8 @@ pub struct Motion {
     pub(super) surface: Option<Box<Surface>>,
     pub(super) kept: Option<Box<KeptIntegrals>>,
     pub(super) signals: Signals,
+    /// Where its quasi-velocities determine velocities.
+    pub(super) chart: Option<Box<Chart>>,
 }
 
 /// How f is computed.
@@ -134,6 +138,7 @@ impl FirstOrder<'_> {
             surface: None,
             kept: None,
             signals: Signals::default(),
+            chart: None,
         })
     }
 }
@@ -252,6 +257,15 @@ impl Motion {
         values
     }
 
+    /// The same of a system whose quasi-velocities are defined by velocities: it [leads](VectorField::leads) nowhere past a
+    /// place where these do not determine velocities.
+    ///
+    /// # Errors
+    /// [`MechError`] if a definition contains a symbol that is no coordinate or parameter.
+    pub fn within_chart(self, system: &System<'_>) -> Result<Motion, MechError> {
+        Ok(Motion { chart: Chart::of(system)?.map(Box::new), ..self })
+    }
+
     /// The same in momenta of these names.
     pub(crate) fn of_momenta(motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
         let inner = motion.inner();
@@ -267,6 +281,7 @@ impl Motion {
             quasi_velocities: inner.quasi_velocities.clone(),
             parameters: Vec::new(),
             signals: Signals::default(),
+            chart: None,
             options: inner.options,
             observable_names: inner.observable_names.clone(),
             conserved: inner.conserved,

@@ -175,6 +175,20 @@ impl VectorField for Motion {
         }
     }
 
+    fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        let Some(mut chart) = self.chart.take() else { return Ok(()) };
+        let is_left = chart.is_left(from, to, self.parameters());
+        let mut rates = vec![f64::NAN; to.1.len()];
+        let outcome = if is_left { self.rhs(to.0, to.1, &mut rates) } else { Ok(()) };
+        let velocities = &rates[..self.coordinates];
+        let rests = is_left && outcome.is_ok() && chart.rests(to, velocities, self.parameters());
+        self.chart = Some(chart);
+        match is_left && !rests {
+            true => Err(Failure::fatal(MechError::Undetermined { from: from.0, to: to.0 })),
+            false => Ok(()),
+        }
+    }
+
     fn component_name(&self, i: usize) -> String {
         self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
     }

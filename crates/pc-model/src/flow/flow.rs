@@ -74,6 +74,7 @@ impl Flow {
         transform: Option<LegendreTransform>,
     ) -> Result<Flow, ModelError> {
         let system = &assembly.system;
+        let motion = assembly.placed(motion.within_chart(system))?;
         let x = system.frame().coordinates();
         let declared = &system.quasi_velocities()[..assembly.declared];
         let all = assembly.quasi_velocities_of(free)?;

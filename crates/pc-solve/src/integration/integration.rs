@@ -308,6 +308,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 return Ok(());
             }
             self.engine.step(towards)?;
+            let (to, state) = (self.engine.last_step().end, self.engine.end_state().to_vec());
+            let from = (self.front.t, &self.front_state[..]);
+            if let Err(failure) = self.engine.field_mut().leads(from, (to, &state)) {
+                return Err(self.failed(Reason::Rates { t: to }, Some(failure)));
+            }
             self.engine.stand_at(time);
             self.restarted = false;
             self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));

@@ -1,0 +1,48 @@
+//! Whether two forms of one function have the same numbers.
+//!
+//! Constants are rounded, and a fingerprint takes them as they stand. So a divisor that vanishes but for their rounding is no
+//! zero to it: 1.19² − 1.4161 divided by itself is 1, but its numbers are noise.
+
+use crate::graph::expr::Expr;
+use crate::graph::graph::Graph;
+
+/// Points that are tried.
+const POINTS: u32 = 4;
+
+/// Relative differences of two forms that rounding may make, also where much cancels in one of them; what is divided by no more
+/// than rounding differs by its own order.
+const DIFFERENCE: f64 = 1e-6;
+
+impl Graph {
+    /// Whether the values of a form are those of `other`, too, at some points where both have any.
+    pub(crate) fn has_numbers_of<'g>(&'g self, form: Expr<'g>, other: Expr<'g>) -> bool {
+        let symbols = self.symbols_of(&[form, other]);
+        (0..POINTS).all(|point| {
+            let values: Vec<(Expr<'g>, f64)> =
+                (0..).zip(&symbols).map(|(i, &symbol)| (symbol, coordinate(point, i))).collect();
+            let Ok(values) = self.evaluate(&[form, other], &values) else { return true };
+            let (difference, size) = ((values[0] - values[1]).abs(), values[0].abs().max(values[1].abs()));
+            !size.is_finite() || difference <= DIFFERENCE * size
+        })
+    }
+}
+
+/// Coordinate number `i` of a point: between 1/4 and 5/4, by multiples of the golden section.
+fn coordinate(point: u32, i: u32) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    0.25 + (f64::from(i * POINTS + point + 1) * GOLDEN).fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_tell_functions_apart_and_are_not_asked_for_where_there_are_none() {
+        let graph = Graph::new();
+        let x = graph.symbol("x");
+        assert!(!graph.has_numbers_of(x, 1.001 * x));
+        assert!(graph.has_numbers_of((x + 1.0).square(), x.square() + 2.0 * x + 1.0));
+        assert!(graph.has_numbers_of((-x).sqrt(), (-x).log()));
+    }
+}

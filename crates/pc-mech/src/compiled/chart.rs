@@ -1,0 +1,111 @@
+//! Where quasi-velocities that are defined by velocities determine these.
+
+use pc_algebra::Matrix;
+use pc_expr::{Backend, Evaluator, Inputs, Program};
+
+use crate::error::MechError;
+use crate::numeric::singular_values::SingularValues;
+use crate::system::system::System;
+
+/// A part of the velocities that is rounding: what the motion is without it is what it is with it.
+const AT_REST: f64 = 1e-9;
+
+/// The matrix a of η = a ẋ + a_0 along a motion.
+///
+/// Where det a = 0 the state (x, η) says nothing of ẋ along ker a. All motions that come there have the same state, whatever
+/// this part of ẋ was, so that what follows is an accident of rounding. Its passages are seen by the sign of det a at the ends
+/// of a step; two within one step are not, nor one at which det a has a double zero.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart {
+    coordinates: usize,
+    parameters: usize,
+    entries: Evaluator,
+}
+
+impl Chart {
+    /// That of a system; none where its quasi-velocities are not defined so, or a is constant.
+    ///
+    /// # Errors
+    /// [`MechError`] for a symbol without a value.
+    pub(crate) fn of(system: &System<'_>) -> Result<Option<Chart>, MechError> {
+        let frame = system.frame();
+        let Some(a) = frame.definition_matrix() else { return Ok(None) };
+        let moving = || frame.coordinates().iter().copied().chain([frame.time()]);
+        if !moving().any(|symbol| a.entries().iter().any(|entry| entry.depends_on(symbol))) {
+            return Ok(None);
+        }
+        let inputs = Inputs {
+            time: Some(frame.time()),
+            state: frame.coordinates().to_vec(),
+            parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
+        };
+        let entries =
+            Evaluator::new(Program::new(system.graph(), &inputs, a.entries())?, Backend::Interpreter);
+        let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
+        Ok(Some(Chart { coordinates, parameters, entries }))
+    }
+
+    /// a at (t, y).
+    fn matrix(&mut self, t: f64, y: &[f64], parameters: &[f64]) -> Matrix<f64> {
+        let n = self.coordinates;
+        let mut entries = vec![f64::NAN; n * n];
+        self.entries.eval(t, &y[..n], &parameters[..self.parameters], &mut entries);
+        Matrix::from_fn(n, n, |i, j| entries[i * n + j])
+    }
+
+    /// Whether det a has another sign at the end of a step than at its start.
+    pub(crate) fn is_left(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> bool {
+        let mut sign = |(t, y): (f64, &[f64])| sign_of_determinant(self.matrix(t, y, parameters));
+        sign(from) * sign(to) < 0.0
+    }
+
+    /// Whether a motion with these velocities does not move along the direction in which a is nearest to singular: then it needs
+    /// no quasi-velocity to say how it does.
+    pub(crate) fn rests(&mut self, (t, y): (f64, &[f64]), velocities: &[f64], parameters: &[f64]) -> bool {
+        let Ok(SingularValues { right, .. }) = SingularValues::of(&self.matrix(t, y, parameters)) else {
+            return false;
+        };
+        let last = right.columns() - 1;
+        let along: f64 = velocities.iter().enumerate().map(|(i, v)| right[(i, last)] * v).sum();
+        along.abs() <= AT_REST * velocities.iter().fold(0.0f64, |largest, v| largest.max(v.abs()))
+    }
+}
+
+/// The sign of det A by elimination with row pivots; 0 where a pivot is 0 or no number.
+fn sign_of_determinant(mut a: Matrix<f64>) -> f64 {
+    let n = a.rows();
+    let mut sign = 1.0;
+    for k in 0..n {
+        let Some(best) = (k..n).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs())) else { break };
+        let pivot = a[(best, k)];
+        if pivot == 0.0 || pivot.is_nan() {
+            return 0.0;
+        }
+        sign *= if best == k { pivot.signum() } else { -pivot.signum() };
+        for j in k..n {
+            (a[(k, j)], a[(best, j)]) = (a[(best, j)], a[(k, j)]);
+        }
+        for i in k + 1..n {
+            let factor = a[(i, k)] / pivot;
+            for j in k..n {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+        }
+    }
+    sign
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn determinants_have_the_sign_of_their_permutation() {
+        let of = |rows: [[f64; 3]; 3]| sign_of_determinant(Matrix::from_fn(3, 3, |i, j| rows[i][j]));
+        assert_eq!(of([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), 1.0);
+        assert_eq!(of([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0]]), -1.0);
+        // 1 (4·1 − 1·2) − 2 (3·1 − 1·1) + 0 = −2
+        assert_eq!(of([[1.0, 2.0, 0.0], [3.0, 4.0, 1.0], [1.0, 2.0, 1.0]]), -1.0);
+        assert_eq!(of([[1.0, 2.0, 0.0], [2.0, 4.0, 0.0], [1.0, 2.0, 1.0]]), 0.0);
+    }
+}
