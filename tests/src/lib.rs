@@ -9,8 +9,10 @@
 //! The rest serves several tests: nonholonomic systems described by closures ([`nonholonomic`]), the definition
 //! of the equations in numbers, which has the library evaluate expressions and nothing else ([`definition`],
 //! over the numbers of [`dual`]), a measure for what rounding may do to a program ([`magnitude`]) and a
-//! workbench for emitted source ([`emitted`]). Models of tests are derived twice ([`verified`]). Random models have a room of their own ([`fuzz`]).
+//! workbench for emitted source ([`emitted`]). Models of tests are derived twice ([`verified`]). Random models have a room of their own
+//! ([`fuzz`]), and so have attacks on the program from outside ([`attack`]).
 
+pub mod attack;
 pub mod classical;
 pub mod closed_form;
 pub mod definition;

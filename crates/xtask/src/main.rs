@@ -3,6 +3,7 @@
 //! No dependency beyond the standard library and nothing native, so that it builds in seconds
 //! on a machine that has only Rust and can then say, or install, what else is needed.
 
+mod attack;
 mod bench;
 mod c_examples;
 mod c_fresh;
@@ -35,6 +36,8 @@ usage: cargo xtask <command>
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
+  attack [--minutes N] [--seed S]
+                   run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind
@@ -73,6 +76,7 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         }
         "test" => test::run(quick(rest)?),
         "bench" => bench::run(rest),
+        "attack" => attack::run(rest),
         "fuzz" => fuzz::run(rest),
         "header" => {
             no_more(name, rest)?;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::command::{announce_and_run, announce_and_tee, cargo, succeeds};
 use crate::counts::{Counter, Counts};
 use crate::error::Error;
-use crate::{c_examples, setup};
+use crate::{attack, c_examples, setup};
 
 /// Runs the stages in order and stops at the first that fails.
 ///
@@ -22,6 +22,7 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
     cargo_stage("lints without SUNDIALS", &mut cargo(&without_sundials))?;
     let counts = tests()?;
     if !quick {
+        stage("attack", attack::quick)?;
         stage("C examples", c_examples::quick)?;
         let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
         cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
