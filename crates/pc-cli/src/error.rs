@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
-use pc_solve::SolveError;
+use pc_solve::{Code, SolveError};
 use pc_verify::VerifyError;
 
 use crate::exit_code;
@@ -120,6 +120,8 @@ pub enum CliError {
         cause: Box<SolveError>,
         /// Names of the components of the state.
         names: Vec<String>,
+        /// Whether forces jump where the state changes, as dry friction does.
+        jumps: bool,
     },
     /// Ctrl-C.
     #[error("interrupted at t = {}", short(*t, 17))]
@@ -176,6 +178,12 @@ impl CliError {
             }
             last = message;
             source = error.source();
+        }
+        if let CliError::Integration { cause, jumps: true, .. } = self
+            && cause.code() == Some(Code::TooMuchWork)
+        {
+            report += "\n  help: the forces jump, as dry friction does, and the motion may stay where they do, chattering: \
+                       have [events] change the law there, as the built-in model stick-slip-block does";
         }
         report
     }

@@ -257,12 +257,11 @@ fn a_step_limit_ends_the_work_and_allows_more() {
     assert_eq!(failure.reached.len(), 2);
     let (t, y) = failure.error.reached().unwrap();
     assert!((y[0] - t.cos()).abs() < 1e-6);
-    assert_eq!(
-        chain(&failure),
-        format!(
-            "CV_TOO_MUCH_WORK (-1) after reaching t = {t}: 50 internal steps taken before reaching t = 1000000."
-        )
+    let said = chain(&failure);
+    let expected = format!(
+        "50 steps did not lead to the output at t = 1000000: they reached t = {t}, the last of them "
     );
+    assert!(said.starts_with(&expected), "{said}");
 
     let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap();
     let mut failures = 0;

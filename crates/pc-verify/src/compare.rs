@@ -83,6 +83,7 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     }
     let mut number = 0;
     while agreement.states < options.states && number < TRIES * options.states {
+        assembly.within_limits()?;
         let seed = (options.seed << 32) as usize + number;
         number += 1;
         let compared = second.derivation.random(&second.start, seed).map_err(Passed::from);

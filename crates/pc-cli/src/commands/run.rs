@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use pc_model::{Flow, Model};
+use pc_mech::Expr;
+use pc_model::{Assembly, Flow, Model};
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
@@ -139,6 +140,7 @@ pub fn integrate_with_checkpoints(
         table: Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
         constraints: residuals(&mut flow, &trajectory),
         dropped: dropped(&assembly),
+        jumps: jumps(&assembly),
         keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
         statistics: *trajectory.statistics(),
         plan,
@@ -148,6 +150,14 @@ pub fn integrate_with_checkpoints(
         verification,
         wall,
     })
+}
+
+/// Whether forces or the Lagrangian jump where the state changes.
+fn jumps(assembly: &Assembly<'_>) -> bool {
+    let (system, graph) = (&assembly.system, assembly.system.graph());
+    let (state, lagrangian) = (system.state(), system.lagrangian());
+    let jumps = |&f: &Expr<'_>| graph.applies(f, &state, |function| !function.is_continuous());
+    system.forces().iter().chain([&lagrangian]).any(jumps)
 }
 
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
@@ -178,7 +188,7 @@ impl Run {
         match self.ending {
             Ending::Completed | Ending::Event { .. } => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
-            Ending::Failed(cause) => Err(CliError::Integration { cause, names }),
+            Ending::Failed(cause) => Err(CliError::Integration { cause, names, jumps: self.jumps }),
         }
     }
 }

@@ -25,6 +25,8 @@ pub struct Run {
     pub constraints: Vec<(String, f64)>,
     /// The constraints that were dropped, each with the reason.
     pub dropped: Vec<(String, String)>,
+    /// Whether forces jump where the state changes, as dry friction does.
+    pub jumps: bool,
     /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
     pub keeps_energy: bool,
     /// The names of the events that the model has.

@@ -36,6 +36,7 @@ pub fn text(run: &Run) -> String {
     if !run.constraints.is_empty() {
         line("held", &held(run));
     }
+    line("values", &not_finite(run));
     let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
     line("dropped", &dropped.collect::<Vec<_>>());
     if let Some(verification) = &run.verification {
@@ -116,6 +117,22 @@ fn drifts(run: &Run) -> Vec<String> {
         format!("{name:width$}  {:<8} {relative}{note}", small(drift.absolute))
     });
     drifts.collect()
+}
+
+/// The columns that have no finite value in some rows.
+fn not_finite(run: &Run) -> Vec<String> {
+    let table = &run.table;
+    let line = |(j, name): (usize, &String)| {
+        let mut rows = table.rows().filter(|row| !row[j].is_finite());
+        let first = rows.next()?;
+        let (count, total) = (1 + rows.count(), table.len());
+        Some(format!(
+            "{name} is {} at t = {}, not finite in {count} of {total} rows",
+            first[j],
+            short(first[0], 10)
+        ))
+    };
+    table.columns().iter().enumerate().filter_map(line).collect()
 }
 
 fn held(run: &Run) -> Vec<String> {

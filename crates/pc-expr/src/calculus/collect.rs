@@ -17,6 +17,8 @@ use crate::graph::subgraph::Cone;
 
 /// Greatest degree in one variable that is looked for.
 const MAX_DEGREE: usize = 4;
+/// Most terms of a polynomial in several variables.
+const MOST_TERMS: usize = 10_000;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
 /// A number at which no divisor is likely to vanish.
@@ -61,7 +63,7 @@ impl Graph {
         if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, all) }
     }
 
-    /// e as a polynomial in all of `variables`, if it is one.
+    /// e as a polynomial in all of `variables`, if it is one of at most ten thousand terms.
     pub fn polynomial<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Option<Polynomial<'g>> {
         let mut terms = vec![(Vec::new(), e)];
         for &z in variables {
@@ -74,6 +76,9 @@ impl Graph {
                         next.push((exponents, c));
                     }
                 }
+            }
+            if next.len() > MOST_TERMS {
+                return None; // nobody would read it
             }
             terms = next;
         }

@@ -96,6 +96,10 @@ impl Document {
                 let help = "its forms are poincare and, where the coordinates are independent, lagrange";
                 self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
+            MechError::Expr(ExprError::Spent { what, stage, nodes })
+            | MechError::Algebra(AlgebraError::Expr(ExprError::Spent { what, stage, nodes })) => {
+                self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes })
+            }
             MechError::Algebra(error) => self.algebra_error(error),
             MechError::UnknownIntegral { name, known } => {
                 self.error(&self.kept_place(&name), MeaningError::UnknownIntegral { name, known })

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use pc_expr::{Events, VectorField};
 
 use crate::checkpoint::checkpoint::Checkpoint;
-use crate::error::{Code, InputError, IntegrationError, Reason, SolveError};
+use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::method::IntegrationMethod;
@@ -206,8 +206,7 @@ impl Plan<'_> {
 
 /// Legs that lead too slowly to the output at `t`.
 fn too_much_work<S: Stepper, E: Events>(integration: &Integration<S, E>, steps: u64, t: f64) -> SolveError {
-    let message = format!("{steps} internal steps taken before reaching t = {t}.");
-    let reason = Reason::Cvode { code: Code::TooMuchWork, message };
+    let reason = Reason::Steps { steps, t, last: integration.statistics().last_step.abs() };
     let (time, state) = (integration.time(), integration.state().to_vec());
     SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure: None }))
 }

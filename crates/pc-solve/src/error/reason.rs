@@ -16,6 +16,16 @@ pub enum Reason {
         message: String,
     },
 
+    /// The limit of steps from one output to the next was reached.
+    Steps {
+        /// How many were made.
+        steps: u64,
+        /// The output on the way to which they were made.
+        t: f64,
+        /// The length of the last one.
+        last: f64,
+    },
+
     /// The integration of the adjoint equations, from the end back, could not go on; time and state reached are those of
     /// the motion there.
     Adjoint(Box<Reason>),
@@ -118,6 +128,8 @@ impl Reason {
         match self {
             Reason::Cvode { code, .. } => Some(*code),
             Reason::Adjoint(reason) => reason.code(),
+            // CVODE has a name for it, whatever the method.
+            Reason::Steps { .. } => Some(Code::TooMuchWork),
             Reason::Overflow { .. }
             | Reason::Projection { .. }
             | Reason::Functional
@@ -138,6 +150,10 @@ impl Reason {
     pub(super) fn write(&self, time: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),
+            Reason::Steps { steps, t, last } => write!(
+                f,
+                "{steps} steps did not lead to the output at t = {t}: they reached t = {time}, the last of them {last:.1e} long"
+            ),
             Reason::Adjoint(reason) => {
                 f.write_str("the adjoint equations, from the end back: ")?;
                 reason.write(time, f)

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use pc_expr::Events;
 
-use crate::error::{Code, InputError, Reason, SolveError};
+use crate::error::{InputError, Reason, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::checks::finite;
 use crate::integration::integration::{Ending, Integration};
@@ -84,8 +84,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         if steps < self.engine.limits().max_steps {
             return Ok(());
         }
-        let message = format!("{steps} internal steps taken before reaching t = {t}.");
-        Err(self.failed(Reason::Cvode { code: Code::TooMuchWork, message }, None))
+        let last = self.statistics().last_step.abs();
+        Err(self.failed(Reason::Steps { steps, t, last }, None))
     }
 
     /// Goes to `t`, which has been checked, with steps towards `end` as far as needed.

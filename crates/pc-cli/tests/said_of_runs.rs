@@ -1,0 +1,65 @@
+//! What `pc` says of motions that stay where a force jumps, of numbers that are not finite, and of what is too large.
+
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+/// The exit code and standard error.
+fn said(arguments: &[&str], model: &str) -> (Option<i32>, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("pc starts");
+    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    let output = child.wait_with_output().expect("pc ends");
+    (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
+}
+
+/// A block on a plane, in x and v = x'.
+fn block(more: &str) -> String {
+    format!(
+        "[coordinates]\nx = -0.5\n[quasi_velocities]\nv = 1.0\n[kinematics]\nx = \"v\"\n\
+         [lagrangian]\nkinetic = \"v^2/2\"\n{more}\n[simulation]\nt_end = 4.0\nsamples = 9\n"
+    )
+}
+
+/// It stops at t = 2, where the sign of v is that of rounding.
+#[test]
+fn dry_friction_chatters() {
+    let (code, said) = said(&["run", "-"], &block("[forces]\nv = \"-sign(v)/2\""));
+    assert_eq!(code, Some(5));
+    let last = said.lines().last().unwrap_or_default();
+    assert_eq!(
+        last,
+        "  help: the forces jump, as dry friction does, and the motion may stay where they do, chattering: have [events] \
+         change the law there, as the built-in model stick-slip-block does",
+        "{said}"
+    );
+    assert!(said.contains("500000 steps did not lead to the output at t = 2.5"), "{said}");
+}
+
+#[test]
+fn values_that_are_not_finite_are_named() {
+    let (code, said) = said(&["run", "-"], &block("[outputs]\nlg = \"log(1.25 - x)\""));
+    assert_eq!(code, Some(0));
+    let line = said.lines().find(|line| line.contains("values")).unwrap_or_default();
+    // x = t − 1/2 passes 5/4 at t = 7/4
+    assert_eq!(line, "  values   lg is NaN at t = 2, not finite in 5 of 9 rows", "{said}");
+}
+
+#[test]
+fn what_is_too_large_is_refused_before_it_is_done() {
+    let sum = (1..2000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + ");
+    let model = block("").replace("v^2/2\"", &format!("v^2/2\"\npotential = \"{sum}\""));
+    let (code, text) = said(&["derive", "-", "--limit-memory", "1M"], &model);
+    assert_eq!(code, Some(4), "{text}");
+    assert!(text.contains("more memory would be needed than the limit of 1 MiB"), "{text}");
+    assert!(text.contains("help: raise the limit (`--limit-memory`, `--limit-time`)"), "{text}");
+    let (code, text) = said(&["check", "-", "--limit-time", "1e-6"], &model);
+    assert_eq!(code, Some(4), "{text}");
+    assert!(text.contains("more time would be needed than the limit of 0.000001 s"), "{text}");
+    let (code, text) = said(&["run", "-", "--limit-memory", "nothing"], &model);
+    assert_eq!(code, Some(2), "{text}");
+}
