@@ -148,6 +148,11 @@ typedef enum {
    */
   PC_DISAGREEMENT = 14,
   /**
+   * The equations of the model would take more memory or time than they may, or somebody
+   * cancelled the work.
+   */
+  PC_LIMIT = 15,
+  /**
    * None.
    */
   PC_STATUS_LAST = 2147483647,
