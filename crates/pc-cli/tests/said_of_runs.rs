@@ -12,7 +12,8 @@ fn said(arguments: &[&str], model: &str) -> (Option<i32>, String) {
         .stderr(Stdio::piped())
         .spawn()
         .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
+    // A wrong command line is refused before anything is read.
+    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
     let output = child.wait_with_output().expect("pc ends");
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
 }

@@ -234,7 +234,7 @@ fn the_step_limit_holds() {
         .dense(1.0);
     let error = failed.unwrap_err();
     assert_eq!(error.code(), Some(pc_solve::Code::TooMuchWork));
-    assert!(error.to_string().contains("10 internal steps taken before reaching t = 1"), "{error}");
+    assert!(error.to_string().contains("10 steps did not lead to the output at t = 1"), "{error}");
 }
 
 #[test]
