@@ -252,7 +252,7 @@ impl Second {
         let (wanted, exact) = (first.quantities(), Rounding::none());
         let free = first.free.clone();
         let mut seconds = self.derivation.quantities(&here.derived, &wanted, free.as_deref(), &exact)?;
-        let values = first.values(&self.derivation, here)?;
+        let values = first.values(&self.derivation, here, &exact)?;
         let mut noise = vec![0.0; values.len()];
         if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
             if scattered.is_none() {
@@ -312,9 +312,9 @@ impl Second {
     ) -> Vec<f64> {
         let mut noise = vec![0.0f64; values.len()];
         let most: Vec<f64> = seconds.iter().map(|second| WORSE * second.size).collect();
-        for (_, near) in scattered {
+        for (rounding, near) in scattered {
             // Where it has no values there it says nothing of rounding.
-            let Ok(moved) = first.values(&self.derivation, near) else { continue };
+            let Ok(moved) = first.values(&self.derivation, near, rounding) else { continue };
             for (i, moved) in moved.into_iter().enumerate() {
                 let scatter = (moved - values[i]).abs() / UNIT;
                 if scatter.is_finite() {

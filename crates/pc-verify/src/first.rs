@@ -11,6 +11,7 @@ use crate::error::{Disagreement, Irregular};
 use crate::here::Here;
 use crate::printed::Printed;
 use crate::quantity::{Free, Quantity};
+use crate::rounding::Rounding;
 use crate::second::Second;
 
 /// Equations of the first derivation.
@@ -210,7 +211,12 @@ impl<'g> First<'g> {
     }
 
     /// What is compared, at a place.
-    pub(crate) fn values(&mut self, second: &Derivation, here: &Here) -> Result<Vec<f64>, Irregular> {
+    pub(crate) fn values(
+        &mut self,
+        second: &Derivation,
+        here: &Here,
+        rounding: &Rounding,
+    ) -> Result<Vec<f64>, Irregular> {
         let (form, at, free) = (&self.form, &here.derived.place, self.free.as_deref());
         let velocity = |free: &Free| here.velocity(*free);
         let refused = |message: String| Irregular::Refused { form: form.clone(), message };
@@ -220,7 +226,11 @@ impl<'g> First<'g> {
                 let mut all = at.x.clone();
                 all.extend(quasi_velocities.iter().map(|free| free.as_ref().map_or(0.0, velocity)));
                 all.extend(&at.z);
-                let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
+                let mut state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
+                // Momenta are rounded as well, and much of the velocities may be in their last digits.
+                if flow.has_momenta() {
+                    state.iter_mut().for_each(|y| *y = rounding.of(*y));
+                }
                 let mut rates = vec![f64::NAN; state.len()];
                 let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
                 evaluated.map_err(|failure| refused(failure.to_string()))?;
