@@ -195,8 +195,13 @@ impl Derivation {
         }
         let rates = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
         let largest = |list: &[f64]| list.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        // The natural size of rates of constraints, which vanish, is found by how they scatter.
-        all.extend(rates.iter().map(|&value| Sized { value, size: 0.0 }));
+        // What vanishes has the size of what cancels in it, and by how much it scatters.
+        let rows = match rates.iter().all(|&rate| rate == 0.0) {
+            true => vec![Vec::new(); rates.len()],
+            false => self.constraint_matrix(&self.kept, at, rounding)?,
+        };
+        let terms = |row: &[f64]| row.iter().zip(&in_time.w).map(|(a, w)| a * w).collect::<Vec<f64>>();
+        all.extend(rates.iter().zip(&rows).map(|(&value, row)| Sized { value, size: largest(&terms(row)) }));
         let point = self.still(at, rounding);
         let size = largest(&here.velocities);
         let both = here.velocities.iter().zip(point.velocities()?);
