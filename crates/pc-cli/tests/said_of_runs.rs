@@ -64,3 +64,22 @@ fn what_is_too_large_is_refused_before_it_is_done() {
     let (code, text) = said(&["run", "-", "--limit-memory", "nothing"], &model);
     assert_eq!(code, Some(2), "{text}");
 }
+
+#[test]
+fn a_name_ends() {
+    let model = block("").replace('x', &"x".repeat(300));
+    let (code, text) = said(&["check", "-"], &model);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.ends_with("help: a name has at most 255 bytes\n"), "{text}");
+}
+
+/// Comments stand behind lines of code of any length.
+#[test]
+fn a_long_line_of_code_is_written() {
+    let sum = (1..6000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + ");
+    let model = block("").replace("v^2/2\"", &format!("v^2/2\"\npotential = \"{sum}\""));
+    let directory = tempfile::tempdir().expect("a directory");
+    let output = directory.path().display().to_string();
+    let (code, text) = said(&["emit", "-", "--lang", "c", "-o", &output], &model);
+    assert_eq!(code, Some(0), "{text}");
+}

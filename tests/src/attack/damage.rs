@@ -6,7 +6,7 @@ use std::io;
 use crate::attack::victim::{Finding, Victim};
 use crate::fuzz::random::Random;
 
-const RUN: &[&str] = &["run", "heavy-top", "--t-end", "2", "--no-verify", "--every", "20"];
+const RUN: &[&str] = &["run", "heavy-top-lagrange", "--t-end", "2", "--no-verify", "--every", "20"];
 
 /// Damages a checkpoint in so many ways, and resumes from each.
 ///

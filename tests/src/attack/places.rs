@@ -6,7 +6,7 @@ use std::os::unix::fs::{FileTypeExt, symlink};
 
 use crate::attack::victim::{Finding, Victim};
 
-const RUN: &[&str] = &["run", "heavy-top", "--t-end", "0.1", "--no-verify"];
+const RUN: &[&str] = &["run", "heavy-top-lagrange", "--t-end", "0.1", "--no-verify"];
 
 /// Writes to devices, directories and full disks, reads without end.
 ///
@@ -35,7 +35,7 @@ pub fn places(victim: &Victim) -> io::Result<Vec<Finding>> {
     attempt(&run(&["--plot", "directory"]), None)?;
     attempt(&["check", "/dev/zero"], None)?;
     attempt(&["check", "directory"], None)?;
-    attempt(&["emit", "heavy-top", "--lang", "c", "-o", "/dev/null"], None)?;
+    attempt(&["emit", "heavy-top-lagrange", "--lang", "c", "-o", "/dev/null"], None)?;
 
     fs::write(victim.file("kept.csv"), "before")?;
     symlink("kept.csv", victim.file("link.csv"))?;

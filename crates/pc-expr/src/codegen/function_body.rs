@@ -120,10 +120,12 @@ impl Lines {
         for lines in self.0.chunk_by(|a, b| run(a) && run(b)) {
             let width = lines.iter().map(|(code, _)| code.len()).max().unwrap_or(0);
             for (code, comment) in lines {
+                // The width of a format ends at 65 535, a line of code does not.
+                let gap = " ".repeat(width - code.len());
                 text += &match language {
                     _ if comment.is_empty() => format!("    {code}\n"),
-                    Language::C => format!("    {code:width$} /* {comment} */\n"),
-                    Language::Rust => format!("    {code:width$} // {comment}\n"),
+                    Language::C => format!("    {code}{gap} /* {comment} */\n"),
+                    Language::Rust => format!("    {code}{gap} // {comment}\n"),
                 };
             }
         }

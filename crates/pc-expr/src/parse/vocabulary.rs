@@ -43,9 +43,12 @@ pub const FUNCTIONS: &[Function] = &[
 pub(super) const OTHER_NAMES: &[(&str, &str)] =
     &[("ln", "log"), ("tg", "tan"), ("ctg", "cot"), ("sgn", "sign")];
 
-/// Whether `text` can be a name: a Latin or Greek letter or `_`, then letters, digits and `_`.
+/// Longest name, in bytes.
+const LONGEST_NAME: usize = 255;
+
+/// Whether `text` can be a name: a Latin or Greek letter or `_`, then letters, digits and `_`; of 255 bytes at most.
 pub fn is_name(text: &str) -> bool {
-    text.starts_with(starts_name) && text.chars().all(continues_name)
+    text.len() <= LONGEST_NAME && text.starts_with(starts_name) && text.chars().all(continues_name)
 }
 
 pub(super) fn starts_name(c: char) -> bool {

@@ -307,6 +307,7 @@ impl ErrorKind {
             Self::Missing { example, .. } => format!("add `{example}`"),
             Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
             Self::Exclusive { help, .. } => (*help).into(),
+            Self::NotAName { key } if key.len() > 255 => "a name has at most 255 bytes".into(),
             Self::NotAName { .. } => {
                 "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()
             }

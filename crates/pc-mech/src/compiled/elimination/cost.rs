@@ -1,5 +1,7 @@
 //! How much an elimination takes, from the zeros of the matrix alone.
 
+use std::collections::BTreeSet;
+
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph};
 
@@ -10,20 +12,17 @@ use pc_expr::{Expr, Graph};
 ///
 /// A full matrix takes k(k − 1)(k + 4)/6, a tridiagonal one 2(k − 1).
 pub(crate) fn operations(m: &Matrix<Expr<'_>>) -> usize {
-    let k = m.rows();
-    let mut filled = m.map(|entry| !entry.is_zero());
-    let mut open: Vec<usize> = (0..k).collect();
+    let others = |i: usize| (0..m.rows()).filter(|&j| j != i && !m[(i, j)].is_zero()).collect();
+    let mut filled: Vec<BTreeSet<usize>> = (0..m.rows()).map(others).collect();
+    let mut open: BTreeSet<usize> = (0..m.rows()).collect();
     let mut count = 0;
-    while !open.is_empty() {
-        let below = |p: usize| open.iter().copied().filter(|&i| i != p && filled[(i, p)]).collect::<Vec<_>>();
-        let Some(pivot) = open.iter().copied().min_by_key(|&p| below(p).len()) else { break };
-        let below = below(pivot);
-        open.retain(|&i| i != pivot);
+    while let Some(pivot) = open.iter().copied().min_by_key(|&p| filled[p].len()) {
+        open.remove(&pivot);
+        let below = std::mem::take(&mut filled[pivot]);
         count += below.len() + below.len() * (below.len() + 1) / 2;
         for &i in &below {
-            for &j in &below {
-                filled[(i, j)] = true;
-            }
+            filled[i].remove(&pivot);
+            filled[i].extend(below.iter().filter(|&&j| j != i));
         }
     }
     count

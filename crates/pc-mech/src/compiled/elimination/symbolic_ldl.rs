@@ -141,14 +141,20 @@ impl<'g> Ldl<'g> {
     fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut z = right.to_vec();
         for &i in &self.order {
-            let known = self.rows[i].iter().map(|&(q, l)| -(l * z[q]));
-            z[i] = graph.sum(known.chain([z[i]]).collect::<Vec<_>>());
+            z[i] = rest(graph, z[i], &self.rows[i], &z);
         }
-        let mut x: Vec<Expr<'g>> = z.iter().zip(&self.diagonal).map(|(&z, &d)| z / d).collect();
+        let divided = |(&z, &d): (&Expr<'g>, &Expr<'g>)| if z.is_zero() { z } else { z / d };
+        let mut x: Vec<Expr<'g>> = z.iter().zip(&self.diagonal).map(divided).collect();
         for &i in self.order.iter().rev() {
-            let known = self.columns[i].iter().map(|&(q, l)| -(l * x[q]));
-            x[i] = graph.sum(known.chain([x[i]]).collect::<Vec<_>>());
+            x[i] = rest(graph, x[i], &self.columns[i], &x);
         }
         x
     }
+}
+
+/// r − Σ_q l_q z_q
+fn rest<'g>(graph: &'g Graph, r: Expr<'g>, l: &Entries<'g>, z: &[Expr<'g>]) -> Expr<'g> {
+    let known: Vec<Expr<'g>> =
+        l.iter().filter(|(q, _)| !z[*q].is_zero()).map(|&(q, l)| -(l * z[q])).collect();
+    if known.is_empty() { r } else { graph.sum(known.into_iter().chain([r])) }
 }
