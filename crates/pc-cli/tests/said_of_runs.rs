@@ -83,3 +83,13 @@ fn a_long_line_of_code_is_written() {
     let (code, text) = said(&["emit", "-", "--lang", "c", "-o", &output], &model);
     assert_eq!(code, Some(0), "{text}");
 }
+
+/// ṙ = r v says nothing of v where r = 0.
+#[test]
+fn a_start_where_the_frame_is_singular_is_refused() {
+    let model = block("").replace("x = -0.5", "x = 0.0").replace("x = \"v\"", "x = \"x*v\"");
+    let (code, text) = said(&["run", "-"], &model);
+    assert_eq!(code, Some(4), "{text}");
+    let why = "the frame is singular there: the matrix b of the velocities has rank 0, and 1 at most states";
+    assert!(text.contains(why), "{text}");
+}

@@ -119,18 +119,17 @@ impl<'g> Neighbourhood<'g> {
     /// The largest rank that a matrix, given by its rows, has in numbers at points near by; `None` where it has no numbers, and
     /// where these are of one piece only.
     pub(crate) fn rank(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Option<usize> {
-        let columns = rows.first().map_or(0, Vec::len);
         if in_pieces(graph, &rows.concat()) {
             return None;
         }
         let samples = self.weighed(graph, &rows.concat(), TRIALS);
-        let entries = |row: &Vec<Expr<'g>>| (0..columns).filter(|&j| !row[j].is_zero()).collect();
-        let blocks = independent_blocks(columns, &rows.iter().map(entries).collect::<Vec<_>>());
-        let of_block = |sample: &[Weighed], (i, j): &(Vec<usize>, Vec<usize>)| {
-            rank(i.iter().map(|i| j.iter().map(|j| sample[i * columns + j]).collect()).collect(), j.len())
-        };
-        let of_sample = |sample: Vec<Weighed>| blocks.iter().map(|block| of_block(&sample, block)).sum();
-        samples.into_iter().map(of_sample).max()
+        samples.into_iter().map(|sample| rank_of_sample(rows, &sample)).max()
+    }
+
+    /// The rank of a matrix, given by its rows, at the centre; `None` where it has no numbers there.
+    pub fn rank_at_centre(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Option<usize> {
+        let sample = self.sample::<Weighed>(graph, &rows.concat(), 0)?;
+        sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(rows, &sample))
     }
 
     /// Values at up to `count` points where all outputs are finite.
@@ -163,6 +162,17 @@ fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
         matches!(f, Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Step)
     };
     expressions.iter().any(|&expression| graph.applies(expression, &symbols, has_pieces))
+}
+
+/// The rank of a matrix with these zeros and these numbers, block by block.
+fn rank_of_sample<'g>(rows: &[Vec<Expr<'g>>], sample: &[Weighed]) -> usize {
+    let columns = rows.first().map_or(0, Vec::len);
+    let entries = |row: &Vec<Expr<'g>>| (0..columns).filter(|&j| !row[j].is_zero()).collect();
+    let blocks = independent_blocks(columns, &rows.iter().map(entries).collect::<Vec<_>>());
+    let of_block = |(i, j): &(Vec<usize>, Vec<usize>)| {
+        rank(i.iter().map(|i| j.iter().map(|j| sample[i * columns + j]).collect()).collect(), j.len())
+    };
+    blocks.iter().map(of_block).sum()
 }
 
 /// The rank of a matrix of that many columns, by elimination with complete pivoting; what is no more than rounding is zero.

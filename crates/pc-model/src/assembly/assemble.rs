@@ -1,6 +1,6 @@
 //! From a document to a mechanical system.
 
-use pc_mech::{Expr, Graph, MechError, System};
+use pc_mech::{Expr, Frame, Graph, MechError, Neighbourhood, System};
 
 use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
@@ -41,6 +41,23 @@ impl Model {
 }
 
 impl<'g> Assembler<'g, '_> {
+    /// That the quasi-velocities say at the start as much of ẋ as elsewhere: where q = 0 the rate of a quaternion is none,
+    /// whatever ω.
+    fn check_frame_at_start(&self, frame: &Frame<'g>, values: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
+        let start = Neighbourhood { centre: values.to_vec() };
+        let (rank, everywhere) = (start.rank_at_centre(self.graph, &frame.b().to_rows()), frame.rank());
+        match rank.filter(|&rank| rank < everywhere) {
+            None => Ok(()),
+            Some(rank) => {
+                let cause = format!(
+                    "the frame is singular there: the matrix b of the velocities has rank {rank}, and {everywhere} at most states"
+                );
+                let document = self.model.document();
+                Err(document.error(&document.operator_place(1), MeaningError::SingularStart { cause }))
+            }
+        }
+    }
+
     fn assemble(&mut self) -> Result<Assembly<'g>, ModelError> {
         let document = self.model.document();
         let parameters: Vec<(Expr<'g>, f64)> =
@@ -88,6 +105,7 @@ impl<'g> Assembler<'g, '_> {
         values.push((frame.time(), t_start));
         values.extend(state.iter().copied().zip(start.iter().copied()));
         self.check_finite(&values, &x_dot, &state)?;
+        self.check_frame_at_start(&frame, &values)?;
 
         let mut builder = System::builder(self.graph)
             .coordinates(document.coordinates.iter().map(|c| &c.name.text))

@@ -144,7 +144,7 @@ impl Document {
         }
     }
 
-    fn operator_place(&self, s: usize) -> Place {
+    pub(crate) fn operator_place(&self, s: usize) -> Place {
         let quasi_velocity = self.quasi_velocities.get(s.max(1) - 1);
         quasi_velocity.map_or_else(|| self.end(), |q| q.name.place.clone())
     }
