@@ -13,6 +13,7 @@ use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;
 use crate::motion::interrupt;
+use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::progress::Progress;
 use crate::motion::run::{Ending, Run};
@@ -90,6 +91,8 @@ pub fn integrate_with_checkpoints(
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
+    let numbers = memory::numbers(&flow, &plan, checkpoints.path().is_some());
+    memory::allow(plan.samples as u64, numbers, model.budget().limits())?;
     let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
     let mut derivatives = match plan.sensitivities.as_slice() {
         [] => None,
