@@ -305,7 +305,7 @@ fn what_has_no_end_is_not_read_to_it() {
     let text = "[inputs]\nu = { file = \"/dev/zero\", column = \"u\" }\n[coordinates]\nx = 1.0\n[lagrangian]\n\
                 kinetic = \"x'^2/2\"\n[forces]\nx = \"u\"\n";
     fs::write(place.at("a.toml"), text).expect("written");
-    let message = "pc: a.toml:2:14: [inputs].u.file: `/dev/zero` cannot be read: it has more than 64 MiB, the most that is \
+    let message = "pc: a.toml:2:14: [inputs] u.file: `/dev/zero` cannot be read: it has more than 64 MiB, the most that is \
                    read\n    u = { file = \"/dev/zero\", column = \"u\" }\n                 ^^^^^^^^^^^\n  help: paths are \
                    relative to the model's file\n";
     ends(&mut place.pc(&["check", "a.toml"]), 3, message);

@@ -150,8 +150,7 @@ fn a_column_is_one_column() {
     printed(directory.path(), &[&run[..], &["-o", "a.npz"]].concat());
     let archive = fs::File::open(directory.path().join("a.npz")).expect("a file");
     let archive = zip::ZipArchive::new(archive).expect("an archive");
-    let names: Vec<String> =
-        archive.file_names().map(|name| name.expect("UTF-8").into_owned()).collect();
+    let names: Vec<String> = archive.file_names().map(|name| name.expect("UTF-8").into_owned()).collect();
     assert_eq!(names.len(), 7);
     let entry = "λ_rod,\"=}$%5Cinput{x}%25&#^~</text>%2F..%2F..%2Fx.npy";
     assert!(names.iter().any(|name| name == entry), "{names:?}");
@@ -188,11 +187,21 @@ fn labels_are_seen_or_refused() {
     };
     let help = "help: a label stands on one line, in what is printed and in columns: leave out what controls terminals, ends \
                 lines or turns the direction of writing";
+    let hidden = "has characters that are not seen";
     refused(
         &model("", "rod\\n  verified"),
-        &format!("pc: m.toml:7:1: [constraints] rod\u{fffd}: the label\n"),
+        &format!(
+            "pc: m.toml:7:1: [constraints] rod\u{fffd}  verified: the label `rod\\n  verified` {hidden}\n    \
+             \"rod\\n  verified\" = \"x^2 + y^2 - 1\"\n    ^^^^^^^^^^^^^^^^^\n  {help}\n"
+        ),
     );
     let event =
         "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n[events.\"\\u001b[2J\"]\nwhen = \"x\"\n";
-    refused(event, help);
+    refused(
+        event,
+        &format!(
+            "pc: m.toml:5:9: [events] \u{fffd}[2J: the label `\\u{{1b}}[2J` {hidden}\n    [events.\"\\u001b[2J\"]\n            \
+             ^^^^^^^^^^^\n  {help}\n"
+        ),
+    );
 }

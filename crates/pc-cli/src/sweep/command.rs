@@ -60,13 +60,12 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let sheet = Sheet::new(&design, &motion);
     let title = model.title().to_owned();
     let header = header(&model, arguments, &plan, form);
-    let mut journal = Journal::open(destination.path(), &header)?;
-    let (members, before) = (design.members(), journal.tally().done);
-
     // Of each member at work its trajectory, its table, its record and the bytes of that.
     let threads =
         arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     memory::allow(plan.samples as u64, (4 * columns * threads) as u64, model.budget().limits())?;
+    let mut journal = Journal::open(destination.path(), &header)?;
+    let (members, before) = (design.members(), journal.tally().done);
 
     let row = 8 * motion.len() * if all_rows { plan.samples } else { 1 };
     let window = NonZeroUsize::new((WAITING / row.max(1)).min(MOST_WAITING)).unwrap_or(NonZeroUsize::MIN);
