@@ -110,11 +110,11 @@ pub enum CliError {
     },
     /// More rows than there is memory for.
     #[error(
-        "{rows} rows of {numbers} numbers would take {:.1} GiB, more than the limit of {:.1} GiB; ask for fewer, or give \
-         --limit-memory {}G",
-        gib(*bytes),
-        gib(*limit),
-        bytes.div_ceil(1 << 30)
+        "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
+         --limit-memory {}M, or of one motion -o FILE.csv alone, whose rows are written as they come",
+        bytes.div_ceil(1 << 20),
+        limit >> 20,
+        bytes.div_ceil(1 << 20)
     )]
     Rows {
         /// How many are wanted.
@@ -227,10 +227,6 @@ impl CliError {
 
 /// How standard output is called.
 pub(crate) const STANDARD_OUTPUT: &str = "standard output";
-
-fn gib(bytes: u64) -> f64 {
-    bytes as f64 / f64::from(1 << 30)
-}
 
 fn known_parameters(known: &[String]) -> String {
     if known.is_empty() {

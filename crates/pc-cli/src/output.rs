@@ -2,7 +2,8 @@
 //!
 //! In goes a finished run or its picture, out come bytes at their place. A `place` is looked at before anything is computed;
 //! `atomic` writes there, by a `partial` file that replaces the old one whole, and `standard_output` where there is none. What
-//! becomes of a result that cannot be written says `kept`. `csv`, `json` and `npz` are the formats, and `destination` chooses
+//! becomes of a result that cannot be written says `kept`. A `stream` is
+//! written while there are rows to come. `csv`, `json` and `npz` are the formats, and `destination` chooses
 //! among all these.
 
 pub(crate) mod atomic;
@@ -14,3 +15,4 @@ pub(crate) mod npz;
 pub(crate) mod partial;
 pub(crate) mod place;
 pub mod standard_output;
+pub(crate) mod stream;

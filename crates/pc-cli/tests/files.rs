@@ -314,14 +314,84 @@ fn what_has_no_end_is_not_read_to_it() {
 #[test]
 fn more_rows_than_there_is_memory_for_are_refused_in_advance() {
     let place = Place::new();
-    let message = "pc: 10000000 rows of 11 numbers would take 0.8 GiB, more than the limit of 0.5 GiB; ask for fewer, or \
-                   give --limit-memory 1G\n";
+    let message = "pc: 10000000 rows of 11 numbers would take 840 MiB, more than the limit of 512 MiB; ask for fewer, give \
+                   --limit-memory 840M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
     let arguments = ["run", "euler-top", "--samples", "10000000", "--limit-memory", "512M", "-o", "a.json"];
     ends(&mut place.pc(&arguments), 4, message);
-    let message = "pc: 10000000 rows of 96 numbers would take 7.2 GiB, more than the limit of 4.0 GiB; ask for fewer, or \
-                   give --limit-memory 8G\n";
+    let message = "pc: 10000000 rows of 96 numbers would take 7325 MiB, more than the limit of 4096 MiB; ask for fewer, \
+                   give --limit-memory 7325M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
     let arguments =
         ["sweep", "euler-top", "--vary", "I1=1:2:2", "--threads", "4", "--rows", "10000000", "-o", "a.csv"];
     ends(&mut place.pc(&arguments), 4, message);
     assert!(place.entries().0.is_empty());
+}
+
+/// Many rows, and less memory than they take.
+const MANY: [&str; 6] = ["run", "euler-top", "--samples", "200000", "--limit-memory", "16M"];
+
+#[test]
+fn rows_that_have_no_room_are_written_on_the_way() {
+    let place = Place::new();
+    let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts");
+    let message = "pc: 200000 rows of 11 numbers would take 17 MiB, more than the limit of 16 MiB; ask for fewer, give \
+                   --limit-memory 17M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
+    ends(&mut place.pc(&MANY), 4, message);
+    let given = place.pc(&[&MANY[..], &["-o", "a.csv"]].concat()).output().expect("pc starts");
+    assert!(given.status.success(), "{}", said(&given));
+    assert!(fs::read(place.at("a.csv")).expect("a table") == held.stdout, "the same bytes");
+    let without_work = |output: &Output| -> Vec<String> {
+        said(output).lines().filter(|line| !line.contains("  work ")).map(str::to_owned).collect()
+    };
+    assert_eq!(without_work(&given), without_work(&held));
+}
+
+/// The ending and the last row of one that an event ends, and of one that fails.
+#[test]
+fn rows_on_the_way_end_where_the_motion_does() {
+    let place = Place::new();
+    let text = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"POTENTIAL\"\n[events.low]\nwhen \
+                = \"y - 0.4\"\nterminal = true\n[simulation]\nt_end = 3.0\nsamples = 100000\n";
+    for (potential, code) in [("y", 0), ("y + sqrt(y - 0.5)/1000", 5)] {
+        fs::write(place.at("m.toml"), text.replace("POTENTIAL", potential)).expect("written");
+        let held = place.pc(&["run", "m.toml"]).output().expect("pc starts");
+        let run = ["run", "m.toml", "--limit-memory", "4M", "-o", "a.csv"];
+        let given = place.pc(&run).output().expect("pc starts");
+        assert_eq!((held.status.code(), given.status.code()), (Some(code), Some(code)), "{}", said(&given));
+        assert!(held.stdout.len() > 1_000_000);
+        assert!(fs::read(place.at("a.csv")).expect("a table") == held.stdout);
+    }
+}
+
+#[test]
+fn rows_on_the_way_are_kept_where_the_disk_is_full() {
+    let place = Place::new();
+    fs::write(place.at("a.csv"), "old").expect("written");
+    let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts").stdout;
+    let output = place.shell("trap '' XFSZ; ulimit -f 6000", &[&MANY[..], &["-o", "a.csv"]].concat());
+    let message = "pc: cannot write a.csv; what could be written of it is in ";
+    assert!(output.status.code() == Some(6) && said(&output).contains(message), "{}", said(&output));
+    let part = fs::read(place.at("a.csv.partial")).expect("a part");
+    assert!(part.len() > 2_000_000 && part.ends_with(b"\n") && held.starts_with(&part), "{}", part.len());
+    assert_eq!(place.entries().0, ["a.csv", "a.csv.partial"]);
+    assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
+}
+
+#[test]
+fn a_run_killed_while_it_writes_leaves_nothing_after_the_next_one() {
+    let place = Place::new();
+    let run = ["run", "euler-top", "--samples", "9000000", "-o", "a.csv"];
+    fs::write(place.at("a.csv"), "old").expect("written");
+    for _ in 0..5 {
+        let mut child = place.pc(&run).stderr(Stdio::null()).spawn().expect("pc starts");
+        let start = std::time::Instant::now();
+        while place.entries().0.len() < 2 {
+            assert!(start.elapsed().as_secs() < 60, "nothing happens");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        child.kill().expect("killed");
+        assert!(!child.wait().expect("ended").success());
+        assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
+    }
+    assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());
+    assert_eq!(place.entries().0, ["a.csv"]);
 }

@@ -36,6 +36,14 @@ pub(crate) fn allow(rows: u64, numbers: u64, limits: &Limits) -> Result<(), CliE
     Ok(())
 }
 
+/// Rows that take more than so many bytes are written while the motion is integrated, if they can.
+const MUCH: u64 = 64 << 20;
+
+/// Whether rows had better be given away, or have to.
+pub(crate) fn is_much(rows: u64, numbers: u64, limits: &Limits) -> bool {
+    rows.saturating_mul(numbers).saturating_mul(size_of::<f64>() as u64) > MUCH.min(limits.memory)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

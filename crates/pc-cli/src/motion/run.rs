@@ -53,6 +53,8 @@ pub enum Ending {
     },
     /// By Ctrl-C.
     Interrupted,
+    /// Rows were written on the way, and one could not be.
+    Unwritten,
     /// The integration could not go on.
     Failed(Box<SolveError>),
 }
@@ -64,6 +66,7 @@ impl Ending {
             Ending::Completed => "completed",
             Ending::Event { .. } => "event",
             Ending::Interrupted => "interrupted",
+            Ending::Unwritten => "not written",
             Ending::Failed(_) => "failed",
         }
     }

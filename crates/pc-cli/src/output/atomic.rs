@@ -30,8 +30,15 @@ impl Place {
         write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
     ) -> Result<(), (io::Error, Option<NamedTempFile>)> {
         let mut made = partial::make(&self.file).map_err(|error| (error, None))?;
-        let filled = fill(made.as_file_mut(), write).and_then(|()| made.as_file().sync_all());
-        let replaced = filled.and_then(|()| match fs::metadata(&self.file) {
+        match fill(made.as_file_mut(), write) {
+            Ok(()) => self.put(made),
+            Err(error) => Err((error, Some(made))),
+        }
+    }
+
+    /// Puts a file that was made beside it there.
+    pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
             Err(_) => Ok(true),
             Ok(old) => take_after(made.as_file(), &old),
         });

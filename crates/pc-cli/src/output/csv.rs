@@ -10,14 +10,16 @@ use crate::motion::table::Table;
 /// A header, then a line for each row, numbers with 17 significant digits: those that give the same number back.
 pub(super) fn write(table: &Table, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", header(table.columns()))?;
-    for row in table.rows() {
-        for (j, value) in row.iter().enumerate() {
-            let comma = if j == 0 { "" } else { "," };
-            write!(out, "{comma}{value:.16e}")?;
-        }
-        writeln!(out)?;
+    table.rows().try_for_each(|numbers| row(numbers, out))
+}
+
+/// The line of a row.
+pub(super) fn row(numbers: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    for (j, value) in numbers.iter().enumerate() {
+        let comma = if j == 0 { "" } else { "," };
+        write!(out, "{comma}{value:.16e}")?;
     }
-    Ok(())
+    writeln!(out)
 }
 
 /// The line of names.

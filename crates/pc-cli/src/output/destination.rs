@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::error::CliError;
 use crate::motion::run::Run;
 use crate::output::place::Place;
+use crate::output::stream::Stream;
 use crate::output::{csv, json, npz, standard_output};
 use crate::plot::picture::Picture;
 
@@ -82,6 +83,12 @@ impl Destination {
             Encoding::Npz => npz::write(run, out),
             Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
         })
+    }
+
+    /// The table while it grows, where it can be written from its beginning to its end.
+    pub(crate) fn stream(&self) -> Option<Stream<'_>> {
+        let place = self.place.as_ref().filter(|place| place.device.is_none());
+        place.filter(|_| self.encoding == Encoding::Csv).map(Stream::to)
     }
 
     /// Writes a picture.

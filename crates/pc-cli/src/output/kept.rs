@@ -87,7 +87,7 @@ pub(super) fn elsewhere(
 }
 
 /// The whole lines of what could be written, in FILE.partial unless there is such a file.
-fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
+pub(super) fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
     let end = end_of_lines(part.as_file_mut()).ok().filter(|&end| end > 0)?;
     part.as_file().set_len(end).ok()?;
     let mut name = file.as_os_str().to_owned();
