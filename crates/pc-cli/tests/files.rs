@@ -381,15 +381,19 @@ fn a_run_killed_while_it_writes_leaves_nothing_after_the_next_one() {
     let place = Place::new();
     let run = ["run", "euler-top", "--samples", "9000000", "-o", "a.csv"];
     fs::write(place.at("a.csv"), "old").expect("written");
+    let mut before = place.entries().0;
     for _ in 0..5 {
         let mut child = place.pc(&run).stderr(Stdio::null()).spawn().expect("pc starts");
         let start = std::time::Instant::now();
-        while place.entries().0.len() < 2 {
+        // The one before has been removed, and there is another one.
+        while place.entries().0 == before || place.entries().0.len() != 2 {
             assert!(start.elapsed().as_secs() < 60, "nothing happens");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
         child.kill().expect("killed");
         assert!(!child.wait().expect("ended").success());
+        before = place.entries().0;
+        assert!(before.len() == 2 && before[0].ends_with(".part"), "{before:?}");
         assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
     }
     assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());

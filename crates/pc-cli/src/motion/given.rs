@@ -6,6 +6,7 @@ use pc_model::Flow;
 use pc_solve::{Solution, Solve, SolveError};
 
 use crate::error::CliError;
+use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::output::stream::Stream;
@@ -55,6 +56,10 @@ impl<'s, 'p> Given<'s, 'p> {
     }
 
     fn take(&mut self, t: f64, y: &[f64]) -> ControlFlow<()> {
+        // There may be many rows in a step.
+        if interrupt::requested() {
+            return ControlFlow::Break(());
+        }
         self.table.give(&mut self.flow, t, y);
         note_residuals(&mut self.constraints, &mut self.flow, t, y);
         self.last = Some((t, y.to_vec()));
