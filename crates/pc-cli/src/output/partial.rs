@@ -10,8 +10,6 @@ use std::path::Path;
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::place::directory;
-
 const SUFFIX: &str = ".part";
 const CHANCE: usize = 6;
 /// Most systems have names of 255 bytes.
@@ -55,6 +53,14 @@ pub(super) fn remove_leftovers(file: &Path) {
         if is_ours && File::open(&path).is_ok_and(|left| left.try_lock().is_ok()) {
             let _ = fs::remove_file(&path);
         }
+    }
+}
+
+/// The directory that a file is in.
+pub(super) fn directory(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
     }
 }
 

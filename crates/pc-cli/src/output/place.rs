@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use crate::output::partial;
+use crate::output::partial::directory;
 
 /// The place of a file that is replaced whole, or of a device that is written through.
 #[derive(Debug)]
@@ -74,13 +75,6 @@ fn try_directory(file: &Path) -> io::Result<()> {
     }
     partial::remove_leftovers(file);
     partial::make(file).map(drop)
-}
-
-pub(super) fn directory(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    }
 }
 
 /// As many links as the system itself follows.

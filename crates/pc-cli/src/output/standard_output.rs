@@ -3,7 +3,8 @@
 use std::io::{self, ErrorKind, Write};
 
 use crate::error::{CliError, STANDARD_OUTPUT};
-use crate::output::kept::{Kept, elsewhere};
+use crate::output::kept::Kept;
+use crate::output::rescue::elsewhere;
 
 /// Writes to standard output.
 ///

@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use tempfile::NamedTempFile;
 
 use crate::error::CliError;
-use crate::output::kept::{Kept, beside};
+use crate::output::kept::Kept;
 use crate::output::place::Place;
+use crate::output::rescue::beside;
 use crate::output::{csv, partial};
 
 /// A table of comma-separated values that grows beside the file which it replaces at its end.
