@@ -10,6 +10,7 @@ use pc_verify::VerifyError;
 
 use crate::exit_code;
 use crate::motion::checkpoint_error::CheckpointFileError;
+use crate::output::kept::Kept;
 use crate::plot::error::PlotError;
 use crate::report::text::short;
 use crate::sweep::error::SweepError;
@@ -89,13 +90,41 @@ pub enum CliError {
         /// The endings there are.
         expected: &'static str,
     },
-    /// A file that cannot be written.
-    #[error("cannot write {path}")]
+    /// A file of which is seen in advance that it cannot be written.
+    #[error("cannot write {}; nothing was computed", path.display())]
+    Place {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A result that could not be written.
+    #[error("cannot write {path}{kept}")]
     Write {
         /// The file, or `standard output`.
         path: String,
+        /// Where the result is instead.
+        kept: Kept,
         /// Why.
         source: io::Error,
+    },
+    /// More rows than there is memory for.
+    #[error(
+        "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
+         --limit-memory {}M, or of one motion -o FILE.csv alone, whose rows are written as they come",
+        bytes.div_ceil(1 << 20),
+        limit >> 20,
+        bytes.div_ceil(1 << 20)
+    )]
+    Rows {
+        /// How many are wanted.
+        rows: u64,
+        /// Numbers that are held for each.
+        numbers: u64,
+        /// What they would take.
+        bytes: u64,
+        /// What they may take.
+        limit: u64,
     },
     /// A picture that could not be drawn.
     #[error(transparent)]
@@ -132,20 +161,34 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// That a file cannot be written.
+    /// That there is nothing else of what could not be written.
     pub(crate) fn cannot_write(path: &Path, source: io::Error) -> CliError {
-        CliError::Write { path: path.display().to_string(), source }
+        CliError::Write { path: path.display().to_string(), kept: Kept::Nowhere, source }
+    }
+
+    /// That a file cannot be written, before there is anything to be written.
+    pub(crate) fn no_place(path: &Path, source: io::Error) -> CliError {
+        CliError::Place { path: path.to_owned(), source }
     }
 
     /// Exit code of a wrong command line.
     pub const USAGE: u8 = exit_code::USAGE;
+
+    /// Exit code where a result could not be written.
+    pub const UNWRITTEN: u8 = exit_code::UNWRITTEN;
+
+    /// Whether it is what happens to any program whose reader has read enough (`pc run … | head`).
+    pub fn is_reader_gone(&self) -> bool {
+        matches!(self, CliError::Write { path, source, .. }
+            if path == STANDARD_OUTPUT && source.kind() == io::ErrorKind::BrokenPipe)
+    }
 
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Model(error) => error.category().exit_code(),
             CliError::Sweep(error) => error.exit_code(),
-            CliError::Verify(_) => 4,
+            CliError::Verify(_) | CliError::Rows { .. } => 4,
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }
@@ -159,9 +202,10 @@ impl CliError {
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }
-            | CliError::Write { .. }
+            | CliError::Place { .. }
             | CliError::Checkpoints(_)
             | CliError::Plot(_) => CliError::USAGE,
+            CliError::Write { .. } => CliError::UNWRITTEN,
         }
     }
 
@@ -188,6 +232,9 @@ impl CliError {
         report
     }
 }
+
+/// How standard output is called.
+pub(crate) const STANDARD_OUTPUT: &str = "standard output";
 
 fn known_parameters(known: &[String]) -> String {
     if known.is_empty() {

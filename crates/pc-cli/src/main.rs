@@ -1,11 +1,13 @@
 //! The program `pc`.
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
 use pc_cli::CliError;
 use pc_cli::args::command_line::{Arguments, Command};
 use pc_cli::commands::{check, derive, emit, models, run};
+use pc_cli::output::standard_output;
 use pc_cli::report::text;
 use pc_cli::sweep;
 
@@ -13,8 +15,12 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            let _ = error.print(); // nothing can be said where nothing can be printed
-            return ExitCode::from(if error.use_stderr() { CliError::USAGE } else { 0 });
+            if error.use_stderr() {
+                let _ = error.print(); // nothing can be said where nothing can be printed
+                return ExitCode::from(CliError::USAGE);
+            }
+            let printed = error.print().and_then(|()| io::stdout().flush());
+            return ended(printed.map_err(standard_output::error));
         }
     };
     let outcome = match &arguments.command {
@@ -25,10 +31,16 @@ fn main() -> ExitCode {
         Command::Emit(arguments) => emit::command(arguments),
         Command::Models(arguments) => models::command(arguments),
     };
+    ended(outcome)
+}
+
+fn ended(outcome: Result<(), CliError>) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            text::say(format_args!("{}\n", error.report()));
+            if !error.is_reader_gone() {
+                text::say(format_args!("{}\n", error.report()));
+            }
             ExitCode::from(error.exit_code())
         }
     }

@@ -346,7 +346,7 @@ fn a_new_file_has_the_usual_permissions_and_links_are_followed() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn a_reader_that_goes_away_is_told_by_the_exit_code_alone() {
     let mut child = pc()
         .args(["run", "euler-top", "--samples", "50000"])
         .stdout(Stdio::piped())
@@ -355,7 +355,9 @@ fn a_reader_that_goes_away_is_no_error() {
         .expect("pc starts");
     drop(child.stdout.take());
     let output = child.wait_with_output().expect("pc ends");
-    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stderr(&output);
+    assert_eq!(code(&output), 6, "{text}");
+    assert!(text.starts_with("Euler's top\n") && !text.contains("pc: "), "the summary alone: {text}");
 }
 
 #[cfg(unix)]

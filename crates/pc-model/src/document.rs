@@ -1,17 +1,19 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
 //! In goes TOML, out comes a [`Document`]. Read what comes out first: `expression`, with the places that
-//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `syntax` gives TOML,
-//! `reader` typed access to it; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
+//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `reading` has its bytes, `syntax` gives TOML,
+//! `reader` typed access to it, `hidden` what no label may have; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
 //! must be true between them, and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
 pub(crate) mod contents;
 pub(crate) mod expression;
+pub(crate) mod hidden;
 pub(crate) mod inputs;
 pub(crate) mod parse;
 pub(crate) mod reader;
+pub(crate) mod reading;
 pub(crate) mod sections;
 pub(crate) mod simulation;
 pub(crate) mod syntax;
@@ -23,5 +25,7 @@ pub use contents::{
     State, TableFile,
 };
 pub use expression::{Expression, Located, Name, NamedExpression};
+pub use hidden::is_hidden;
+pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;

@@ -5,8 +5,8 @@
 //! [kinematics](kinematics()), [brackets](brackets()) and [equations](balance()).
 //!
 //! In goes an [`Assembly`](pc_model::Assembly), out comes text. Read `form` and `derived` first, the equations with what belongs
-//! to them; then `operations`, what they cost, and `constraints`, `lines` and `sides`, which every page is made of; then
-//! `text`, `latex` and `json`, the three ways to print, and `page`, which chooses.
+//! to them; then `operations`, what they cost, and `constraints`, `lines` and `sides`, which every page is made of, and
+//! `visible`, by which text of others is no more than text; then `text`, `latex` and `json`, the three ways to print, and `page`, which chooses.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -31,6 +31,7 @@ mod operations;
 mod page;
 mod sides;
 mod text;
+mod visible;
 
 pub use constraints::kind_in_words;
 pub use derived::{Derived, energy_remark};
@@ -39,3 +40,4 @@ pub use lines::{columns, combination};
 pub use operations::{Operations, counted};
 pub use page::{Page, page};
 pub use text::{balance, brackets, kinematics, recognised};
+pub use visible::{one_line, visible, visible_json};

@@ -6,6 +6,7 @@ use pc_model::{Assembly, ModelError};
 use crate::derived::Derived;
 use crate::form::Form;
 use crate::operations::Operations;
+use crate::visible::{one_line, visible, visible_json};
 use crate::{json, latex, text};
 
 /// How equations are printed.
@@ -24,23 +25,34 @@ pub enum Page {
 /// # Errors
 /// [`ModelError`] if they cannot be derived.
 pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, ModelError> {
+    let shown = one_line(title);
     if form == Form::Canonical {
         let (_, derived) = Derived::new(form, assembly)?;
         let equations = assembly.placed(assembly.free_system()?.canonical())?;
         let operations = assembly.placed(Operations::of_canonical(&equations).map_err(MechError::from))?;
-        let heading = format!("{title}: canonical equations");
+        let heading = format!("{shown}: canonical equations");
         return Ok(match page {
-            Page::Text => text::underlined(&heading) + &text::canonical(&derived, &equations, &operations),
+            Page::Text => {
+                on_terminal(text::underlined(&heading) + &text::canonical(&derived, &equations, &operations))
+            }
             Page::Latex => latex::canonical(&heading, &derived, &equations),
-            Page::Json => format!("{:#}\n", json::canonical(title, &derived, &equations, &operations)),
+            Page::Json => visible_json(&json::canonical(title, &derived, &equations, &operations)) + "\n",
         });
     }
     let (name, derived) = Derived::new(form, assembly)?;
-    let heading = format!("{title}: {name}");
+    let heading = format!("{shown}: {name}");
     let operations = assembly.placed(Operations::of(&derived.equations).map_err(MechError::from))?;
     Ok(match page {
-        Page::Text => text::underlined(&heading) + &text::poincare(&derived, &operations),
+        Page::Text => on_terminal(text::underlined(&heading) + &text::poincare(&derived, &operations)),
         Page::Latex => latex::poincare(&heading, &derived),
-        Page::Json => format!("{:#}\n", json::poincare(title, &derived, &operations)),
+        Page::Json => visible_json(&json::poincare(title, &derived, &operations)) + "\n",
     })
+}
+
+/// Names of constraints may be anything where a program has given them.
+fn on_terminal(text: String) -> String {
+    match visible(&text) {
+        std::borrow::Cow::Borrowed(_) => text,
+        std::borrow::Cow::Owned(shown) => shown,
+    }
 }

@@ -3,6 +3,7 @@
 use std::ffi::{CString, c_char, c_int};
 use std::sync::OnceLock;
 
+use ::pc_model::document::read_file_bounded;
 use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
 
 use crate::ffi::boundary::entry;
@@ -117,7 +118,7 @@ pub unsafe extern "C" fn pc_model_from_file(
         // SAFETY: as the preamble demands.
         let path = unsafe { text(path, "path") }?;
         let bytes =
-            std::fs::read(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
+            read_file_bounded(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         let document = Document::parse(Source::from_bytes(path, &bytes))?;
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }

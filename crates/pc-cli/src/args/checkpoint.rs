@@ -1,7 +1,7 @@
 //! What stands on the command line about checkpoints.
 
 use std::num::NonZeroU64;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -19,4 +19,11 @@ pub struct CheckpointArguments {
     /// interrupted, to the last bit. Checkpoints go on to be kept there unless --checkpoint names another file
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
+}
+
+impl CheckpointArguments {
+    /// The file in which checkpoints are kept, if they are.
+    pub fn path(&self) -> Option<&Path> {
+        self.checkpoint.as_deref().or(self.resume.as_deref())
+    }
 }

@@ -13,8 +13,9 @@ use crate::args::sweep::SweepArguments;
     about = "Poincaré–Chetaev equations of mechanical systems, derived and integrated from text models",
     after_help = "MODEL is a file, `-` for standard input, or the name of a model that comes with the program \
                   (`pc models` lists them).\n\
-                  Exit codes: 0 done; 2 usage; 3 the model file is wrong; 4 the model is inconsistent; 5 the \
-                  integration failed; 130 interrupted."
+                  Exit codes: 0 done; 2 usage; 3 the model file is wrong; 4 the model is inconsistent, or its limits are reached; 5 the \
+                  integration failed; 6 a result could not be written where it belongs, the message says where it is; \
+                  130 interrupted."
 )]
 pub struct Arguments {
     /// What to do.

@@ -1,12 +1,12 @@
 //! From MODEL on the command line to a model and its equations.
 
-use std::fs;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 use pc_expr::Limits;
 use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
+use pc_model::document::{read_bounded, read_file_bounded};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
 
 use crate::args::options::{ModelArguments, Setting};
@@ -43,9 +43,8 @@ pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
 
 fn document(name: &str) -> Result<Document, CliError> {
     if name == "-" {
-        let mut bytes = Vec::new();
-        let read = io::stdin().lock().read_to_end(&mut bytes);
-        read.map_err(|source| CliError::Read { name: "standard input".to_owned(), source })?;
+        let bytes = read_bounded(io::stdin().lock());
+        let bytes = bytes.map_err(|source| CliError::Read { name: "standard input".to_owned(), source })?;
         return Ok(Document::from_bytes("<stdin>", &bytes)?);
     }
     let path = Path::new(name);
@@ -56,7 +55,7 @@ fn document(name: &str) -> Result<Document, CliError> {
             _ => Err(no_such_model(name)),
         };
     }
-    let bytes = fs::read(path).map_err(|source| CliError::Read { name: name.to_owned(), source })?;
+    let bytes = read_file_bounded(path).map_err(|source| CliError::Read { name: name.to_owned(), source })?;
     Ok(Document::from_bytes(name, &bytes)?)
 }
 

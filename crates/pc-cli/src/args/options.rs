@@ -24,7 +24,7 @@ pub struct ModelArguments {
     /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep the start values of the file
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "project_start")]
     pub keep: Vec<String>,
-    /// What the expressions of the equations may take in memory, such as 500M or 8G
+    /// What the expressions of the equations, and again the rows of a motion, may take in memory, such as 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
     pub limit_memory: u64,
     /// How many seconds the equations may take to be derived; no limit unless given

@@ -22,7 +22,7 @@ use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments,
                   What is finished is kept in FILE.partial until FILE is complete: after an interruption of any kind \
                   the same command goes on from there, and gives the same bytes.\n\
                   Exit codes: 0 also if some members were not completed, they are counted in the summary; 5 if none \
-                  was; 130 interrupted."
+                  was; 6 if something could not be written; 130 interrupted."
 )]
 pub struct SweepArguments {
     /// The model.

@@ -1,6 +1,7 @@
 //! `pc emit`: the equations as source of other languages.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
 use pc_mech::{EmitOptions, Language};
@@ -9,7 +10,7 @@ use pc_print::energy_remark;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
-use crate::output::atomic;
+use crate::output::place::Place;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
 use crate::report::text::say;
 
@@ -62,10 +63,16 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
 
     let directory = &arguments.output;
     fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
-    for file in files {
+    let mut places = Vec::new();
+    for file in &files {
         let path = directory.join(&file.name);
-        atomic::write(&path, |out| out.write_all(file.text.as_bytes()))
-            .map_err(|source| CliError::cannot_write(&path, source))?;
+        places.push(Place::regular(&path).map_err(|source| CliError::cannot_write(&path, source))?);
+    }
+    for (file, place) in files.iter().zip(&places) {
+        let path = place.path();
+        place
+            .write(|out| out.write_all(file.text.as_bytes()))
+            .map_err(|source| CliError::cannot_write(path, source))?;
         say(format_args!("{}\n", path.display()));
     }
     Ok(())

@@ -13,13 +13,16 @@ use crate::args::options::{Outputs, RunArguments, RunForm};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;
+use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
+use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::progress::Progress;
 use crate::motion::run::{Ending, Run};
 use crate::motion::sensitivities::Derivatives;
 use crate::motion::table::Table;
 use crate::output::destination::Destination;
+use crate::output::stream::Stream;
 use crate::plot::picture::Picture;
 use crate::report::notes::{dropped, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
@@ -43,11 +46,16 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     }
     let form = Plan::form(&model, arguments);
     let verify = !arguments.no_verify;
-    let run = integrate_with_checkpoints(&model, form, verify, &arguments.checkpoints, || {
+    // A picture needs all rows.
+    let mut stream = destination.stream().filter(|_| picture.is_none());
+    let run = integrate_into(stream.as_mut(), &model, form, verify, &arguments.checkpoints, || {
         Plan::new(&model, arguments)
-    })?;
-
-    let written = write(&run, &destination, picture.as_ref());
+    });
+    let run = run?;
+    let written = match stream.filter(Stream::is_begun) {
+        Some(stream) => stream.end(),
+        None => write(&run, &destination, picture.as_ref()),
+    };
     text::say(format_args!("{}", summary::text(&run)));
     match (run.outcome(), written) {
         (Err(ending), Err(error)) => {
@@ -84,6 +92,18 @@ pub fn integrate_with_checkpoints(
     checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
+    integrate_into(None, model, form, verify, checkpoints, plan)
+}
+
+/// As [`integrate_with_checkpoints`], and writes the rows to `stream` at once where they are too many to be held.
+fn integrate_into(
+    stream: Option<&mut Stream<'_>>,
+    model: &Model,
+    form: RunForm,
+    verify: bool,
+    checkpoints: &CheckpointArguments,
+    plan: impl FnOnce() -> Result<Plan, CliError>,
+) -> Result<Run, CliError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_moved(&assembly);
@@ -91,6 +111,12 @@ pub fn integrate_with_checkpoints(
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
+    let numbers = memory::numbers(&flow, &plan, checkpoints.path().is_some());
+    let (rows, limits) = (plan.samples as u64, model.budget().limits());
+    let alone = checkpoints.path().is_none() && plan.sensitivities.is_empty();
+    let stream = stream.filter(|_| alone && memory::is_much(rows, numbers, limits));
+    // What is given away is still asked for at so many times.
+    memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;
     let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
     let mut derivatives = match plan.sensitivities.as_slice() {
         [] => None,
@@ -102,6 +128,7 @@ pub fn integrate_with_checkpoints(
         verification.compare(&flow, &assembly, "the start", plan.t_start, &flow.start)?;
     }
 
+    let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
     let observer = |t: f64, _: &[f64]| {
@@ -109,36 +136,50 @@ pub fn integrate_with_checkpoints(
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
-    let (solved, error) = match (&mut checkpoints, &mut derivatives) {
-        (Some(checkpoints), _) => checkpoints.solve(&flow, &plan, observer)?,
-        (None, Some(derivatives)) => {
+    let (solved, error) = match (&mut checkpoints, &mut derivatives, &mut given) {
+        (Some(checkpoints), ..) => checkpoints.solve(&flow, &plan, observer)?,
+        (None, None, Some(given)) => given.follow(&mut flow, &plan, observer),
+        (None, Some(derivatives), _) => {
             derivatives.follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer)
         }
-        (None, None) => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
+        (None, None, None) => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
     };
     let wall = start.elapsed();
     drop(progress);
 
     let Solution { trajectory, occurrences, ending } = solved;
-    if let (Some(verification), Some((t, y))) = (&mut verification, trajectory.last())
+    let last = match &given {
+        Some(given) => given.last.as_ref().map(|(t, y)| (*t, y.as_slice())),
+        None => trajectory.last(),
+    };
+    if let (Some(verification), Some((t, y))) = (&mut verification, last)
         && t != plan.t_start
         && !verification.is_long(&flow)
     {
         verification.compare(&flow, &assembly, "the end", t, y)?;
     }
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
+    let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (ending, error) {
         (_, Some(error)) => Ending::Failed(Box::new(error)),
         (Some(solver::Ending::Completed), None) => Ending::Completed,
         (Some(solver::Ending::Event { event }), None) => Ending::Event { name: events[event].clone() },
+        (Some(solver::Ending::Stopped) | None, None) if is_full => Ending::Unwritten,
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
+    };
+    let (table, constraints) = match given {
+        Some(given) => (given.table, given.constraints),
+        None => (
+            Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
+            residuals(&mut flow, &trajectory),
+        ),
     };
     Ok(Run {
         title: model.title().to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
-        table: Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
-        constraints: residuals(&mut flow, &trajectory),
+        table,
+        constraints,
         dropped: dropped(&assembly),
         jumps: jumps(&assembly),
         keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
@@ -163,12 +204,7 @@ fn jumps(assembly: &Assembly<'_>) -> bool {
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
     let mut worst: Vec<(String, f64)> = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
     for (t, y) in trajectory.iter() {
-        for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
-            // f64::max would lose a NaN
-            if residual.abs() > *worst || residual.is_nan() {
-                *worst = residual.abs();
-            }
-        }
+        note_residuals(&mut worst, flow, t, y);
     }
     worst
 }
@@ -186,7 +222,8 @@ impl Run {
     fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
         match self.ending {
-            Ending::Completed | Ending::Event { .. } => Ok(()),
+            // How the file was written says why.
+            Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
             Ending::Failed(cause) => Err(CliError::Integration { cause, names, jumps: self.jumps }),
         }

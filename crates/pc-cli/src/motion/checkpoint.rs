@@ -1,9 +1,10 @@
 //! Checkpoints of a run: written while it goes on, and gone on from.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use pc_model::{Flow, Model};
@@ -16,7 +17,7 @@ use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::plan::Plan;
-use crate::output::atomic;
+use crate::output::place::Place;
 use crate::report::text;
 
 /// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
@@ -30,7 +31,7 @@ const PATIENCE: u32 = 20;
 /// Checkpoints of one run.
 #[derive(Debug)]
 pub(crate) struct Checkpoints {
-    path: PathBuf,
+    place: Place,
     every: NonZeroU64,
     identity: Identity,
     /// Where to begin, if not at the start.
@@ -41,29 +42,30 @@ impl Checkpoints {
     /// What the command line asks for: nothing, a file to write, one to go on from.
     ///
     /// # Errors
-    /// [`CheckpointFileError`]; [`CliError::Write`] where no file can be.
+    /// [`CheckpointFileError`]; [`CliError::Place`] where no file can be.
     pub(crate) fn new(
         arguments: &CheckpointArguments,
         model: &Model,
         plan: &Plan,
         form: RunForm,
     ) -> Result<Option<Checkpoints>, CliError> {
-        let Some(path) = arguments.checkpoint.as_ref().or(arguments.resume.as_ref()) else {
+        let Some(path) = arguments.path() else {
             return if arguments.every.is_some() {
                 Err(CheckpointFileError::Nowhere.into())
             } else {
                 Ok(None)
             };
         };
-        let overwritten = arguments.checkpoint.as_ref().and_then(|path| fs::read(path).ok());
+        // A device would be replaced by a file.
+        let place = Place::regular(path).map_err(|source| CliError::no_place(path, source))?;
+        let overwritten = arguments.checkpoint.as_ref().and_then(|path| beginning(path).ok());
         if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
-            return Err(CheckpointFileError::Occupied { path: path.clone() }.into());
+            return Err(CheckpointFileError::Occupied { path: path.to_owned() }.into());
         }
-        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
         let mut identity = identity::of_motion(model, plan, form);
         identity.insert(1, ("--samples".to_owned(), plan.samples.to_string()));
         let mut checkpoints =
-            Checkpoints { path: path.clone(), every: arguments.every.unwrap_or(EVERY), identity, from: None };
+            Checkpoints { place, every: arguments.every.unwrap_or(EVERY), identity, from: None };
         if let Some(path) = &arguments.resume {
             checkpoints.take_up(path, arguments.every)?;
         }
@@ -74,7 +76,7 @@ impl Checkpoints {
     /// Reads the checkpoint to go on from.
     fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), CheckpointFileError> {
         let bytes =
-            fs::read(path).map_err(|source| CheckpointFileError::Read { path: path.to_owned(), source })?;
+            read(path).map_err(|source| CheckpointFileError::Read { path: path.to_owned(), source })?;
         let unusable = |source| CheckpointFileError::Unusable { path: path.to_owned(), source };
         let (checkpoint, label) = Checkpoint::from_bytes(&bytes).map_err(unusable)?;
         let then: Identity = serde_json::from_str(&label).map_err(|_| unusable(CheckpointError::Foreign))?;
@@ -101,10 +103,11 @@ impl Checkpoints {
     ) -> Result<(Solution, Option<SolveError>), CliError> {
         let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
         let label = serde_json::to_string(&self.identity);
-        let label = label.map_err(|error| CliError::cannot_write(&self.path, error.into()))?;
+        let label = label.map_err(|error| CliError::cannot_write(self.place.path(), error.into()))?;
         let write = |checkpoint: &Checkpoint| {
-            atomic::write(&self.path, |out| out.write_all(&checkpoint.to_bytes(&label)))
-                .map_err(|source| CliError::cannot_write(&self.path, source))
+            self.place
+                .write(|out| out.write_all(&checkpoint.to_bytes(&label)))
+                .map_err(|source| CliError::cannot_write(self.place.path(), source))
         };
         let start = Instant::now();
         write(&from)?;
@@ -128,13 +131,28 @@ impl Checkpoints {
             Err(failure) => (failure.reached, Some(failure.error)),
         };
         if motion.ending == Some(Ending::Stopped) {
-            let path = self.path.display();
+            let path = self.place.path().display();
             text::say(format_args!(
                 "note: the same command with --resume {path} goes on from the last checkpoint\n"
             ));
         }
         Ok((motion, error))
     }
+}
+
+/// Enough of a file to know whether it is a checkpoint.
+const BEGINNING: u64 = 256;
+
+fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(BEGINNING).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The bytes of a checkpoint; of anything else no more than the beginning.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let bytes = beginning(path)?;
+    if Checkpoint::is_one(&bytes) { fs::read(path) } else { Ok(bytes) }
 }
 
 /// Name of the number of steps between checkpoints.

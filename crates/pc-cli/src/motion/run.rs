@@ -55,6 +55,8 @@ pub enum Ending {
     },
     /// By Ctrl-C.
     Interrupted,
+    /// Rows were written on the way, and one could not be.
+    Unwritten,
     /// The integration could not go on.
     Failed(Box<SolveError>),
 }
@@ -66,6 +68,7 @@ impl Ending {
             Ending::Completed => "completed",
             Ending::Event { .. } => "event",
             Ending::Interrupted => "interrupted",
+            Ending::Unwritten => "not written",
             Ending::Failed(_) => "failed",
         }
     }

@@ -15,6 +15,17 @@ pub struct Table {
     conserved: usize,
     /// One row after the other.
     values: Vec<f64>,
+    /// Of rows that were given away: then the last one alone is here.
+    given: Option<Given>,
+}
+
+/// What is known of rows that were given away.
+#[derive(Clone, Debug, PartialEq)]
+struct Given {
+    rows: usize,
+    start: Vec<f64>,
+    /// The largest changes since the start.
+    worst: Vec<f64>,
 }
 
 impl Table {
@@ -29,22 +40,51 @@ impl Table {
         trajectory: &Trajectory,
         derivatives: Option<&Derivatives>,
     ) -> Table {
-        let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
         let more = derivatives.map_or_else(Vec::new, |derivatives| derivatives.columns(flow));
-        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).chain(more).collect();
-        let mut values = Vec::with_capacity(columns.len() * trajectory.len());
+        let mut table = Table::empty(flow, more);
+        let mut values = Vec::with_capacity(table.columns.len() * trajectory.len());
         for (i, (t, y)) in trajectory.iter().enumerate() {
             values.push(t);
             values.extend(flow.row(t, y));
             values.extend(derivatives.map_or_else(Vec::new, |derivatives| derivatives.row(flow, i, t, y)));
         }
+        table.values = values;
+        table
+    }
+
+    /// A table whose rows are given away.
+    pub(crate) fn given(flow: &Flow) -> Table {
+        let given = Given { rows: 0, start: Vec::new(), worst: Vec::new() };
+        Table { given: Some(given), ..Table::empty(flow, Vec::new()) }
+    }
+
+    /// Puts the row of a state in place of the last one.
+    pub(crate) fn give(&mut self, flow: &mut Flow, t: f64, y: &[f64]) {
+        self.values.clear();
+        self.values.push(t);
+        self.values.extend(flow.row(t, y));
+        let Some(given) = &mut self.given else { return };
+        if given.rows == 0 {
+            given.start.clone_from(&self.values);
+            given.worst = vec![0.0; self.values.len()];
+        }
+        given.rows += 1;
+        for (worst, (value, start)) in given.worst.iter_mut().zip(self.values.iter().zip(&given.start)) {
+            *worst = raised(*worst, value - start);
+        }
+    }
+
+    fn empty(flow: &Flow, more: Vec<String>) -> Table {
+        let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
+        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).chain(more).collect();
         Table {
             columns,
             coordinates: flow.motion.coordinates(),
             quasi_velocities: flow.quasi_velocities(),
             states: flow.motion.states(),
             conserved: flow.motion.conserved_len(),
-            values,
+            values: Vec::new(),
+            given: None,
         }
     }
 
@@ -55,7 +95,7 @@ impl Table {
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.values.len() / self.columns.len()
+        self.given.as_ref().map_or(self.values.len() / self.columns.len(), |given| given.rows)
     }
 
     /// Whether there is no row.
@@ -63,7 +103,7 @@ impl Table {
         self.values.is_empty()
     }
 
-    /// The rows in order.
+    /// The rows in order; the last alone of rows that were written while there were more to come.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
         self.values.chunks_exact(self.columns.len())
     }
@@ -98,15 +138,22 @@ impl Table {
 
     /// max |I(t) − I(t_start)| over the rows for column `j`.
     pub fn drift(&self, j: usize) -> Drift {
-        let start = self.column(j).next().unwrap_or(f64::NAN);
-        // f64::max would lose a NaN
-        let absolute = self.column(j).fold(0.0f64, |worst, value| {
-            let change = (value - start).abs();
-            if change > worst || change.is_nan() { change } else { worst }
-        });
+        let (start, absolute) = match &self.given {
+            Some(given) if given.rows > 0 => (given.start[j], given.worst[j]),
+            _ => {
+                let start = self.column(j).next().unwrap_or(f64::NAN);
+                (start, self.column(j).fold(0.0f64, |worst, value| raised(worst, value - start)))
+            }
+        };
         // Against a start that is itself no larger than the drift a ratio says nothing.
         Drift { absolute, relative: (absolute < start.abs()).then(|| absolute / start.abs()) }
     }
+}
+
+/// The larger of the worst change so far and another one; f64::max would lose a NaN.
+fn raised(worst: f64, change: f64) -> f64 {
+    let change = change.abs();
+    if change > worst || change.is_nan() { change } else { worst }
 }
 
 /// How far a quantity went from its start value.

@@ -1,69 +1,89 @@
 //! Files that are replaced whole: written beside the old one, then put in its place.
 
-use std::fs::{self, File, Metadata};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, BufWriter, Seek, Write};
+use std::path::Path;
 
-use tempfile::Builder;
+use tempfile::NamedTempFile;
+
+use crate::output::partial;
+use crate::output::place::Place;
 
 /// A file that is written, with what is not on disk yet.
 pub(crate) type FileWriter<'f> = BufWriter<&'f mut File>;
 
-/// Whether a file can be at `path`: its directory is there, and it is not a directory itself.
-pub(crate) fn look(path: &Path) -> io::Result<()> {
-    if path.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
+impl Place {
+    /// Puts what `write` writes there. Until all of it is on disk, a file is what it was.
+    ///
+    /// # Errors
+    /// [`io::Error`]
+    pub(crate) fn write(&self, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> io::Result<()> {
+        match &self.device {
+            Some(device) => fill(&mut device.try_clone()?, write),
+            None => self.replace(write).map_err(|(error, _)| error),
+        }
     }
-    let directory = directory(path);
-    match fs::metadata(directory) {
-        Ok(metadata) if metadata.is_dir() => Ok(()),
-        _ => {
-            let message = format!("there is no directory {}", directory.display());
-            Err(io::Error::new(io::ErrorKind::NotFound, message))
+
+    /// The same for a regular file; what could be written where not all could.
+    pub(super) fn replace(
+        &self,
+        write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
+    ) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        let mut made = partial::make(&self.file).map_err(|error| (error, None))?;
+        match fill(made.as_file_mut(), write) {
+            Ok(()) => self.put(made),
+            Err(error) => Err((error, Some(made))),
+        }
+    }
+
+    /// Puts a file that was made beside it there.
+    pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
+            Err(_) => Ok(true),
+            Ok(old) => take_after(made.as_file(), &old),
+        });
+        match replaced {
+            Ok(true) => made.persist(&self.file).map(drop).map_err(|error| (error.error, Some(error.file))),
+            Ok(false) => overwrite(made.as_file_mut(), &self.file).map_err(|error| (error, Some(made))),
+            Err(error) => Err((error, Some(made))),
         }
     }
 }
 
-/// Puts what `write` writes at `path`. Until all of it is on disk, `path` is what it was.
-pub(crate) fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    write_file(path, |out| write(out))
-}
-
-/// As [`write()`], for what is not written from its beginning to its end.
-pub(crate) fn write_file(
-    path: &Path,
+/// Writes to a file; what a failure leaves unwritten is not tried again.
+pub(super) fn fill(
+    file: &mut File,
     write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let path = followed(path);
-    let mut builder = Builder::new();
-    let builder = builder.prefix(".pc-").suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(permissions(fs::metadata(&path).ok().as_ref()));
-    let mut file = builder.tempfile_in(directory(&path))?;
-    let mut out = BufWriter::new(file.as_file_mut());
-    write(&mut out)?;
-    out.flush()?;
-    drop(out);
-    file.as_file().sync_all()?;
-    file.persist(&path)?;
-    Ok(())
+    let mut out = BufWriter::new(file);
+    let written = write(&mut out).and_then(|()| out.flush());
+    drop(out.into_parts());
+    written
 }
 
-fn directory(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    }
-}
-
-/// The file itself where `path` is a link to one.
-fn followed(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// Those of the file that is replaced, else what any new file gets.
+/// Gives a file the owner and the mode of the one that it replaces; false where that is not allowed.
 #[cfg(unix)]
-fn permissions(replaced: Option<&Metadata>) -> fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    replaced.map_or_else(|| PermissionsExt::from_mode(0o666), Metadata::permissions)
+fn take_after(made: &File, old: &Metadata) -> io::Result<bool> {
+    use std::os::unix::fs::{MetadataExt, fchown};
+    let new = made.metadata()?;
+    if (new.uid(), new.gid()) != (old.uid(), old.gid())
+        && fchown(made, Some(old.uid()), Some(old.gid())).is_err()
+    {
+        return Ok(false);
+    }
+    made.set_permissions(old.permissions())?;
+    Ok(true)
+}
+
+#[cfg(not(unix))]
+fn take_after(_: &File, _: &Metadata) -> io::Result<bool> {
+    Ok(true)
+}
+
+/// Copies what is complete into a file of somebody else, who remains its owner.
+fn overwrite(made: &mut File, file: &Path) -> io::Result<()> {
+    let mut old = OpenOptions::new().write(true).truncate(true).open(file)?;
+    made.rewind()?;
+    io::copy(made, &mut old)?;
+    old.sync_all()
 }

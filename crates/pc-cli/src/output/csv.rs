@@ -1,18 +1,46 @@
 //! Comma-separated values.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
+
+use pc_print::one_line;
 
 use crate::motion::table::Table;
 
 /// A header, then a line for each row, numbers with 17 significant digits: those that give the same number back.
 pub(super) fn write(table: &Table, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "{}", table.columns().join(","))?; // names contain neither commas nor quotes
-    for row in table.rows() {
-        for (j, value) in row.iter().enumerate() {
-            let comma = if j == 0 { "" } else { "," };
-            write!(out, "{comma}{value:.16e}")?;
-        }
-        writeln!(out)?;
+    writeln!(out, "{}", header(table.columns()))?;
+    table.rows().try_for_each(|numbers| row(numbers, out))
+}
+
+/// The line of a row.
+pub(super) fn row(numbers: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    for (j, value) in numbers.iter().enumerate() {
+        let comma = if j == 0 { "" } else { "," };
+        write!(out, "{comma}{value:.16e}")?;
     }
-    Ok(())
+    writeln!(out)
+}
+
+/// The line of names.
+pub(crate) fn header<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
+    names.into_iter().map(|name| field(name)).collect::<Vec<_>>().join(",")
+}
+
+/// Text as a field on one line, in quotes where it needs them (RFC 4180).
+pub(crate) fn field(text: &str) -> String {
+    let text: Cow<'_, str> = one_line(text);
+    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_stay_fields() {
+        assert_eq!(field("λ_no slip"), "λ_no slip");
+        assert_eq!(field("a,b\r\n\"c\""), "\"a,b \"\"c\"\"\"");
+        assert_eq!(field("\u{1b}[2J"), "\u{fffd}[2J");
+    }
 }

@@ -1,11 +1,13 @@
 //! Where results go: standard output, or a file that is there whole or not at all.
 
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 use crate::error::CliError;
 use crate::motion::run::Run;
-use crate::output::{atomic, csv, json, npz, standard_output};
+use crate::output::place::Place;
+use crate::output::stream::Stream;
+use crate::output::{csv, json, npz, standard_output};
 use crate::plot::picture::Picture;
 
 /// How a result is encoded.
@@ -24,20 +26,20 @@ pub enum Encoding {
 }
 
 /// Where a result goes; the place has been looked at before anything is computed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Destination {
     encoding: Encoding,
     /// None for standard output.
-    path: Option<PathBuf>,
+    place: Option<Place>,
 }
 
 impl Destination {
     /// The place of the table: the file, else standard output as CSV.
     ///
     /// # Errors
-    /// [`CliError::UnknownExtension`]; [`CliError::Write`] where no file can be.
+    /// [`CliError::UnknownExtension`]; [`CliError::Place`] where no file can be.
     pub fn table(path: Option<&Path>) -> Result<Destination, CliError> {
-        let Some(path) = path else { return Ok(Destination { encoding: Encoding::Csv, path: None }) };
+        let Some(path) = path else { return Ok(Destination { encoding: Encoding::Csv, place: None }) };
         let encodings = [("csv", Encoding::Csv), ("json", Encoding::Json), ("npz", Encoding::Npz)];
         Destination::file("-o", path, &encodings, ".csv, .json or .npz")
     }
@@ -62,20 +64,31 @@ impl Destination {
         let Some(&(_, encoding)) = encoding else {
             return Err(CliError::UnknownExtension { option, path: path.to_owned(), expected });
         };
-        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
-        Ok(Destination { encoding, path: Some(path.to_owned()) })
+        // The archive is not written from its beginning to its end.
+        let place = if encoding == Encoding::Npz { Place::regular(path) } else { Place::new(path) };
+        let place = place.map_err(|source| CliError::no_place(path, source))?;
+        Ok(Destination { encoding, place: Some(place) })
     }
 
     /// Writes the table of a run.
     ///
     /// # Errors
-    /// [`CliError::Write`]; an existing file is then as it was.
+    /// [`CliError::Write`], which says where the table is instead; an existing file is then as it was.
     pub fn write_table(&self, run: &Run) -> Result<(), CliError> {
-        self.write(|out| match self.encoding {
+        let Some(place) = &self.place else {
+            return standard_output::print_or_keep("motion.csv", |out| csv::write(&run.table, out));
+        };
+        place.write_or_keep(self.encoding == Encoding::Csv, |out| match self.encoding {
             Encoding::Json => json::write(run, out),
             Encoding::Npz => npz::write(run, out),
             Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
         })
+    }
+
+    /// The table while it grows, where it can be written from its beginning to its end.
+    pub(crate) fn stream(&self) -> Option<Stream<'_>> {
+        let place = self.place.as_ref().filter(|place| place.device.is_none());
+        place.filter(|_| self.encoding == Encoding::Csv).map(Stream::to)
     }
 
     /// Writes a picture.
@@ -87,13 +100,9 @@ impl Destination {
             Encoding::Png => picture.png()?,
             _ => picture.svg()?.into_bytes(),
         };
-        self.write(|out| out.write_all(&bytes))
-    }
-
-    fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
-        match &self.path {
-            None => standard_output::print(write),
-            Some(path) => atomic::write(path, write).map_err(|source| CliError::cannot_write(path, source)),
+        match &self.place {
+            None => standard_output::print(|out| out.write_all(&bytes)),
+            Some(place) => place.write_or_keep(false, |out| out.write_all(&bytes)),
         }
     }
 }

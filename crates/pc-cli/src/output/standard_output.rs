@@ -1,22 +1,43 @@
-//! Standard output, where a closed pipe is no error.
+//! Standard output, of which a reader that goes away is told to nobody.
 
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 
-use crate::error::CliError;
+use crate::error::{CliError, STANDARD_OUTPUT};
+use crate::output::kept::Kept;
+use crate::output::rescue::elsewhere;
 
-/// Writes to standard output; a reader that has gone away (`pc run … | head`) is no error.
+/// Writes to standard output.
 ///
 /// # Errors
-/// [`CliError::Write`] for anything else.
+/// [`CliError::Write`], which is not worth a message where the reader has gone away (`pc run … | head`).
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
+    attempt(write).map_err(error)
+}
+
+/// Writes a result to standard output, or else into a file of the directory of temporary files.
+pub(super) fn print_or_keep(
+    name: &str,
+    write: impl Fn(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), CliError> {
+    attempt(&write).map_err(|source| {
+        let gone = source.kind() == ErrorKind::BrokenPipe;
+        let kept = if gone { None } else { elsewhere(name, |out| write(out)) };
+        unwritten(source, kept.map_or(Kept::Nowhere, Kept::Elsewhere))
+    })
+}
+
+fn attempt(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut out = io::BufWriter::new(io::stdout().lock());
-    match write(&mut out).and_then(|()| out.flush()) {
-        Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
-            Err(CliError::Write { path: "standard output".to_owned(), source })
-        }
-        _ => {
-            drop(out.into_parts()); // what could not be written is not tried again
-            Ok(())
-        }
-    }
+    let written = write(&mut out).and_then(|()| out.flush());
+    drop(out.into_parts()); // what could not be written is not tried again
+    written
+}
+
+/// That nothing else is left of what could not be written.
+pub fn error(source: io::Error) -> CliError {
+    unwritten(source, Kept::Nowhere)
+}
+
+fn unwritten(source: io::Error, kept: Kept) -> CliError {
+    CliError::Write { path: STANDARD_OUTPUT.to_owned(), kept, source }
 }

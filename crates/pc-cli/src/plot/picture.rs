@@ -1,5 +1,7 @@
 //! The picture of a motion: coordinates, quasi-velocities, drift of the integrals, one panel each.
 
+use pc_print::one_line;
+
 use crate::motion::run::Run;
 use crate::motion::table::Table;
 
@@ -65,7 +67,7 @@ impl Picture {
         let (from, to) = (run.plan.t_start, table.column(0).last().unwrap_or(run.plan.t_end));
         let time = if from == to { (from, run.plan.t_end) } else { (from, to) };
         Picture {
-            title: run.title.clone(),
+            title: one_line(&run.title).into_owned(),
             time: (time.0.min(time.1), time.0.max(time.1)),
             panels: panels.into_iter().filter(|panel| !panel.curves.is_empty()).collect(),
         }
@@ -76,7 +78,7 @@ impl Curve {
     fn new(name: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
         let points: Vec<(f64, f64)> =
             points.filter(|(t, value)| t.is_finite() && value.is_finite()).collect();
-        Curve { name: name.to_owned(), points: thinned(&points) }
+        Curve { name: one_line(name).into_owned(), points: thinned(&points) }
     }
 
     /// log₁₀ |I(t) − I(0)|/|I(0)|; where I(0) is no larger than the drift, the largest |I| stands for it if that is

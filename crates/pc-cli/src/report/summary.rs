@@ -1,6 +1,6 @@
 //! What is said about a run, and what a file keeps of it.
 
-use pc_print::columns;
+use pc_print::{columns, one_line};
 use serde_json::{Map, Value, json};
 
 use crate::motion::run::{Ending, Run};
@@ -12,7 +12,7 @@ const WIDTH: usize = 86;
 /// The summary for people.
 pub fn text(run: &Run) -> String {
     let (plan, work) = (&run.plan, &run.statistics);
-    let mut text = format!("{}\n", run.title);
+    let mut text = format!("{}\n", one_line(&run.title));
     let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
 
     line("method", &[plan.in_words()]);

@@ -3,11 +3,11 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use pc_print::columns;
+use pc_print::{columns, visible};
 
-/// Writes to standard error; where nobody listens, nothing happens.
+/// Writes to standard error what does nothing to a terminal; where nobody listens, nothing happens.
 pub fn say(message: fmt::Arguments<'_>) {
-    let _ = io::stderr().lock().write_fmt(message);
+    let _ = io::stderr().lock().write_all(visible(&message.to_string()).as_bytes());
 }
 
 /// A number in at most `digits` significant digits, without needless zeros.

@@ -8,9 +8,11 @@
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::thread;
 use std::time::Instant;
 
 use pc_model::{Category, Model};
+use pc_print::one_line;
 use pc_solve::{Ending, Ensemble};
 
 use crate::args::input;
@@ -20,6 +22,7 @@ use crate::error::CliError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::interrupt;
+use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::report::text::{labelled, short};
 use crate::report::{notes, text};
@@ -57,6 +60,10 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let sheet = Sheet::new(&design, &motion);
     let title = model.title().to_owned();
     let header = header(&model, arguments, &plan, form);
+    // Of each member at work its trajectory, its table, its record and the bytes of that.
+    let threads =
+        arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    memory::allow(plan.samples as u64, (4 * columns * threads) as u64, model.budget().limits())?;
     let mut journal = Journal::open(destination.path(), &header)?;
     let (members, before) = (design.members(), journal.tally().done);
 
@@ -148,7 +155,7 @@ fn summary(
     before: u64,
     elapsed: f64,
 ) -> String {
-    let mut text = format!("{title}\n");
+    let mut text = format!("{}\n", one_line(title));
     let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
     line("method", plan.in_words());
     line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));

@@ -65,6 +65,19 @@ pub enum SweepError {
         /// Why.
         source: io::Error,
     },
+    /// A finished member cannot be kept.
+    #[error(
+        "cannot write {}; the {done} members before are kept there, and the same command goes on after them",
+        journal.display()
+    )]
+    Append {
+        /// The journal.
+        journal: PathBuf,
+        /// How many are kept.
+        done: u64,
+        /// Why.
+        source: io::Error,
+    },
     /// The threads cannot be started.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
@@ -98,8 +111,8 @@ impl SweepError {
             | SweepError::InUse { .. }
             | SweepError::Foreign { .. }
             | SweepError::OtherSweep { .. }
-            | SweepError::Journal { .. }
             | SweepError::Ensemble(_) => exit_code::USAGE,
+            SweepError::Journal { .. } | SweepError::Append { .. } => exit_code::UNWRITTEN,
         }
     }
 }

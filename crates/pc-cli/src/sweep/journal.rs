@@ -69,6 +69,9 @@ impl Journal {
         name.push(".partial");
         let path = PathBuf::from(name);
         let refused = |source| SweepError::Journal { journal: path.clone(), source };
+        if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return Err(SweepError::Foreign { journal: path });
+        }
         let file = OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(refused)?;
         match file.try_lock() {
             Ok(()) => {}
@@ -127,12 +130,18 @@ impl Journal {
     /// Appends the member that comes next.
     ///
     /// # Errors
-    /// [`SweepError::Journal`]
+    /// [`SweepError::Append`]
     pub(crate) fn append(&mut self, record: &Record) -> Result<(), SweepError> {
         let written = self.file.write_all(&frame(&record.to_bytes()));
-        written.map_err(|source| SweepError::Journal { journal: self.path.clone(), source })?;
+        let done = self.tally.done;
+        written.map_err(|source| SweepError::Append { journal: self.path.clone(), done, source })?;
         self.tally.count(record);
         Ok(())
+    }
+
+    /// Where it is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// How many members have ended how.

@@ -70,7 +70,7 @@ fn letters(text: &str) -> String {
     let mut chars = text.chars();
     if let (Some(letter), None) = (chars.next(), chars.next()) {
         let named = GREEK.iter().find(|(greek, _)| *greek == letter);
-        return named.map_or_else(|| letter.to_string(), |(_, name)| format!("\\{name}"));
+        return named.map_or_else(|| character(letter), |(_, name)| format!("\\{name}"));
     }
     let spoken = if text == "th" { "theta" } else { text };
     if let Some((_, name)) =
@@ -85,11 +85,23 @@ fn letters(text: &str) -> String {
         .chars()
         .map(|c| match GREEK.iter().find(|(greek, _)| *greek == c) {
             Some((_, name)) => format!("{{\\{name}}}"),
-            None if c == '_' => "\\_".to_owned(),
-            None => c.to_string(),
+            None => character(c),
         })
         .collect();
     format!("\\mathrm{{{spelt}}}")
+}
+
+/// A character that means itself in mathematics: the names of reactions have those of constraints in them, which may be any
+/// text.
+fn character(c: char) -> String {
+    match c {
+        '_' | '{' | '}' | '$' | '%' | '&' | '#' => format!("\\{c}"),
+        '\\' => "\\backslash{}".to_owned(),
+        '^' => "\\wedge{}".to_owned(),
+        '~' => "\\sim{}".to_owned(),
+        c if c.is_whitespace() || c.is_control() => "\\ ".to_owned(),
+        c => c.to_string(),
+    }
 }
 
 pub(super) fn number(c: Number) -> Piece {

@@ -1,6 +1,5 @@
 //! The tables of inputs: lists in the text of the model, or columns of a file beside it.
 
-use std::fs;
 use std::path::Path;
 
 use pc_mech::{Table, TableError};
@@ -9,7 +8,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
-use crate::document::{Document, Input, InputValue, Name, TableFile};
+use crate::document::{Document, Input, InputValue, Name, TableFile, read_file_bounded};
 
 const LISTS: &str = "give as many values as times, two at least, and let the times rise";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
@@ -52,10 +51,13 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
     let name = &file.file.value;
     let wrong = |what: String| fault(document, &file.file.place, what, COLUMNS);
     let beside = Path::new(document.source.name()).parent().unwrap_or(Path::new(""));
-    let text = fs::read_to_string(beside.join(name)).map_err(|error| {
+    let unread = |error: String| {
         let help = "paths are relative to the model's file";
         fault(document, &file.file.place, format!("`{name}` cannot be read: {error}"), help)
-    })?;
+    };
+    let bytes = read_file_bounded(beside.join(name)).map_err(|error| unread(error.to_string()))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| unread("stream did not contain valid UTF-8".to_owned()))?;
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let mut rows = lines.by_ref().filter(|(_, line)| !(line.trim().is_empty() || line.starts_with('#')));
     let (_, header) = rows.next().ok_or_else(|| wrong(format!("`{name}` is empty")))?;

@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::diagnostics::category::Category;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Position, Source};
+use crate::document::is_hidden;
 
 /// Something to say about a place in a model file: an error, or a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,12 +26,18 @@ impl Diagnostic {
         let Position { line, column } = source.position(self.place.span.start);
         let entry = match self.place.entry.as_str() {
             "" => String::new(),
-            entry => format!("{}: ", clipped(entry)),
+            entry => format!("{}: ", clipped(&on_one_line(entry))),
         };
         let excerpt = source.excerpt(self.place.span.clone());
         let help = self.help.as_ref().map(|help| format!("\n  help: {}", clipped(help))).unwrap_or_default();
-        format!("{}:{line}:{column}: {entry}{}\n{excerpt}{help}", source.name(), clipped(&self.message))
+        let (name, message) = (on_one_line(source.name()), on_one_line(&self.message));
+        format!("{name}:{line}:{column}: {entry}{}\n{excerpt}{help}", clipped(&message))
     }
+}
+
+/// Names of files and keys may have ends of lines in them, and what controls terminals.
+fn on_one_line(text: &str) -> String {
+    text.replace(is_hidden, "\u{fffd}")
 }
 
 /// The text, cut where somebody chose names of a thousand letters.

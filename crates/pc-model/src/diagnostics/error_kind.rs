@@ -130,6 +130,12 @@ pub enum ErrorKind {
         /// The key.
         key: String,
     },
+    /// A label of a constraint, body or event with characters that are not seen.
+    #[error("the label `{}` has characters that are not seen", label.escape_debug())]
+    HiddenInLabel {
+        /// The label.
+        label: String,
+    },
     /// A name with a meaning of its own.
     #[error("the name `{name}` is reserved")]
     Reserved {
@@ -310,6 +316,11 @@ impl ErrorKind {
             Self::NotAName { key } if key.len() > 255 => "a name has at most 255 bytes".into(),
             Self::NotAName { .. } => {
                 "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()
+            }
+            Self::HiddenInLabel { .. } => {
+                "a label stands on one line, in what is printed and in columns: leave out what controls terminals, ends lines or \
+                 turns the direction of writing"
+                    .into()
             }
             Self::Reserved { name } => reserved(name),
             Self::NameTaken { name, .. } => format!(

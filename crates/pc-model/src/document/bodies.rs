@@ -14,7 +14,7 @@ pub(super) fn bodies(table: &Table<'_>) -> Result<Vec<Body>, ModelError> {
 }
 
 fn body(item: &Item<'_>) -> Result<Body, ModelError> {
-    let name = item.label();
+    let name = item.new_label()?;
     let table = item.section(&format!("bodies.{}", name.text), "[bodies.NAME]")?;
     let (mut mass, mut position, mut inertia, mut force, mut torque) = (None, None, None, None, None);
     let (mut orientation, mut turning) = (None, None);

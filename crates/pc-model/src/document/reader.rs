@@ -6,6 +6,7 @@ use pc_expr::parse::{Ast, AstKind, FUNCTIONS, Span, is_name, nearest, parse};
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
 
+use super::hidden::is_hidden;
 use super::text_map::TextMap;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
@@ -119,6 +120,14 @@ impl<'a> Item<'a> {
         let raw = self.source.slice(self.key_span.clone());
         let span = TextMap::new(raw, self.key_span.start, self.key).locate(0..self.key.len());
         Name { text: self.key.into(), place: Place { entry: self.place.entry.clone(), span } }
+    }
+
+    /// The key as a label, which need not be a name, but can be shown as it is.
+    pub(super) fn new_label(&self) -> Result<Name, ModelError> {
+        if self.key.contains(is_hidden) {
+            return Err(self.key_error(ErrorKind::HiddenInLabel { label: self.key.into() }));
+        }
+        Ok(self.label())
     }
 
     /// The key as the name of something declared elsewhere.

@@ -121,7 +121,7 @@ pub(super) fn constraints(table: &Table<'_>) -> Result<Vec<Constraint>, ModelErr
 }
 
 fn constraint(item: &Item<'_>) -> Result<Constraint, ModelError> {
-    let name = item.label();
+    let name = item.new_label()?;
     if !item.is_table() {
         return Ok(Constraint { name, expression: item.expression()?, kind: None });
     }

@@ -123,7 +123,7 @@ pub(super) fn events(table: &Table<'_>) -> Result<Vec<Event>, ModelError> {
 }
 
 fn event(item: &Item<'_>) -> Result<Event, ModelError> {
-    let name = item.label();
+    let name = item.new_label()?;
     let table = item.section(&format!("events.{}", name.text), "[events.NAME]")?;
     let (mut when, mut direction, mut terminal, mut reset) = (None, None, None, Vec::new());
     for part in table.items() {

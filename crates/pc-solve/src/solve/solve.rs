@@ -119,16 +119,40 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         times: &[f64],
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<Solution, Box<SolveFailure<Solution>>> {
+        let mut trajectory = Trajectory::new(self.field.dim());
+        let output = |t: f64, y: &[f64]| {
+            trajectory.push(t, y);
+            ControlFlow::Continue(())
+        };
+        let result = self.run_given(times, output, step);
+        let mut with = |solution: Solution| {
+            let complete = solution.ending == Some(Ending::Completed);
+            trajectory.finish(complete, *solution.trajectory.statistics());
+            Solution { trajectory: std::mem::replace(&mut trajectory, Trajectory::new(0)), ..solution }
+        };
+        match result {
+            Ok(solution) => Ok(with(solution)),
+            Err(failure) => Err(Box::new(failure.map(with))),
+        }
+    }
+
+    /// As [`run_observed`](Solve::run_observed), and gives each (t, y) to `output`, which may stop it, instead of keeping it: of the
+    /// trajectory there are the statistics alone.
+    ///
+    /// # Errors
+    /// As for [`run`](Solve::run).
+    pub fn run_given(
+        self,
+        times: &[f64],
+        output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> Result<Solution, Box<SolveFailure<Solution>>> {
         let mut solution = Solution::new(self.field.dim());
         let mut integration = match self.start_towards(times.last().copied()) {
             Ok(integration) => integration,
             Err(error) => return Err(Box::new(SolveFailure { reached: solution, error })),
         };
-        let Solution { trajectory, occurrences, .. } = &mut solution;
-        let output = |t: f64, y: &[f64]| {
-            trajectory.push(t, y);
-            ControlFlow::Continue(())
-        };
+        let occurrences = &mut solution.occurrences;
         let occurred = |occurrence: &Occurrence| {
             occurrences.push(occurrence.clone());
             ControlFlow::Continue(())

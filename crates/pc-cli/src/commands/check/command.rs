@@ -4,7 +4,7 @@ use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
 use pc_nonholo::{IntegrableCombination, Kind, Redundant};
-use pc_print::{Operations, columns, counted, energy_remark, kind_in_words};
+use pc_print::{Operations, columns, counted, energy_remark, kind_in_words, one_line, visible, visible_json};
 use pc_verify::{Agreement, Options, VerifyError, verify};
 use serde_json::{Value, json};
 
@@ -37,8 +37,8 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
     assembly.within_limits()?;
     print(|out| match arguments.format {
-        Format::Text => write!(out, "{}", report.text()),
-        Format::Json => writeln!(out, "{:#}", report.json()),
+        Format::Text => write!(out, "{}", visible(&report.text())),
+        Format::Json => writeln!(out, "{}", visible_json(&report.json())),
     })
 }
 
@@ -192,7 +192,7 @@ impl<'g> Report<'g> {
                 ],
             ),
         ];
-        let mut text = format!("{}\n", self.title);
+        let mut text = format!("{}\n", one_line(&self.title));
         for (label, lines) in &entries {
             text += &labelled(label, LABEL, lines);
         }

@@ -3,13 +3,13 @@
 use std::io::{self, Write};
 
 use crate::output::atomic::FileWriter;
+use crate::output::csv::{field, header};
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Sheet};
 
 /// A header, then a line for each row, numbers with 17 significant digits; text in quotes where it needs them.
 pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
-    let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
-    writeln!(out, "{}", names.join(","))?; // names contain neither commas nor quotes
+    writeln!(out, "{}", header(sheet.columns().iter().map(|(name, _)| name)))?;
     for record in journal.records()? {
         for row in sheet.rows(&record?) {
             for (j, cell) in row.iter().enumerate() {
@@ -17,10 +17,7 @@ pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) 
                 match cell {
                     Cell::Integer(value) => write!(out, "{comma}{value}")?,
                     Cell::Number(value) => write!(out, "{comma}{value:.16e}")?,
-                    Cell::Text(text) if text.contains([',', '"']) => {
-                        write!(out, "{comma}\"{}\"", text.replace('"', "\"\""))?;
-                    }
-                    Cell::Text(text) => write!(out, "{comma}{text}")?,
+                    Cell::Text(text) => write!(out, "{comma}{}", field(text))?,
                 }
             }
             writeln!(out)?;

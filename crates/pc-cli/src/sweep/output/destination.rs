@@ -1,19 +1,20 @@
 //! Where the table of a sweep goes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 #[cfg(feature = "parquet")]
 use super::parquet;
 use super::{csv, json, npz};
 use crate::error::CliError;
-use crate::output::atomic;
+use crate::output::kept::Kept;
+use crate::output::place::Place;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::Sheet;
 
 /// Where the table goes.
 #[derive(Debug)]
 pub(crate) struct Destination {
-    path: PathBuf,
+    place: Place,
     encoding: Encoding,
 }
 
@@ -28,7 +29,7 @@ enum Encoding {
 
 impl Destination {
     /// # Errors
-    /// [`CliError::UnknownExtension`]; [`CliError::Write`] where no file can be.
+    /// [`CliError::UnknownExtension`]; [`CliError::Place`] where no file can be.
     pub(crate) fn new(path: &Path) -> Result<Destination, CliError> {
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         let encoding = match extension.as_deref() {
@@ -46,13 +47,13 @@ impl Destination {
                 return Err(CliError::UnknownExtension { option: "-o", path: path.to_owned(), expected });
             }
         };
-        atomic::look(path).map_err(|source| CliError::cannot_write(path, source))?;
-        Ok(Destination { path: path.to_owned(), encoding })
+        let place = Place::regular(path).map_err(|source| CliError::no_place(path, source))?;
+        Ok(Destination { place, encoding })
     }
 
     /// The file.
     pub(crate) fn path(&self) -> &Path {
-        &self.path
+        self.place.path()
     }
 
     /// Writes the table.
@@ -60,13 +61,17 @@ impl Destination {
     /// # Errors
     /// [`CliError::Write`]; an existing file is then as it was.
     pub(crate) fn write(&self, title: &str, sheet: &Sheet, journal: &Journal) -> Result<(), CliError> {
-        let written = atomic::write_file(&self.path, |out| match self.encoding {
+        let written = self.place.write(|out| match self.encoding {
             Encoding::Csv => csv::write(sheet, journal, out),
             Encoding::Json => json::write(title, sheet, journal, out),
             Encoding::Npz => npz::write(sheet, journal, out),
             #[cfg(feature = "parquet")]
             Encoding::Parquet => parquet::write(sheet, journal, out),
         });
-        written.map_err(|source| CliError::cannot_write(&self.path, source))
+        written.map_err(|source| CliError::Write {
+            path: self.path().display().to_string(),
+            kept: Kept::Journal(journal.path().to_owned()),
+            source,
+        })
     }
 }

@@ -7,6 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::output::atomic::FileWriter;
+use crate::output::npz::entry;
 use crate::sweep::journal::Journal;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
@@ -19,7 +20,7 @@ pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) 
         .large_file(true);
     let mut archive = ZipWriter::new(out);
     for (j, (name, kind)) in sheet.columns().iter().enumerate() {
-        archive.start_file(format!("{name}.npy"), options)?;
+        archive.start_file(format!("{}.npy", entry(name)), options)?;
         let dtype = match kind {
             Kind::Integer => "<u8".to_owned(),
             Kind::Number => "<f8".to_owned(),

@@ -1,0 +1,33 @@
+//! Where a result is that could not be written where it belongs.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Where a result is that could not be written where it belongs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Kept {
+    /// Nowhere.
+    #[default]
+    Nowhere,
+    /// All of it in another file.
+    Elsewhere(PathBuf),
+    /// The first lines, beside the file.
+    Beginning(PathBuf),
+    /// The finished members of a sweep.
+    Journal(PathBuf),
+}
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Kept::Nowhere => Ok(()),
+            Kept::Elsewhere(path) => write!(f, "; the result is in {}", path.display()),
+            Kept::Beginning(path) => write!(f, "; what could be written of it is in {}", path.display()),
+            Kept::Journal(path) => write!(
+                f,
+                "; what is finished is in {}, and the same command goes on from there",
+                path.display()
+            ),
+        }
+    }
+}

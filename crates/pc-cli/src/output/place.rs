@@ -1,0 +1,108 @@
+//! Where a result is to be, looked at before it is computed.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use crate::output::partial;
+use crate::output::partial::directory;
+
+/// The place of a file that is replaced whole, or of a device that is written through.
+#[derive(Debug)]
+pub(crate) struct Place {
+    /// As it was asked for.
+    pub(super) asked: PathBuf,
+    /// What links lead to.
+    pub(super) file: PathBuf,
+    /// What keeps nothing, such as a FIFO, is written through, and is open from the beginning.
+    pub(super) device: Option<File>,
+}
+
+impl Place {
+    /// A regular file, there or not, in a directory in which files can be made; what killed runs have left beside it is removed.
+    ///
+    /// # Errors
+    /// [`io::Error`] that says what stands in the way.
+    pub(crate) fn regular(path: &Path) -> io::Result<Place> {
+        match fs::metadata(path) {
+            Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is no regular file")),
+            _ => Place::new(path),
+        }
+    }
+
+    /// The same, or a character device or FIFO, which is opened: that of a FIFO waits for its reader.
+    ///
+    /// # Errors
+    /// As for [`regular`](Place::regular).
+    pub(crate) fn new(path: &Path) -> io::Result<Place> {
+        let (file, device) = match fs::metadata(path) {
+            Ok(found) if found.is_dir() => {
+                return Err(io::Error::new(ErrorKind::IsADirectory, "it is a directory"));
+            }
+            Ok(found) if found.is_file() => {
+                // Root may write what is marked as read-only; who has marked it meant to keep it.
+                if found.permissions().readonly() {
+                    return Err(refused("it is read-only"));
+                }
+                OpenOptions::new().write(true).open(path)?;
+                (fs::canonicalize(path)?, None)
+            }
+            Ok(found) if is_written_through(&found) => {
+                (path.to_owned(), Some(OpenOptions::new().write(true).open(path)?))
+            }
+            Ok(_) => return Err(refused("it is neither a regular file nor a character device or FIFO")),
+            Err(error) if error.kind() == ErrorKind::NotFound => (end_of_links(path)?, None),
+            Err(error) => return Err(error),
+        };
+        if device.is_none() {
+            try_directory(&file)?;
+        }
+        Ok(Place { asked: path.to_owned(), file, device })
+    }
+
+    /// As it was asked for.
+    pub(crate) fn path(&self) -> &Path {
+        &self.asked
+    }
+}
+
+/// That a file can be made beside `file`.
+fn try_directory(file: &Path) -> io::Result<()> {
+    let directory = directory(file);
+    if !fs::metadata(directory).is_ok_and(|found| found.is_dir()) {
+        let message = format!("there is no directory {}", directory.display());
+        return Err(io::Error::new(ErrorKind::NotFound, message));
+    }
+    partial::remove_leftovers(file);
+    partial::make(file).map(drop)
+}
+
+/// As many links as the system itself follows.
+const MOST_LINKS: usize = 40;
+
+/// The file that links lead to though it is not there yet.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    let mut file = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&file) {
+            Ok(target) => file = directory(&file).join(target),
+            Err(_) => return Ok(file), // no link
+        }
+    }
+    Err(refused("it is a link that leads nowhere"))
+}
+
+fn refused(message: &str) -> io::Error {
+    io::Error::new(ErrorKind::PermissionDenied, message)
+}
+
+#[cfg(unix)]
+fn is_written_through(found: &fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    found.file_type().is_char_device() || found.file_type().is_fifo()
+}
+
+#[cfg(not(unix))]
+fn is_written_through(_: &fs::Metadata) -> bool {
+    false
+}

@@ -1,0 +1,86 @@
+//! Rows that are written while there are more to come.
+
+use std::io::{self, BufWriter, Write};
+use std::ops::ControlFlow;
+
+use tempfile::NamedTempFile;
+
+use crate::error::CliError;
+use crate::output::kept::Kept;
+use crate::output::place::Place;
+use crate::output::rescue::beside;
+use crate::output::{csv, partial};
+
+/// A table of comma-separated values that grows beside the file which it replaces at its end.
+#[derive(Debug)]
+pub(crate) struct Stream<'p> {
+    place: &'p Place,
+    /// Nothing before it is begun.
+    out: Option<BufWriter<NamedTempFile>>,
+    /// Why no more could be written.
+    error: Option<io::Error>,
+}
+
+/// Bytes that are written at once.
+const BLOCK: usize = 1 << 20;
+
+impl<'p> Stream<'p> {
+    /// To a regular file.
+    pub(super) fn to(place: &'p Place) -> Stream<'p> {
+        Stream { place, out: None, error: None }
+    }
+
+    /// Makes the file, with the line of names.
+    ///
+    /// # Errors
+    /// [`CliError::Write`]
+    pub(crate) fn begin(&mut self, columns: &[String]) -> Result<(), CliError> {
+        let begun = partial::make(&self.place.file).and_then(|made| {
+            let mut out = BufWriter::with_capacity(BLOCK, made);
+            writeln!(out, "{}", csv::header(columns))?;
+            self.out = Some(out);
+            Ok(())
+        });
+        begun.map_err(|source| CliError::cannot_write(self.place.path(), source))
+    }
+
+    /// Whether there is something to be ended.
+    pub(crate) fn is_begun(&self) -> bool {
+        self.out.is_some()
+    }
+
+    /// Writes a row; breaks off where that fails, and has failed.
+    pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
+        let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
+        if let Err(error) = csv::row(numbers, out) {
+            self.error = Some(error);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Whether a row could not be written.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.error.is_some()
+    }
+
+    /// Puts the table at its place, or what there is of it beside that.
+    ///
+    /// # Errors
+    /// [`CliError::Write`] that says where it is.
+    pub(crate) fn end(self) -> Result<(), CliError> {
+        let Some(mut out) = self.out else { return Ok(()) };
+        let flushed = self.error.map_or_else(|| out.flush(), Err);
+        let (made, _) = out.into_parts(); // what could not be written is not tried again
+        let (source, part) = match flushed {
+            Err(error) => (error, Some(made)),
+            Ok(()) => match self.place.put(made) {
+                Ok(()) => return Ok(()),
+                Err(failed) => failed,
+            },
+        };
+        let kept =
+            part.and_then(|part| beside(&self.place.file, part)).map_or(Kept::Nowhere, Kept::Beginning);
+        Err(CliError::Write { path: self.place.path().display().to_string(), kept, source })
+    }
+}

@@ -1,0 +1,45 @@
+//! Reading of texts, up to a size.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// The most bytes of a model, or of a table of an input, that are read: 64 MiB. Of a device, which has no end, or of a file of
+/// another kind nothing more is taken into memory.
+pub const MOST_BYTES: u64 = 64 << 20;
+
+/// All that a model or a table has.
+///
+/// # Errors
+/// [`ErrorKind::FileTooLarge`] where it is more than [`MOST_BYTES`]; any other of the reader.
+pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        let message = format!("it has more than {} MiB, the most that is read", MOST_BYTES >> 20);
+        return Err(io::Error::new(ErrorKind::FileTooLarge, message));
+    }
+    Ok(bytes)
+}
+
+/// The same of a file.
+///
+/// # Errors
+/// As for [`read_bounded`], and those of opening it.
+pub fn read_file_bounded(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
+    read_bounded(File::open(path)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_no_end_is_not_read_to_it() {
+        let error = read_bounded(io::repeat(b'#')).expect_err("endless");
+        assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+        assert_eq!(error.to_string(), "it has more than 64 MiB, the most that is read");
+        let most = read_bounded(io::repeat(0).take(MOST_BYTES)).expect("just so much");
+        assert_eq!(most.len() as u64, MOST_BYTES);
+    }
+}

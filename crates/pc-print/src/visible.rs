@@ -1,0 +1,78 @@
+//! Text of others as it may be shown: no character in it does anything.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+
+use pc_model::document::is_hidden;
+use serde_json::Value;
+
+/// Titles and names on one line: runs of white space are a space, and what is not seen is shown as `�`.
+pub fn one_line(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if c.is_whitespace() && is_hidden(c) => {
+                if !line.ends_with(' ') {
+                    line.push(' ');
+                }
+            }
+            c if is_hidden(c) => line.push(char::REPLACEMENT_CHARACTER),
+            c => line.push(c),
+        }
+    }
+    Cow::Owned(line.trim().to_owned())
+}
+
+/// Text of several lines, as it may be sent to a terminal.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let acts = |c: char| is_hidden(c) && !matches!(c, '\n' | '\t');
+    if text.contains(acts) { Cow::Owned(text.replace(acts, "\u{fffd}")) } else { Cow::Borrowed(text) }
+}
+
+/// JSON on several lines, as it may be sent to a terminal: the same value, what is not seen being spelt out.
+pub fn visible_json(value: &Value) -> String {
+    let mut text = String::new();
+    for c in format!("{value:#}").chars() {
+        if is_hidden(c) && c != '\n' {
+            let mut units = [0; 2];
+            for unit in c.encode_utf16(&mut units) {
+                // Writing to a string cannot fail.
+                let _ = write!(text, "\\u{unit:04x}");
+            }
+        } else {
+            text.push(c);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn lines_stay_one_line() {
+        assert_eq!(one_line("ẋ of the Čaplygin sleigh"), "ẋ of the Čaplygin sleigh");
+        assert_eq!(one_line("a\n\r\n\\input{b}\u{2028}c\u{85}d\t"), "a \\input{b} c d");
+        assert_eq!(one_line("\u{1b}[31m\u{9b}\u{202e}"), "\u{fffd}[31m\u{fffd}\u{fffd}");
+    }
+
+    #[test]
+    fn nothing_that_is_shown_does_anything() {
+        assert_eq!(visible("a\tb\nc"), "a\tb\nc");
+        assert_eq!(visible("a\u{1b}]0;b\u{7}\rc"), "a\u{fffd}]0;b\u{fffd}\u{fffd}c");
+    }
+
+    #[test]
+    fn json_has_the_same_value() {
+        let value = json!({ "name\u{9b}": "a\u{7f}\u{202e}\n\"\u{1b}", "feff": "\u{feff}" });
+        let text = visible_json(&value);
+        assert!(!text.contains(|c| is_hidden(c) && c != '\n'), "{text}");
+        assert_eq!(serde_json::from_str::<Value>(&text).expect("JSON"), value);
+    }
+}
