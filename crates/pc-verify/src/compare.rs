@@ -359,8 +359,9 @@ impl Second {
     }
 }
 
-/// The difference of two values relative to the size of their terms.
+/// The difference of two values relative to the size of their terms; none where it is smaller than the numbers that have all
+/// their digits.
 fn error(one: f64, two: Sized) -> f64 {
     let difference = (one - two.value).abs();
-    if difference == 0.0 { 0.0 } else { difference / two.size }
+    if difference <= f64::MIN_POSITIVE { 0.0 } else { difference / two.size }
 }

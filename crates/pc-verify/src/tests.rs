@@ -410,3 +410,11 @@ fn what_cancels_wholly_has_the_size_of_its_terms() {
     let agreement = verify(&model(&text), &Options { states: 10, seed: 0 }).unwrap();
     assert!(agreement.projected > 0, "{agreement:?}");
 }
+
+/// Numbers below 2⁻¹⁰²² have fewer digits the smaller they are.
+#[test]
+fn what_has_no_digits_is_not_compared_by_digits() {
+    let text = "[coordinates]\nx = 0.7\ny = 0.3\n[lagrangian]\nkinetic = \"3*x'^2 + x'*y'*cos(x) + y'^2\"\n\
+                potential = \"7e-323*sin(x + y)\"\n";
+    assert_eq!(verify(&model(text), &Options::default()).unwrap().states, 100);
+}

@@ -11,7 +11,7 @@ use crate::fuzz::random::Random;
 
 const RUN: &[&str] =
     &["run", "heavy-top-lagrange", "--t-end", "40", "--samples", "4000", "--no-verify", "--every", "200"];
-const SWEEP: &[&str] = &["sweep", "heavy-top-lagrange", "--t-end", "2", "--vary", "m=1:2:40"];
+const SWEEP: &[&str] = &["sweep", "heavy-top-lagrange", "--t-end", "2", "--vary", "mg=5:15:40"];
 
 /// Kills runs and sweeps so many times, each at another moment, and has them go on.
 ///
