@@ -41,8 +41,8 @@ pub unsafe extern "C" fn pc_system_bracket(
         // SAFETY: null or text, as the preamble demands.
         let (f, g) = unsafe { (text(f, "f")?, text(g, "g")?) };
         let mut bracket = derived(inventory, f, g)?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        evaluate(&mut bracket, (t, &state, inner.field.parameters()), value)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        evaluate(&mut bracket, (t, &inner.room.state, inner.field.parameters()), value)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }

@@ -10,29 +10,38 @@ use crate::ffi::pointer::{apart, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::mechanics::{Mechanics, evaluate};
 use crate::machinery::motion_field::MotionField;
-use crate::machinery::system::{Inner, Inventory, inside, pc_system};
+use crate::machinery::system::{Inner, Inventory, Room, inside, pc_system};
 
 impl Inner {
     /// The parts of the equations, derived when first asked for, with the motion.
-    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut MotionField), CallError> {
+    fn mechanics(
+        &mut self,
+        inventory: &Inventory,
+    ) -> Result<(&mut Mechanics, &mut MotionField, &mut Room), CallError> {
         if self.mechanics.is_none() {
             self.mechanics = Some(Mechanics::of(&inventory.model, inventory.variables)?);
         }
         const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
-        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field))
+        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
     }
 
-    /// The state (x, η) of a state.
-    pub(crate) fn in_quasi_velocities(
+    /// Leaves the state (x, η) of a state in the room for one.
+    pub(crate) fn read_quasi_velocities(
         &mut self,
         inventory: &Inventory,
         t: f64,
         y: &[f64],
-    ) -> Result<Vec<f64>, CallError> {
+    ) -> Result<(), CallError> {
         match inventory.variables {
-            Variables::QuasiVelocities => Ok(y.to_vec()),
-            Variables::Momenta => Ok(self.legendre(inventory)?.to_quasi_velocities(t, y)?),
+            Variables::QuasiVelocities => self.room.state.copy_from_slice(y),
+            Variables::Momenta => {
+                self.derive_legendre(inventory)?;
+                if let Some(transform) = &mut self.legendre {
+                    transform.to_quasi_velocities_in(t, y, &mut self.room.state)?;
+                }
+            }
         }
+        Ok(())
     }
 }
 
@@ -55,9 +64,9 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
         let target = Target { data: matrix, length, expected: k * k, what: "matrix" };
         // SAFETY: as the preamble demands.
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        evaluate(&mut mechanics.mass, (t, &state, motion.parameters()), matrix)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, Room { state, .. }) = inner.mechanics(inventory)?;
+        evaluate(&mut mechanics.mass, (t, state, motion.parameters()), matrix)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -73,7 +82,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
-        let (mechanics, _) = inner.mechanics(inventory)?;
+        let (mechanics, ..) = inner.mechanics(inventory)?;
         // SAFETY: null or a place for a number, as the preamble demands.
         unsafe { write(operators, mechanics.operators, "operators") }
     };
@@ -99,9 +108,9 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
         let target = Target { data: c, length, expected, what: "c" };
         // SAFETY: as the preamble demands.
         let (y, c) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        evaluate(&mut mechanics.structure, (t, &state, motion.parameters()), c)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, Room { state, .. }) = inner.mechanics(inventory)?;
+        evaluate(&mut mechanics.structure, (t, state, motion.parameters()), c)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -133,25 +142,24 @@ pub unsafe extern "C" fn pc_system_residual(
         let ydot = unsafe { numbers(ydot, ydot_length, dim, "ydot") }?;
         // SAFETY: as the preamble demands.
         let (y, residual) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        let n = motion.coordinates();
-        let mut rates = ydot.to_vec();
+        let (mechanics, motion, room) = inner.mechanics(inventory)?;
+        let (n, k) = (motion.coordinates(), motion.quasi_velocities());
+        let (mass, rates) = room.split(k * k);
+        rates.copy_from_slice(ydot);
         if !mechanics.complete {
             motion.rhs(t, y, residual)?;
             for (rate, right) in rates.iter_mut().zip(&*residual) {
                 *rate -= right;
             }
             if inventory.variables == Variables::Momenta {
-                residual.copy_from_slice(&rates);
+                residual.copy_from_slice(rates);
                 return Ok(());
             }
             residual.fill(0.0);
         } else {
             evaluate(&mut mechanics.right, (t, y, motion.inputs(t, y)?), residual)?;
         }
-        let k = motion.quasi_velocities();
-        let mut mass = vec![0.0; k * k];
-        evaluate(&mut mechanics.mass, (t, y, motion.parameters()), &mut mass)?;
+        evaluate(&mut mechanics.mass, (t, y, motion.parameters()), mass)?;
         for i in 0..n {
             residual[i] = rates[i] - residual[i];
         }

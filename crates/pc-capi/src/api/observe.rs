@@ -26,7 +26,7 @@ pub unsafe extern "C" fn pc_system_observe(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.observe(t, y));
+        inner.field.observe(t, y, values);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -58,7 +58,9 @@ pub unsafe extern "C" fn pc_system_integrals(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.observe_unforced(t, y)[..expected]);
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe_unforced(t, y, all);
+        values.copy_from_slice(&all[..expected]);
         all_finite("an integral", values)
     };
     // SAFETY: as the preamble demands.
@@ -79,8 +81,10 @@ pub unsafe extern "C" fn pc_system_energy(
         let target = Target { data: energy, length: 1, expected: 1, what: "energy" };
         // SAFETY: as the preamble demands.
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe_unforced(t, y, all);
         // The last of those that should stay constant.
-        energy[0] = inner.field.observe_unforced(t, y)[inventory.conserved - 1];
+        energy[0] = all[inventory.conserved - 1];
         all_finite("the energy", energy)
     };
     // SAFETY: as the preamble demands.
@@ -109,7 +113,8 @@ pub unsafe extern "C" fn pc_system_reactions(
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         inner.field.inputs(t, y)?;
-        let all = inner.field.observe(t, y);
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe(t, y, all);
         for (value, &place) in values.iter_mut().zip(reactions) {
             *value = all[place];
         }
@@ -136,7 +141,7 @@ pub unsafe extern "C" fn pc_system_constraint_residuals(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.constraint_residuals(t, y));
+        inner.field.constraint_residuals(t, y, values);
         all_finite("a constraint", values)
     };
     // SAFETY: as the preamble demands.

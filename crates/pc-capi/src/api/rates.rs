@@ -9,7 +9,7 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::system::{Inner, Inventory, holding, inside, pc_system};
+use crate::machinery::system::{Inner, Inventory, Room, holding, inside, pc_system};
 
 /// A state from C.
 #[derive(Clone, Copy)]
@@ -228,10 +228,10 @@ pub unsafe extern "C" fn pc_system_jvp(
         // SAFETY: as the preamble demands.
         let (y, product) = unsafe { slices(state, dim, target) }?;
         let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
-        let mut values = vec![0.0; pattern.len()];
-        inner.field.sparse_jacobian(t, y, &mut values)?;
+        let values = inner.room.numbers(pattern.len());
+        inner.field.sparse_jacobian(t, y, values)?;
         product.fill(0.0);
-        for ((i, j), value) in pattern.entries().zip(values) {
+        for ((i, j), value) in pattern.entries().zip(&*values) {
             product[i] += value * v[j];
         }
         Ok(())
@@ -253,12 +253,14 @@ pub unsafe extern "C" fn pc_system_project(
 ) -> pc_status {
     let project = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: as the preamble demands.
-        let mut projected = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
-        if inner.field.has_projection() {
-            inner.field.project(t, &mut projected)?;
+        let given = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
+        let Inner { field, room: Room { state, .. }, .. } = inner;
+        state.copy_from_slice(given);
+        if field.has_projection() {
+            field.project(t, state)?;
         }
         // SAFETY: as the preamble demands.
-        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&projected);
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(state);
         Ok(())
     };
     // SAFETY: as the preamble demands.

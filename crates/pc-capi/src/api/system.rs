@@ -209,7 +209,7 @@ pub unsafe extern "C" fn pc_system_set_parameters(
             finite(value, "a parameter")?;
         }
         inner.values.set_all(values);
-        system.set_parameters(inner, |parameters| parameters.copy_from_slice(values));
+        system.take_values(inner);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -238,8 +238,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
             });
         }
         inner.values.set(index, value);
-        let values = inner.values.values().to_vec();
-        system.set_parameters(inner, |parameters| parameters.copy_from_slice(&values));
+        system.take_values(inner);
         Ok(())
     };
     // SAFETY: as the preamble demands.

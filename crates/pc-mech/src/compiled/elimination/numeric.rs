@@ -145,9 +145,9 @@ impl Staged {
         check_finite(ydot, &self.rates, (t, &self.known, p))
     }
 
-    /// Observables of w are not finite where w cannot be solved for.
-    pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
-        if self.solve(t, y, p).is_err() {
+    /// Observables of w are not finite where w cannot be solved for, or is not to be `solved` for.
+    pub(crate) fn observe(&mut self, (t, y, p): (f64, &[f64], &[f64]), values: &mut [f64], solved: bool) {
+        if !solved || self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);

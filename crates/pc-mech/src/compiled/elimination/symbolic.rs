@@ -111,7 +111,8 @@ impl Unrolled {
     }
 
     pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {
-        self.pivots.fixed(&vec![0.0; dim], p)
+        // Of parameters alone, whatever the state is.
+        self.pivots.fixed(&self.known[..dim], p)
     }
 
     pub(crate) fn jacobian(
