@@ -128,7 +128,7 @@ fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -
 /// them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn pc_system_events(
 /// resets nothing leaves it as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
-    system: *mut pc_system,
+    system: *const pc_system,
     event: usize,
     t: f64,
     y: *mut f64,

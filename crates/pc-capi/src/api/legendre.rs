@@ -12,7 +12,7 @@ impl Inner {
     /// Derives the transform of the state when it is first asked for.
     pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
-            let model = &inventory.model;
+            let model = inventory.model_anew();
             let graph = model.graph();
             let assembly = model.assemble(&graph)?;
             let mut transform = assembly.legendre_transform(inventory.variables)?;
@@ -34,7 +34,7 @@ impl Inner {
 /// derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_momenta(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn pc_system_to_momenta(
 /// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_quasi_velocities(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn pc_system_to_quasi_velocities(
 /// # Safety
 /// As the preamble demands.
 unsafe fn transformed(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     state: State,
     (data, length): (*mut f64, usize),

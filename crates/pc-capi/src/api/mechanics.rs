@@ -19,7 +19,7 @@ impl Inner {
         inventory: &Inventory,
     ) -> Result<(&mut Mechanics, &mut MotionField, &mut Room), CallError> {
         if self.mechanics.is_none() {
-            self.mechanics = Some(Mechanics::of(&inventory.model, inventory.variables)?);
+            self.mechanics = Some(Mechanics::of(&inventory.model_anew(), inventory.variables)?);
         }
         const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
@@ -51,7 +51,7 @@ impl Inner {
 /// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -72,12 +72,42 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
     unsafe { inside(system, error, compute) }
 }
 
+/// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, k and M as of
+/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of multipliers.
+/// The first call derives, as pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_right_hand_side(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    right: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compute = |inventory: &Inventory, inner: &mut Inner| {
+        let (dim, k) = (inventory.dim(), inner.field.quasi_velocities());
+        let target = Target { data: right, length, expected: k, what: "right" };
+        // SAFETY: as the preamble demands.
+        let (y, right) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, room) = inner.mechanics(inventory)?;
+        let n = motion.coordinates();
+        let (values, state) = room.split(dim);
+        evaluate(&mut mechanics.right, (t, state, motion.inputs(t, y)?), values)?;
+        right.copy_from_slice(&values[n..n + k]);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
 /// Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
 /// for each quasi-velocity of the state, then those that constraints say vanish, if any. The
 /// first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_operator_count(
-    system: *mut pc_system,
+    system: *const pc_system,
     operators: *mut usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
@@ -95,7 +125,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
 /// 1)*K. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_structure_coefficients(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -122,7 +152,7 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
 /// be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,

@@ -13,7 +13,7 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// also where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -45,7 +45,7 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
 /// should stay constant, which are the first of the observables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn pc_system_integrals(
 /// Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_energy(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn pc_system_energy(
 /// they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn pc_system_reactions(
 /// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,

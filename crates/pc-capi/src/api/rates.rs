@@ -74,7 +74,7 @@ unsafe fn misfits<'a>(
 /// only where that happens during its evaluation, and where it fails while the handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -125,7 +125,7 @@ unsafe fn rates_without_lock(
 /// Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jacobian(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -184,7 +184,7 @@ const NO_PATTERN: CallError =
 /// Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_sparse_jacobian(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -207,7 +207,7 @@ pub unsafe extern "C" fn pc_system_sparse_jacobian(
 /// Writes the product (∂f/∂y) v; all three arrays have the length dim.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jvp(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -240,12 +240,42 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
+/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product:
+/// by each parameter while the others, also those that follow it, stay; by an input with a table
+/// that by its values. PC_UNSUPPORTED unless pc_model_differentiate was asked, or there are
+/// external forces.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_parameter_jacobian(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    jacobian: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        if !inner.field.has_parameter_jacobian() {
+            let why = "pc_model_differentiate was not asked";
+            return Err(CallError::Unsupported { what: "∂f/∂p", why });
+        }
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let expected = dim * inventory.parameters.len();
+        let target = Target { data: jacobian, length, expected, what: "jacobian" };
+        // SAFETY: as the preamble demands.
+        let (y, jacobian) = unsafe { slices(state, dim, target) }?;
+        Ok(inner.field.parameter_jacobian(t, y, jacobian)?)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
 /// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
 /// the integrals of pc_model_keep to their values at the start of the model, or where
 /// pc_system_keep_from said. Where there is nothing to be kept it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *mut f64,
     y_length: usize,

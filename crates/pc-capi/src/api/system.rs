@@ -25,11 +25,15 @@ pub unsafe extern "C" fn pc_system_new(
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(system, "system") }?;
         // SAFETY: as the preamble demands.
-        let options = unsafe { take(options, "options") }?;
+        let options = unsafe { take::<pc_system_options>(options, "options") }?;
         let variables = options.variables()?;
         // SAFETY: as the preamble demands.
+        let limits = unsafe { options.limits() }?;
+        // SAFETY: as the preamble demands.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
-        let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
+        let mut model = contents.model()?;
+        model.limit(limits);
+        let derived = pc_system::new(model, variables, contents.observes_reactions)?;
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };

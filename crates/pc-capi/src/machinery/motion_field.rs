@@ -28,6 +28,11 @@ impl MotionField {
         }
     }
 
+    /// A number that tells it from fields of other equations, or with other names.
+    pub(crate) fn digest(&self) -> u64 {
+        self.motion().digest()
+    }
+
     fn motion(&self) -> &Motion {
         match self {
             MotionField::Free(motion) => motion,

@@ -55,6 +55,13 @@ impl Inventory {
         self.names.len()
     }
 
+    /// The model for another derivation, which may take as much as the first one.
+    pub(crate) fn model_anew(&self) -> Model {
+        let mut model = self.model.clone();
+        model.limit(self.model.budget().limits().clone());
+        model
+    }
+
     /// The time and state from which the model starts.
     pub(crate) fn start(&self) -> (f64, &[f64]) {
         (self.t_start, &self.start)

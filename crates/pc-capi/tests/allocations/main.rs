@@ -156,6 +156,7 @@ fn evaluations_allocate_nothing() {
             let v = ydot.as_ptr();
             note("jvp", again(|e| pc_system_jvp(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));
             note("mass", again(|e| pc_system_mass_matrix(s, t, yp, n, mass.as_mut_ptr(), k * k, e)));
+            note("right", again(|e| pc_system_right_hand_side(s, t, yp, n, mass.as_mut_ptr(), k, e)));
             note("residual", again(|e| pc_system_residual(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));
             note("energy", again(|e| pc_system_energy(s, t, yp, n, &raw mut energy, e)));
             note(
@@ -186,6 +187,14 @@ fn evaluations_allocate_nothing() {
                 ok(pc_kernel_rhs(t, yp, ydot.as_mut_ptr(), kernel.cast()))
             };
             note("kernel_rhs", again(evaluate));
+            let (two, mut both) = ([&y[..], &y[..]].concat(), vec![0.0; 2 * n]);
+            let many = |e: *mut *mut pc_error| {
+                if !e.is_null() {
+                    e.write(ptr::null_mut());
+                }
+                ok(pc_kernel_rhs_many(t, two.as_ptr(), 2, both.as_mut_ptr(), kernel.cast()))
+            };
+            note("kernel_rhs_many", again(many));
             note("kernel_set", again(|e| pc_kernel_set_parameters(kernel, p, parameters, e)));
             pc_kernel_free(kernel);
         }
@@ -234,6 +243,15 @@ fn steps_allocate_nothing() {
             let before = allocations();
             for _ in 0..30 {
                 assert_eq!(step(ptr::null_mut()), pc_status::PC_OK);
+            }
+            let (mut work, size) = (pc_statistics::default(), size_of::<pc_statistics>());
+            // SAFETY: a live solver and room as said.
+            unsafe {
+                let none = ptr::null_mut();
+                assert_eq!(pc_solver_time(solver.0, &raw mut t, none), pc_status::PC_OK);
+                assert_eq!(pc_solver_state(solver.0, y.as_mut_ptr(), n, none), pc_status::PC_OK);
+                assert_eq!(pc_solver_interpolate(solver.0, t, 0, y.as_mut_ptr(), n, none), pc_status::PC_OK);
+                assert_eq!(pc_solver_statistics(solver.0, &raw mut work, size, none), pc_status::PC_OK);
             }
             if allocations() > before {
                 let number = allocations() - before;

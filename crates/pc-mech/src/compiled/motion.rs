@@ -1,6 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::cost;
@@ -374,6 +374,26 @@ impl Motion {
         }
         if let Some(surface) = &mut self.surface {
             surface.residuals((t, y, &self.parameters), residuals);
+        }
+    }
+
+    /// A number that tells this motion from those of other equations, or with other names: of the names of states, parameters and
+    /// constraints, and of the programs of f. It is the same on every run, whatever the values of the parameters are.
+    pub fn digest(&self) -> u64 {
+        let mut digest = Digest::default();
+        self.add_to(&mut digest);
+        digest.value()
+    }
+
+    fn add_to(&self, digest: &mut Digest) {
+        self.names.iter().chain(&self.constraints).for_each(|name| digest.name(name));
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.programs().for_each(|program| digest.program(program)),
+            Form::Staged(staged) => staged.programs().for_each(|program| digest.program(program)),
+            Form::InMomenta(motion) => {
+                motion.inner().add_to(digest);
+                digest.program(motion.transport.program());
+            }
         }
     }
 

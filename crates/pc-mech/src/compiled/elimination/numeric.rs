@@ -84,12 +84,21 @@ impl Staged {
         &self.cost
     }
 
-    pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
-        let equations = match &self.unknowns {
+    /// The program of the equations of w.
+    fn equations(&self) -> &Program {
+        match &self.unknowns {
             Unknowns::Linear { equations, .. } => equations.program(),
             Unknowns::Implicit(newton) => newton.program(),
-        };
-        TimeDependence::of(&[equations, self.rates.program()], self.dim, p)
+        }
+    }
+
+    /// The programs of ẏ.
+    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
+        [self.equations(), self.rates.program()].into_iter()
+    }
+
+    pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
+        TimeDependence::of(&[self.equations(), self.rates.program()], self.dim, p)
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {

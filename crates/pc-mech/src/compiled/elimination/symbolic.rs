@@ -72,6 +72,11 @@ impl Unrolled {
         self.rates.program().leading(dim).cost()
     }
 
+    /// The programs of ẏ.
+    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
+        std::iter::once(&**self.rates.program())
+    }
+
     pub(crate) fn time_dependence(&self, dim: usize, p: &[f64]) -> TimeDependence {
         TimeDependence::of(&[self.rates.program()], dim, p)
     }
