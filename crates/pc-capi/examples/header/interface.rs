@@ -2,7 +2,8 @@
 //!
 //! One line for each function (names of parameters left out, which no program sees), member of a structure with its place in
 //! bytes, constant of an enumeration, handle and type of callback, below the version of the whole. A line that goes, or becomes
-//! another, breaks programs; one that comes does not: structures are handed over with their sizes and grow at the end.
+//! another, breaks programs; one that comes does not: structures are handed over with their sizes and grow at the end. Nor does a
+//! parameter that points to what is only read from now on.
 
 use std::collections::BTreeSet;
 
