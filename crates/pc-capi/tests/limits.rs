@@ -65,8 +65,8 @@ fn time_is_limited() {
     let refusal = refused(&dense(9), &options);
     assert_eq!(refusal.status, pc_status::PC_LIMIT, "{}", refusal.message);
     assert!(refusal.message.contains("than the limit of 0.05 s"), "{}", refusal.message);
-    // Without a limit it takes many times as long.
-    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    // Without a limit it takes seconds; on a busy machine some tenths of one may go by.
+    assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
     // The time of a derivation is its own.
     let options = pc_system_options { time_limit: 5.0, ..Default::default() };
     derive(&Model::named("euler-top"), &options).unwrap();
@@ -96,7 +96,7 @@ fn another_thread_cancels() {
     let (ended, requested) = (Instant::now(), elsewhere.join().unwrap());
     assert_eq!(refusal.status, pc_status::PC_LIMIT, "{}", refusal.message);
     assert!(refusal.message.contains("cancelled"), "{}", refusal.message);
-    assert!(ended.saturating_duration_since(requested) < Duration::from_secs(5));
+    assert!(ended.saturating_duration_since(requested) < Duration::from_secs(1));
     // SAFETY: a live handle.
     assert_eq!(unsafe { pc_cancel_is_requested(cancel) }, 1);
     // It does not begin again.
