@@ -40,11 +40,12 @@
  * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
  * safe, as ever.) Different handles are independent; to evaluate on many threads, give each its
  * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
- * call. Names and sizes may be read at any time, by any number of threads.
+ * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
+ * That a function takes a handle as `const` says that what it computes stays, no more.
  *
- * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program;
- * memory that is exhausted does, and a stack: threads that make models and systems need some 256
- * KiB, more for long expressions.
+ * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
+ * does not end your program; memory that is exhausted does, and a stack: threads that make models
+ * and systems need some 256 KiB, more for long expressions.
  */
 
 #ifndef PC_H
@@ -265,6 +266,12 @@ typedef enum {
 } pc_direction;
 
 /**
+ * Ends derivations that were given it in pc_system_options. Any number of threads may use it at
+ * the same time. Free it with pc_cancel_free.
+ */
+typedef struct pc_cancel pc_cancel;
+
+/**
  * A motion as a function of time. It never changes, so that any number of threads may use it.
  * Free it with pc_dense_free.
  */
@@ -316,6 +323,21 @@ typedef struct {
    * 0: room for a choice to come.
    */
   int reserved;
+  /**
+   * Most bytes that the expressions of a derivation may take, as they are estimated; 0, the
+   * default, for 4 GiB. Beyond it, PC_LIMIT. It holds for pc_system_new, and for each later
+   * call that derives by itself, as do the next two.
+   */
+  uint64_t memory_limit;
+  /**
+   * Most seconds that a derivation may take, positive; 0, the default, for no limit.
+   */
+  double time_limit;
+  /**
+   * By which derivations are ended; NULL, the default, for none. It may be freed when
+   * pc_system_new has returned.
+   */
+  const pc_cancel *cancel;
 } pc_system_options;
 
 /**
@@ -570,6 +592,11 @@ typedef int (*pc_member_observer)(const pc_member *member, void *user);
  * The version of the library, such as "0.1.0". Static.
  */
 const char *pc_version(void);
+
+/**
+ * The PC_ABI_VERSION of the library that runs.
+ */
+uint32_t pc_abi_version(void);
 
 /**
  * The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
@@ -1058,6 +1085,28 @@ pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **er
 pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
 
 /**
+ * A handle by which derivations are ended.
+ */
+pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
+
+/**
+ * Ends the derivations under way with PC_LIMIT, soon, and those that begin later at once. It
+ * takes no lock and allocates nothing, so that a handler of signals may call it, which is all
+ * that one may. NULL is allowed.
+ */
+void pc_cancel_request(const pc_cancel *cancel);
+
+/**
+ * 1 after pc_cancel_request, else 0, as of NULL.
+ */
+int pc_cancel_is_requested(const pc_cancel *cancel);
+
+/**
+ * Frees a handle; what was given it goes on. Null is allowed.
+ */
+void pc_cancel_free(pc_cancel *cancel);
+
+/**
  * Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
  */
 void pc_system_options_init(pc_system_options *options, size_t size);
@@ -1191,6 +1240,31 @@ pc_status pc_system_set_parameters(pc_system *system,
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
+ * Writes the place of a component of the state, from 0, by its name. PC_NOT_FOUND if there is
+ * none of it.
+ */
+pc_status pc_system_find(const pc_system *system,
+                         const char *name,
+                         size_t *index,
+                         pc_error **error);
+
+/**
+ * Writes the place of a parameter or input, from 0, by its name, as pc_system_find.
+ */
+pc_status pc_system_find_parameter(const pc_system *system,
+                                   const char *name,
+                                   size_t *index,
+                                   pc_error **error);
+
+/**
+ * Writes the place of an observable, from 0, by its name, as pc_system_find.
+ */
+pc_status pc_system_find_observable(const pc_system *system,
+                                    const char *name,
+                                    size_t *index,
+                                    pc_error **error);
+
+/**
  * Declares that a force which a function of yours computes acts on a quasi-velocity; on a
  * coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
  * function belongs to the system, not to the model: pc_system_set_force. An unknown name is
@@ -1238,7 +1312,7 @@ pc_status pc_system_set_force(pc_system *system,
  * parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
  * only where that happens during its evaluation, and where it fails while the handle is in use.
  */
-pc_status pc_system_rhs(pc_system *system,
+pc_status pc_system_rhs(const pc_system *system,
                         double t,
                         const double *y,
                         size_t y_length,
@@ -1249,7 +1323,7 @@ pc_status pc_system_rhs(pc_system *system,
 /**
  * Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
  */
-pc_status pc_system_jacobian(pc_system *system,
+pc_status pc_system_jacobian(const pc_system *system,
                              double t,
                              const double *y,
                              size_t y_length,
@@ -1272,7 +1346,7 @@ pc_status pc_system_jacobian_pattern(const pc_system *system,
 /**
  * Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
  */
-pc_status pc_system_sparse_jacobian(pc_system *system,
+pc_status pc_system_sparse_jacobian(const pc_system *system,
                                     double t,
                                     const double *y,
                                     size_t y_length,
@@ -1283,7 +1357,7 @@ pc_status pc_system_sparse_jacobian(pc_system *system,
 /**
  * Writes the product (∂f/∂y) v; all three arrays have the length dim.
  */
-pc_status pc_system_jvp(pc_system *system,
+pc_status pc_system_jvp(const pc_system *system,
                         double t,
                         const double *y,
                         size_t y_length,
@@ -1294,11 +1368,25 @@ pc_status pc_system_jvp(pc_system *system,
                         pc_error **error);
 
 /**
+ * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product:
+ * by each parameter while the others, also those that follow it, stay; by an input with a table
+ * that by its values. PC_UNSUPPORTED unless pc_model_differentiate was asked, or there are
+ * external forces.
+ */
+pc_status pc_system_parameter_jacobian(const pc_system *system,
+                                       double t,
+                                       const double *y,
+                                       size_t y_length,
+                                       double *jacobian,
+                                       size_t length,
+                                       pc_error **error);
+
+/**
  * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
  * the integrals of pc_model_keep to their values at the start of the model, or where
  * pc_system_keep_from said. Where there is nothing to be kept it stays.
  */
-pc_status pc_system_project(pc_system *system,
+pc_status pc_system_project(const pc_system *system,
                             double t,
                             double *y,
                             size_t y_length,
@@ -1321,7 +1409,7 @@ pc_status pc_system_keep_from(pc_system *system,
  * An observable is not finite where the model has no value for it; one with accelerations in it,
  * also where external forces cannot be computed.
  */
-pc_status pc_system_observe(pc_system *system,
+pc_status pc_system_observe(const pc_system *system,
                             double t,
                             const double *y,
                             size_t y_length,
@@ -1333,7 +1421,7 @@ pc_status pc_system_observe(pc_system *system,
  * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what
  * should stay constant, which are the first of the observables.
  */
-pc_status pc_system_integrals(pc_system *system,
+pc_status pc_system_integrals(const pc_system *system,
                               double t,
                               const double *y,
                               size_t y_length,
@@ -1344,7 +1432,7 @@ pc_status pc_system_integrals(pc_system *system,
 /**
  * Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
  */
-pc_status pc_system_energy(pc_system *system,
+pc_status pc_system_energy(const pc_system *system,
                            double t,
                            const double *y,
                            size_t y_length,
@@ -1355,7 +1443,7 @@ pc_status pc_system_energy(pc_system *system,
  * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
  * they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
  */
-pc_status pc_system_reactions(pc_system *system,
+pc_status pc_system_reactions(const pc_system *system,
                               double t,
                               const double *y,
                               size_t y_length,
@@ -1367,7 +1455,7 @@ pc_status pc_system_reactions(pc_system *system,
  * Writes what should be zero of each constraint that is kept by projection, as many as
  * pc_system_constraint_count.
  */
-pc_status pc_system_constraint_residuals(pc_system *system,
+pc_status pc_system_constraint_residuals(const pc_system *system,
                                          double t,
                                          const double *y,
                                          size_t y_length,
@@ -1429,7 +1517,7 @@ int pc_system_event_resets(const pc_system *system, size_t index);
  * occurs where its own passes through zero. They are not finite where the model has no value for
  * them.
  */
-pc_status pc_system_events(pc_system *system,
+pc_status pc_system_events(const pc_system *system,
                            double t,
                            const double *y,
                            size_t y_length,
@@ -1441,7 +1529,7 @@ pc_status pc_system_events(pc_system *system,
  * Turns the state y before an event, number `event` from 0, into the state after it. One that
  * resets nothing leaves it as it is.
  */
-pc_status pc_system_event_reset(pc_system *system,
+pc_status pc_system_event_reset(const pc_system *system,
                                 size_t event,
                                 double t,
                                 double *y,
@@ -1454,7 +1542,7 @@ pc_status pc_system_event_reset(pc_system *system,
  * pc_system_state_count. With multipliers their rows are not among it. The first call derives,
  * as pc_system_new does.
  */
-pc_status pc_system_mass_matrix(pc_system *system,
+pc_status pc_system_mass_matrix(const pc_system *system,
                                 double t,
                                 const double *y,
                                 size_t y_length,
@@ -1463,18 +1551,31 @@ pc_status pc_system_mass_matrix(pc_system *system,
                                 pc_error **error);
 
 /**
+ * Writes the right-hand side r of M η̇ = r at (t, y), k numbers, k and M as of
+ * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of multipliers.
+ * The first call derives, as pc_system_new does.
+ */
+pc_status pc_system_right_hand_side(const pc_system *system,
+                                    double t,
+                                    const double *y,
+                                    size_t y_length,
+                                    double *right,
+                                    size_t length,
+                                    pc_error **error);
+
+/**
  * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
  * for each quasi-velocity of the state, then those that constraints say vanish, if any. The
  * first call derives, as pc_system_new does.
  */
-pc_status pc_system_operator_count(pc_system *system, size_t *operators, pc_error **error);
+pc_status pc_system_operator_count(const pc_system *system, size_t *operators, pc_error **error);
 
 /**
  * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
  * K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
  * 1)*K. The first call derives, as pc_system_new does.
  */
-pc_status pc_system_structure_coefficients(pc_system *system,
+pc_status pc_system_structure_coefficients(const pc_system *system,
                                            double t,
                                            const double *y,
                                            size_t y_length,
@@ -1488,7 +1589,7 @@ pc_status pc_system_structure_coefficients(pc_system *system,
  * reactions are eliminated, the second part is M times the difference of η̇ from what it should
  * be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
  */
-pc_status pc_system_residual(pc_system *system,
+pc_status pc_system_residual(const pc_system *system,
                              double t,
                              const double *y,
                              size_t y_length,
@@ -1508,7 +1609,7 @@ pc_status pc_system_residual(pc_system *system,
  * y_s = ∂L/∂η_s are put in. Under nonholonomic constraints it is the almost-Poisson bracket of
  * the independent momenta. Each call derives, as pc_system_new does.
  */
-pc_status pc_system_bracket(pc_system *system,
+pc_status pc_system_bracket(const pc_system *system,
                             const char *f,
                             const char *g,
                             double t,
@@ -1521,7 +1622,7 @@ pc_status pc_system_bracket(pc_system *system,
  * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
  * derives, as pc_system_new does.
  */
-pc_status pc_system_to_momenta(pc_system *system,
+pc_status pc_system_to_momenta(const pc_system *system,
                                double t,
                                const double *y,
                                size_t y_length,
@@ -1533,7 +1634,7 @@ pc_status pc_system_to_momenta(pc_system *system,
  * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
  * as pc_system_new does.
  */
-pc_status pc_system_to_quasi_velocities(pc_system *system,
+pc_status pc_system_to_quasi_velocities(const pc_system *system,
                                         double t,
                                         const double *y,
                                         size_t y_length,
@@ -1616,6 +1717,13 @@ int pc_kernel_jacobian(double t,
                        const double *y,
                        double *jacobian,
                        void *kernel);
+
+/**
+ * Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
+ * the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are not
+ * numbers then; −1 for what no step helps, and the rates of those after it are not written.
+ */
+int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 
 /**
  * The dimension of a kernel's state. 0 of NULL.
@@ -1706,6 +1814,17 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
                                    void *user,
                                    pc_error **error);
+
+/**
+ * The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
+ * once: by this call if it fails or `observer` is NULL, else when another observer takes its
+ * place or the solver is freed. It must not use the solver while that is being freed.
+ */
+pc_status pc_solver_set_event_observer(pc_solver *solver,
+                                       pc_event_observer observer,
+                                       void *user,
+                                       pc_destroy destroy,
+                                       pc_error **error);
 
 /**
  * Follows an event of the program's own, after those of the model and those added before:
@@ -1881,7 +2000,8 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
  * An integration from a checkpoint, with the parameters of the system as they are now. It goes
  * on as the one did that was written if system, parameters and options are the same. `options`
  * may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
- * unchanged. The work of the solver is counted from there.
+ * unchanged, and of a model with the same names and equations; values of parameters may differ.
+ * The work of the solver is counted from there.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,

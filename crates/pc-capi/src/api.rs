@@ -1,13 +1,14 @@
 //! The functions of pc.h, a file for each group of them.
 //!
 //! In go numbers and pointers, which `ffi` checks, out come those of the crates below; what is remembered between two calls
-//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `rates`, `mechanics`,
-//! `kernel`, `legendre`, `bracket`, `source`, `verify`. Motions: `options`, `solver`, `observe`, `events`, `occurrences`,
+//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! `kernel`, `legendre`, `bracket`, `source`, `verify`. Motions: `options`, `cancel`, `solver`, `observe`, `events`, `occurrences`,
 //! `force`, `dense`, `checkpoint`, `statistics`, `ensemble`. The library: `version`.
 
 pub(crate) mod bodies;
 pub(crate) mod bracket;
 pub(crate) mod builder;
+pub(crate) mod cancel;
 pub(crate) mod checkpoint;
 pub(crate) mod dense;
 pub(crate) mod ensemble;
@@ -17,6 +18,7 @@ pub(crate) mod kernel;
 pub(crate) mod legendre;
 pub(crate) mod mechanics;
 pub(crate) mod model;
+pub(crate) mod names;
 pub(crate) mod observe;
 pub(crate) mod occurrences;
 pub(crate) mod options;

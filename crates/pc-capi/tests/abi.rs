@@ -41,7 +41,7 @@ macro_rules! places {
 #[test]
 fn members_stand_where_the_interface_says() {
     let places = places! {
-        pc_system_options { size, form, reserved }
+        pc_system_options { size, form, reserved, memory_limit, time_limit, cancel }
         pc_solver_options {
             size, method, iteration, linear_solver, max_order, relative_tolerance, absolute_tolerance, absolute_tolerances,
             absolute_tolerances_length, max_steps, initial_step, min_step, max_step, stop_time,
@@ -120,6 +120,7 @@ fn what_is_added_breaks_no_program_and_what_goes_or_changes_does() {
         ("*values;", "*values; int last;"),
         ("void pc", "int pc_thing_count(void); void pc"),
         ("pc_thing *thing)", "pc_thing *object)"),
+        ("void pc_thing_free(pc_thing *", "void pc_thing_free(const pc_thing *"),
     ] {
         assert_eq!(with(from, to), Ok(()), "{to}");
     }
@@ -128,6 +129,12 @@ fn what_is_added_breaks_no_program_and_what_goes_or_changes_does() {
         ("int kind;", "int first; int kind;", "struct pc_choice: 8 int kind"),
         ("int kind;", "unsigned kind;", "struct pc_choice: 8 int kind"),
         ("void *user", "int user", "callback int (*pc_watch)(double, void *)"),
+        (
+            "pc_thing_use(const pc_thing",
+            "pc_thing_use(pc_thing",
+            "pc_end pc_thing_use(const pc_thing *, pc_watch)",
+        ),
+        ("void *user", "const void *user", "callback int (*pc_watch)(double, void *)"),
         ("void pc_thing_free", "int pc_thing_free", "void pc_thing_free(pc_thing *)"),
         ("void pc_thing_free(pc_thing *thing);", "", "void pc_thing_free(pc_thing *)"),
     ] {

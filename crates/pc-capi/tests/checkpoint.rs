@@ -8,7 +8,7 @@ mod common;
 use std::ffi::{c_char, c_void};
 use std::ptr;
 
-use common::{Refusal, Solver, System, c, call, sharp, taken};
+use common::{Model, Refusal, Solver, System, c, call, sharp, taken};
 use pc::pc_status::*;
 use pc::*;
 
@@ -174,14 +174,10 @@ fn wrong_calls_are_refused() {
     solver.advance(1.0).0.unwrap();
     let bytes = checkpoint(&solver, ptr::null()).unwrap();
     let refusal = Solver::restored(&ball, &options, &bytes).err().unwrap();
-    assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{}", refusal.message);
+    assert_eq!(refusal.status, PC_INVALID_CHECKPOINT, "{}", refusal.message);
     let events = checkpoint(&bouncing, ptr::null()).unwrap();
     let refusal = Solver::restored(&system, &options, &events).err().unwrap();
-    assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{}", refusal.message);
-    let refusal = Solver::restored(&System::of("rod"), &options, &bytes).err();
-    assert!(refusal.is_none()); // of as many components: what it is of, the label says
-    let refusal = Solver::restored(&System::of("euler-top"), &options, &bytes).err().unwrap();
-    assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{}", refusal.message);
+    assert_eq!(refusal.status, PC_INVALID_CHECKPOINT, "{}", refusal.message);
     let latin = [b'\xff', 0];
     let refusal = checkpoint(&solver, latin.as_ptr().cast()).unwrap_err();
     assert_eq!(refusal.message, "label is not UTF-8 text: byte number 0 (from 0) does not fit");
@@ -241,16 +237,44 @@ fn wrong_calls_are_refused() {
     }
 }
 
-/// Also where what is to be kept would be looked up at its start.
+/// A system of this text, with values of its parameters.
+fn oscillator(text: &str) -> System {
+    Model::text(text).unwrap().system(pc_form::PC_POINCARE).unwrap()
+}
+
 #[test]
-fn a_checkpoint_of_a_longer_state_is_refused() {
-    let top = Solver::of(&System::of("heavy-top-quaternion"), &sharp());
-    let bytes = checkpoint(&top, ptr::null()).unwrap();
+fn a_checkpoint_of_another_model_is_refused() {
+    let text = "[parameters]\nk = 4.0\n[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"k*x^2/2\"\n";
+    let system = oscillator(text);
+    let solver = Solver::of(&system, &sharp());
+    solver.advance(1.0).0.unwrap();
+    let bytes = checkpoint(&solver, c"x".as_ptr()).unwrap();
+    let said = "the checkpoint is of another model: its names, their number or its equations are not those of the system";
+    // Other equations, other names, another number of components, another form.
+    for (from, to) in [("k*x^2/2", "k*x^4/2"), ("x", "z"), ("k", "c"), ("x'^2/2", "x'^2/3")] {
+        let other = oscillator(&text.replace("kinetic", "T").replace(from, to).replace("T =", "kinetic ="));
+        let refusal = Solver::restored(&other, &sharp(), &bytes).err().unwrap();
+        assert_eq!((refusal.status, refusal.message.as_str()), (PC_INVALID_CHECKPOINT, said), "{to}");
+    }
+    for name in ["heavy-top-quaternion", "rod", "bouncing-ball"] {
+        let refusal = Solver::restored(&System::of(name), &sharp(), &bytes).err().unwrap();
+        assert_eq!((refusal.status, refusal.message.as_str()), (PC_INVALID_CHECKPOINT, said), "{name}");
+    }
+    let canonical = Model::text(text).unwrap().system(pc_form::PC_CANONICAL).unwrap();
+    assert_eq!(Solver::restored(&canonical, &sharp(), &bytes).err().unwrap().message, said);
+    // With other values it is the same model: x = cos 2t goes on as that with k = 9.
+    let stiffer = oscillator(&text.replace("4.0", "9.0"));
+    let other = Solver::restored(&stiffer, &sharp(), &bytes).unwrap();
+    let (x, v) = (2.0f64.cos(), -2.0 * 2.0f64.sin());
+    let expected = [x * 3.0f64.cos() + v / 3.0 * 3.0f64.sin(), v * 3.0f64.cos() - 3.0 * x * 3.0f64.sin()];
+    assert_near(&other.advance(2.0).1, &expected, 1e-9); // some hundred steps of 1e-13
+}
+
+#[test]
+fn a_checkpoint_without_a_model_is_refused() {
+    let bytes = pc_solve::Checkpoint::start(0.0, &System::of("rod").start().1).to_bytes("mine");
+    assert_eq!(label(&bytes).as_deref(), Ok("mine"));
     let refusal = Solver::restored(&System::of("rod"), &sharp(), &bytes).err().unwrap();
-    assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
-    assert_eq!(refusal.message, "the start: 7 numbers for 6 components");
-    let rod = Solver::of(&System::of("rod"), &sharp());
-    let bytes = checkpoint(&rod, ptr::null()).unwrap();
-    let refusal = Solver::restored(&System::of("heavy-top-quaternion"), &sharp(), &bytes).err().unwrap();
-    assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
+    assert_eq!(refusal.status, PC_INVALID_CHECKPOINT);
+    assert!(refusal.message.ends_with("pc_solver_checkpoint did not write it"), "{}", refusal.message);
 }

@@ -227,14 +227,25 @@ fn what_there_is_not_is_not_found() {
 fn options_are_checked() {
     let (model, of) = (Model::named("euler-top"), System::of("euler-top"));
     let mut system = ptr::null_mut();
-    for (size, form) in [(0, 0), (17 + size_of::<pc_system_options>(), 0), (16, 2), (16, -1)] {
-        let options = pc_system_options { size, form, reserved: 0 };
+    let usual = pc_system_options::default();
+    for (size, form, reserved, time_limit) in [
+        (0, 0, 0, 0.0),
+        (17 + size_of::<pc_system_options>(), 0, 0, 0.0),
+        (16, 2, 0, 0.0),
+        (16, -1, 0, 0.0),
+        (16, 0, 1, 0.0),
+        (usual.size, 0, -1, 0.0),
+        (usual.size, 0, 0, -1.0),
+        (usual.size, 0, 0, f64::NAN),
+    ] {
+        let options = pc_system_options { size, form, reserved, time_limit, ..usual };
         // SAFETY: live objects.
         let refused =
             call(|error| unsafe { pc_system_new(model.0, &raw const options, &raw mut system, error) });
         assert_eq!(status(refused), PC_INVALID_ARGUMENT, "{size} {form}");
     }
-    let changes: [fn(&mut pc_solver_options); 9] = [
+    let changes: [fn(&mut pc_solver_options); 10] = [
+        |options| options.reserved = 1,
         |options| options.size = 1 << 40,
         |options| options.method = 7,
         |options| options.iteration = -7,

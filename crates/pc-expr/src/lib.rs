@@ -63,6 +63,7 @@ pub use ode::events::{Direction, Event, Events};
 pub use ode::pattern::Pattern;
 pub use ode::vector_field::{Failure, VectorField};
 pub use print::text::Style;
+pub use program::digest::Digest;
 pub use program::fuse::Cost;
 pub use program::program::{Inputs, Instruction, Program, Register};
 pub use time_profile::profile::{Surprises, TimeDependence, TimeProfile};

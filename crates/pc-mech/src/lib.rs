@@ -244,7 +244,7 @@ pub use system::bodies::particle::Particle;
 pub use system::bodies::rigid_body::{Inertia, RigidBody};
 pub use system::bodies::velocity::BodyVelocity;
 pub use system::builder::SystemBuilder;
-pub use system::external_force::ExternalForce;
+pub use system::external_force::{ExternalForce, difference_quotients};
 pub use system::signals::{Interpolation, OutsideTable, Signals, Table, TableError};
 pub use system::system::System;
 pub use transform::velocities::VelocityTransform;

@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 29] = [
+const FILES: [&str; 31] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -58,9 +58,11 @@ const FILES: [&str; 29] = [
     "api/builder.rs",
     "api/bodies.rs",
     "api/settings.rs",
+    "api/cancel.rs",
     "api/options.rs",
     "machinery/system.rs",
     "api/system.rs",
+    "api/names.rs",
     "api/force.rs",
     "api/rates.rs",
     "api/observe.rs",

@@ -2,7 +2,8 @@
 //!
 //! One line for each function (names of parameters left out, which no program sees), member of a structure with its place in
 //! bytes, constant of an enumeration, handle and type of callback, below the version of the whole. A line that goes, or becomes
-//! another, breaks programs; one that comes does not: structures are handed over with their sizes and grow at the end.
+//! another, breaks programs; one that comes does not: structures are handed over with their sizes and grow at the end. Nor does a
+//! parameter that points to what is only read from now on.
 
 use std::collections::BTreeSet;
 
@@ -24,7 +25,8 @@ pub(crate) fn interface(header: &str, version: u32) -> String {
 /// The lines that programs miss, if the version is the same.
 pub(crate) fn replaces(new: &str, old: &str) -> Result<(), String> {
     let known: BTreeSet<&str> = new.lines().collect();
-    let lost: Vec<&str> = old.lines().filter(|line| !known.contains(line)).collect();
+    let is_there = |line: &str| known.contains(line) || new.lines().any(|new| takes_as_much(new, line));
+    let lost: Vec<&str> = old.lines().filter(|line| !is_there(line)).collect();
     if lost.is_empty() || new.lines().next() != old.lines().next() {
         return Ok(());
     }
@@ -33,6 +35,20 @@ pub(crate) fn replaces(new: &str, old: &str) -> Result<(), String> {
          Keep it, or raise PC_ABI_VERSION, in crates/pc-capi/src/api/version.rs and build.rs; then `cargo xtask header`.",
         lost.join("\n  ")
     ))
+}
+
+/// Whether a function is the other one, but that it only reads what parameters point to: what may be written to may be given
+/// there. Not so with a function of the program, which is given them.
+fn takes_as_much(new: &str, old: &str) -> bool {
+    let (Some((new, taken)), Some((old, given))) = (new.split_once('('), old.split_once('(')) else {
+        return false;
+    };
+    let (taken, given) = (taken.split(", "), given.split(", "));
+    let is_same = |(new, old): (&str, &str)| new == old || new.strip_prefix("const ") == Some(old);
+    new == old
+        && !new.starts_with("callback ")
+        && taken.clone().count() == given.clone().count()
+        && taken.zip(given).all(is_same)
 }
 
 /// What stands between semicolons outside braces, without comments and preprocessor, with single spaces.

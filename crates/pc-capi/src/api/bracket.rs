@@ -25,7 +25,7 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// the independent momenta. Each call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_bracket(
-    system: *mut pc_system,
+    system: *const pc_system,
     f: *const c_char,
     g: *const c_char,
     t: f64,
@@ -41,8 +41,8 @@ pub unsafe extern "C" fn pc_system_bracket(
         // SAFETY: null or text, as the preamble demands.
         let (f, g) = unsafe { (text(f, "f")?, text(g, "g")?) };
         let mut bracket = derived(inventory, f, g)?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        evaluate(&mut bracket, (t, &state, inner.field.parameters()), value)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        evaluate(&mut bracket, (t, &inner.room.state, inner.field.parameters()), value)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -50,7 +50,8 @@ pub unsafe extern "C" fn pc_system_bracket(
 
 /// (f, g) as a function of t and (x, η), η those of the state.
 fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallError> {
-    let (model, graph) = (&inventory.model, inventory.model.graph());
+    let model = inventory.model_anew();
+    let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     if assembly.constraints.nonlinear().is_some() {
         let why = "a constraint is not affine in the velocities";

@@ -7,6 +7,7 @@ use pc_solve::Checkpoint;
 use crate::api::options::{pc_solver_options, take};
 use crate::api::solver::{integrate, pc_solver};
 use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{bytes, clear, text, write};
 use crate::ffi::status::pc_status;
@@ -34,7 +35,7 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
         let label = if label.is_null() { c"".as_ptr() } else { label };
         // SAFETY: text, as the preamble demands.
         let label = unsafe { text(label, "label") }?;
-        let written = integration.checkpoint()?.to_bytes(label);
+        let written = integration.checkpoint()?.to_bytes(&marked(integration.digest(), label));
         // SAFETY: places for results, neither of which is null.
         unsafe {
             write(length, written.len(), "length")?;
@@ -56,7 +57,8 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
 /// An integration from a checkpoint, with the parameters of the system as they are now. It goes
 /// on as the one did that was written if system, parameters and options are the same. `options`
 /// may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
-/// unchanged. The work of the solver is counted from there.
+/// unchanged, and of a model with the same names and equations; values of parameters may differ.
+/// The work of the solver is counted from there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,
@@ -68,7 +70,12 @@ pub unsafe extern "C" fn pc_solver_restore(
 ) -> pc_status {
     let restore = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: null or `length` bytes, as the preamble demands.
-        let (checkpoint, _) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
+        let (checkpoint, label) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
+        match unmarked(&label) {
+            (Some(digest), _) if digest == inner.field.digest() => {}
+            (Some(_), _) => return Err(CallError::OtherModel),
+            (None, _) => return Err(CallError::NoModel),
+        }
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(inventory.dim()) }?;
         let events = Followed::new(inner.events.clone());
@@ -104,10 +111,25 @@ pub unsafe extern "C" fn pc_checkpoint_label(
         // SAFETY: null or `length` bytes, as the preamble demands.
         let (_, found) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
         // SAFETY: as the preamble demands.
-        unsafe { write(label, give(&found), "label") }
+        unsafe { write(label, give(unmarked(&found).1), "label") }
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, read) }
+}
+
+/// What begins the label of a checkpoint that says of which model it is.
+const MARK: &str = "model ";
+
+/// The label with the number of the model before it, which is guarded by what guards the label.
+fn marked(digest: u64, label: &str) -> String {
+    format!("{MARK}{digest:016x}\n{label}")
+}
+
+/// The number of the model, if it is there, and the label.
+fn unmarked(label: &str) -> (Option<u64>, &str) {
+    let parts = label.strip_prefix(MARK).and_then(|rest| rest.split_once('\n'));
+    let read = parts.and_then(|(digest, label)| Some((Some(u64::from_str_radix(digest, 16).ok()?), label)));
+    read.unwrap_or((None, label))
 }
 
 /// Bytes before those handed out, in which their number stands.

@@ -12,7 +12,7 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{numbers, room, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
-use crate::machinery::system::{Inner, Inventory, count, inside, name, pc_system};
+use crate::machinery::system::{Inner, Inventory, Room, count, inside, name, pc_system};
 
 /// In which direction the function of an event passes through zero, as the integration goes.
 #[repr(C)]
@@ -128,7 +128,7 @@ fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -
 /// them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn pc_system_events(
 /// resets nothing leaves it as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
-    system: *mut pc_system,
+    system: *const pc_system,
     event: usize,
     t: f64,
     y: *mut f64,
@@ -164,12 +164,14 @@ pub unsafe extern "C" fn pc_system_event_reset(
             return Err(CallError::Index { what: "the events", index: event, count });
         };
         // SAFETY: as the preamble demands.
-        let mut state = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
+        let given = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
+        let Inner { events, room: Room { state, .. }, .. } = inner;
+        state.copy_from_slice(given);
         if known.resets() {
-            inner.events.reset(event, t, &mut state)?;
+            events.reset(event, t, state)?;
         }
         // SAFETY: as the preamble demands.
-        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&state);
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(state);
         Ok(())
     };
     // SAFETY: as the preamble demands.

@@ -129,6 +129,46 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
     unsafe { evaluate(y, jacobian, kernel, |dim| dim * dim, |motion, y, j| motion.jacobian(t, y, j)) }
 }
 
+/// Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
+/// the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are not
+/// numbers then; −1 for what no step helps, and the rates of those after it are not written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_kernel_rhs_many(
+    t: f64,
+    states: *const f64,
+    count: usize,
+    rates: *mut f64,
+    kernel: *mut c_void,
+) -> c_int {
+    // SAFETY: null or a live kernel, as the documentation demands.
+    let Some(dim) = (unsafe { kernel.cast::<pc_kernel>().as_ref() }).map(|kernel| kernel.dim) else {
+        return -1;
+    };
+    let most = isize::MAX as usize / size_of::<f64>();
+    let Some(len) = dim.checked_mul(count).filter(|&len| len <= most) else { return -1 };
+    if count == 0 {
+        return 0;
+    }
+    if !are_usable((states, len), (rates, len)) {
+        return -1;
+    }
+    let mut answer = 0;
+    for place in (0..len).step_by(dim.max(1)) {
+        // SAFETY: within arrays of that length, as the documentation demands, which are apart.
+        unsafe {
+            match pc_kernel_rhs(t, states.add(place), rates.add(place), kernel) {
+                0 => {}
+                1 => {
+                    fresh(rates.add(place), dim);
+                    answer = 1;
+                }
+                fatal => return fatal,
+            }
+        }
+    }
+    answer
+}
+
 /// # Safety
 /// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its
 /// state, `target` null or as long as `len` says.

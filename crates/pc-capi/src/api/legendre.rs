@@ -9,16 +9,21 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
-    /// The transform of the state, derived when first asked for.
-    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
+    /// Derives the transform of the state when it is first asked for.
+    pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
-            let model = &inventory.model;
+            let model = inventory.model_anew();
             let graph = model.graph();
             let assembly = model.assemble(&graph)?;
             let mut transform = assembly.legendre_transform(inventory.variables)?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }
+        Ok(())
+    }
+
+    fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
+        self.derive_legendre(inventory)?;
         const MISSING: CallError =
             CallError::Unsupported { what: "the transform", why: "it was not derived" };
         self.legendre.as_mut().ok_or(MISSING)
@@ -29,7 +34,7 @@ impl Inner {
 /// derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_momenta(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -39,14 +44,14 @@ pub unsafe extern "C" fn pc_system_to_momenta(
 ) -> pc_status {
     let (state, target) = (State { y, length: y_length }, (result, result_length));
     // SAFETY: as the preamble demands.
-    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta) }
+    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta_in) }
 }
 
 /// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
 /// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_quasi_velocities(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -56,26 +61,25 @@ pub unsafe extern "C" fn pc_system_to_quasi_velocities(
 ) -> pc_status {
     let (state, target) = (State { y, length: y_length }, (result, result_length));
     // SAFETY: as the preamble demands.
-    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_quasi_velocities) }
+    unsafe { transformed(system, t, state, target, error, LegendreTransform::to_quasi_velocities_in) }
 }
 
 /// # Safety
 /// As the preamble demands.
 unsafe fn transformed(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     state: State,
     (data, length): (*mut f64, usize),
     error: *mut *mut pc_error,
-    transform: impl FnOnce(&mut LegendreTransform, f64, &[f64]) -> Result<Vec<f64>, MechError>,
+    transform: impl FnOnce(&mut LegendreTransform, f64, &[f64], &mut [f64]) -> Result<(), MechError>,
 ) -> pc_status {
     let transform = |inventory: &Inventory, inner: &mut Inner| {
         let dim = inventory.dim();
         let target = Target { data, length, expected: dim, what: "result" };
         // SAFETY: as promised.
         let (y, result) = unsafe { slices(state, dim, target) }?;
-        result.copy_from_slice(&transform(inner.legendre(inventory)?, t, y)?);
-        Ok(())
+        Ok(transform(inner.legendre(inventory)?, t, y, result)?)
     };
     // SAFETY: as promised.
     unsafe { inside(system, error, transform) }

@@ -10,29 +10,38 @@ use crate::ffi::pointer::{apart, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::mechanics::{Mechanics, evaluate};
 use crate::machinery::motion_field::MotionField;
-use crate::machinery::system::{Inner, Inventory, inside, pc_system};
+use crate::machinery::system::{Inner, Inventory, Room, inside, pc_system};
 
 impl Inner {
     /// The parts of the equations, derived when first asked for, with the motion.
-    fn mechanics(&mut self, inventory: &Inventory) -> Result<(&mut Mechanics, &mut MotionField), CallError> {
+    fn mechanics(
+        &mut self,
+        inventory: &Inventory,
+    ) -> Result<(&mut Mechanics, &mut MotionField, &mut Room), CallError> {
         if self.mechanics.is_none() {
-            self.mechanics = Some(Mechanics::of(&inventory.model, inventory.variables)?);
+            self.mechanics = Some(Mechanics::of(&inventory.model_anew(), inventory.variables)?);
         }
         const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
-        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field))
+        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
     }
 
-    /// The state (x, η) of a state.
-    pub(crate) fn in_quasi_velocities(
+    /// Leaves the state (x, η) of a state in the room for one.
+    pub(crate) fn read_quasi_velocities(
         &mut self,
         inventory: &Inventory,
         t: f64,
         y: &[f64],
-    ) -> Result<Vec<f64>, CallError> {
+    ) -> Result<(), CallError> {
         match inventory.variables {
-            Variables::QuasiVelocities => Ok(y.to_vec()),
-            Variables::Momenta => Ok(self.legendre(inventory)?.to_quasi_velocities(t, y)?),
+            Variables::QuasiVelocities => self.room.state.copy_from_slice(y),
+            Variables::Momenta => {
+                self.derive_legendre(inventory)?;
+                if let Some(transform) = &mut self.legendre {
+                    transform.to_quasi_velocities_in(t, y, &mut self.room.state)?;
+                }
+            }
         }
+        Ok(())
     }
 }
 
@@ -42,7 +51,7 @@ impl Inner {
 /// as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -55,9 +64,39 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
         let target = Target { data: matrix, length, expected: k * k, what: "matrix" };
         // SAFETY: as the preamble demands.
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        evaluate(&mut mechanics.mass, (t, &state, motion.parameters()), matrix)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, Room { state, .. }) = inner.mechanics(inventory)?;
+        evaluate(&mut mechanics.mass, (t, state, motion.parameters()), matrix)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
+/// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, k and M as of
+/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of multipliers.
+/// The first call derives, as pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_right_hand_side(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    right: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compute = |inventory: &Inventory, inner: &mut Inner| {
+        let (dim, k) = (inventory.dim(), inner.field.quasi_velocities());
+        let target = Target { data: right, length, expected: k, what: "right" };
+        // SAFETY: as the preamble demands.
+        let (y, right) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, room) = inner.mechanics(inventory)?;
+        let n = motion.coordinates();
+        let (values, state) = room.split(dim);
+        evaluate(&mut mechanics.right, (t, state, motion.inputs(t, y)?), values)?;
+        right.copy_from_slice(&values[n..n + k]);
+        Ok(())
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -68,12 +107,12 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
 /// first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_operator_count(
-    system: *mut pc_system,
+    system: *const pc_system,
     operators: *mut usize,
     error: *mut *mut pc_error,
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
-        let (mechanics, _) = inner.mechanics(inventory)?;
+        let (mechanics, ..) = inner.mechanics(inventory)?;
         // SAFETY: null or a place for a number, as the preamble demands.
         unsafe { write(operators, mechanics.operators, "operators") }
     };
@@ -86,7 +125,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
 /// 1)*K. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_structure_coefficients(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -99,9 +138,9 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
         let target = Target { data: c, length, expected, what: "c" };
         // SAFETY: as the preamble demands.
         let (y, c) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        let state = inner.in_quasi_velocities(inventory, t, y)?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        evaluate(&mut mechanics.structure, (t, &state, motion.parameters()), c)
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, Room { state, .. }) = inner.mechanics(inventory)?;
+        evaluate(&mut mechanics.structure, (t, state, motion.parameters()), c)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -113,7 +152,7 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
 /// be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -133,25 +172,24 @@ pub unsafe extern "C" fn pc_system_residual(
         let ydot = unsafe { numbers(ydot, ydot_length, dim, "ydot") }?;
         // SAFETY: as the preamble demands.
         let (y, residual) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
-        let (mechanics, motion) = inner.mechanics(inventory)?;
-        let n = motion.coordinates();
-        let mut rates = ydot.to_vec();
+        let (mechanics, motion, room) = inner.mechanics(inventory)?;
+        let (n, k) = (motion.coordinates(), motion.quasi_velocities());
+        let (mass, rates) = room.split(k * k);
+        rates.copy_from_slice(ydot);
         if !mechanics.complete {
             motion.rhs(t, y, residual)?;
             for (rate, right) in rates.iter_mut().zip(&*residual) {
                 *rate -= right;
             }
             if inventory.variables == Variables::Momenta {
-                residual.copy_from_slice(&rates);
+                residual.copy_from_slice(rates);
                 return Ok(());
             }
             residual.fill(0.0);
         } else {
             evaluate(&mut mechanics.right, (t, y, motion.inputs(t, y)?), residual)?;
         }
-        let k = motion.quasi_velocities();
-        let mut mass = vec![0.0; k * k];
-        evaluate(&mut mechanics.mass, (t, y, motion.parameters()), &mut mass)?;
+        evaluate(&mut mechanics.mass, (t, y, motion.parameters()), mass)?;
         for i in 0..n {
             residual[i] = rates[i] - residual[i];
         }

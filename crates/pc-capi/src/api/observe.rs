@@ -13,7 +13,7 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// also where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -26,7 +26,7 @@ pub unsafe extern "C" fn pc_system_observe(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.observe(t, y));
+        inner.field.observe(t, y, values);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -45,7 +45,7 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
 /// should stay constant, which are the first of the observables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -58,7 +58,9 @@ pub unsafe extern "C" fn pc_system_integrals(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.observe_unforced(t, y)[..expected]);
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe_unforced(t, y, all);
+        values.copy_from_slice(&all[..expected]);
         all_finite("an integral", values)
     };
     // SAFETY: as the preamble demands.
@@ -68,7 +70,7 @@ pub unsafe extern "C" fn pc_system_integrals(
 /// Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_energy(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -79,8 +81,10 @@ pub unsafe extern "C" fn pc_system_energy(
         let target = Target { data: energy, length: 1, expected: 1, what: "energy" };
         // SAFETY: as the preamble demands.
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe_unforced(t, y, all);
         // The last of those that should stay constant.
-        energy[0] = inner.field.observe_unforced(t, y)[inventory.conserved - 1];
+        energy[0] = all[inventory.conserved - 1];
         all_finite("the energy", energy)
     };
     // SAFETY: as the preamble demands.
@@ -91,7 +95,7 @@ pub unsafe extern "C" fn pc_system_energy(
 /// they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -109,7 +113,8 @@ pub unsafe extern "C" fn pc_system_reactions(
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         inner.field.inputs(t, y)?;
-        let all = inner.field.observe(t, y);
+        let all = inner.room.numbers(inventory.observables.len());
+        inner.field.observe(t, y, all);
         for (value, &place) in values.iter_mut().zip(reactions) {
             *value = all[place];
         }
@@ -123,7 +128,7 @@ pub unsafe extern "C" fn pc_system_reactions(
 /// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -136,7 +141,7 @@ pub unsafe extern "C" fn pc_system_constraint_residuals(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
-        values.copy_from_slice(&inner.field.constraint_residuals(t, y));
+        inner.field.constraint_residuals(t, y, values);
         all_finite("a constraint", values)
     };
     // SAFETY: as the preamble demands.

@@ -54,12 +54,43 @@ pub unsafe extern "C" fn pc_solver_observe_events(
     user: *mut c_void,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let observe = |integration: &mut Integration, _: usize| {
-        integration.record.observer = observer.map(|function| Observer { function, user });
+    // SAFETY: as the preamble demands.
+    unsafe { observe(solver, observer, User { data: user, destroy: None }, error) }
+}
+
+/// The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
+/// once: by this call if it fails or `observer` is NULL, else when another observer takes its
+/// place or the solver is freed. It must not use the solver while that is being freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_solver_set_event_observer(
+    solver: *mut pc_solver,
+    observer: pc_event_observer,
+    user: *mut c_void,
+    destroy: pc_destroy,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { observe(solver, observer, User { data: user, destroy }, error) }
+}
+
+/// # Safety
+/// As the preamble demands.
+unsafe fn observe(
+    solver: *mut pc_solver,
+    observer: pc_event_observer,
+    user: User,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let mut unused = observer.map(|function| Observer { function, user });
+    let exchange = |integration: &mut Integration, _: usize| {
+        std::mem::swap(&mut integration.record.observer, &mut unused);
         Ok(())
     };
-    // SAFETY: as the preamble demands.
-    unsafe { integrate(solver, error, observe) }
+    // SAFETY: as promised.
+    let status = unsafe { integrate(solver, error, exchange) };
+    // What is not used any more goes when the solver is not in use: `destroy` may call functions on it.
+    drop(unused);
+    status
 }
 
 /// Follows an event of the program's own, after those of the model and those added before:

@@ -1,10 +1,13 @@
 //! Options: structures that may grow, each beginning with its size.
 
 use std::ffi::c_int;
+use std::time::Duration;
 
 use ::pc_model::Variables;
+use pc_expr::Limits;
 use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
+use crate::api::cancel::pc_cancel;
 use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{aligned, numbers};
 
@@ -28,11 +31,27 @@ pub struct pc_system_options {
     pub form: c_int,
     /// 0: room for a choice to come.
     pub reserved: c_int,
+    /// Most bytes that the expressions of a derivation may take, as they are estimated; 0, the
+    /// default, for 4 GiB. Beyond it, PC_LIMIT. It holds for pc_system_new, and for each later
+    /// call that derives by itself, as do the next two.
+    pub memory_limit: u64,
+    /// Most seconds that a derivation may take, positive; 0, the default, for no limit.
+    pub time_limit: f64,
+    /// By which derivations are ended; NULL, the default, for none. It may be freed when
+    /// pc_system_new has returned.
+    pub cancel: *const pc_cancel,
 }
 
 impl Default for pc_system_options {
     fn default() -> Self {
-        pc_system_options { size: size_of::<Self>(), form: pc_form::PC_POINCARE as c_int, reserved: 0 }
+        pc_system_options {
+            size: size_of::<Self>(),
+            form: pc_form::PC_POINCARE as c_int,
+            reserved: 0,
+            memory_limit: 0,
+            time_limit: 0.0,
+            cancel: std::ptr::null(),
+        }
     }
 }
 
@@ -45,6 +64,35 @@ impl pc_system_options {
             value => Err(CallError::Choice { what: "pc_form", value: value.into() }),
         }
     }
+
+    /// What a derivation may take.
+    ///
+    /// # Safety
+    /// `cancel` is null or a live handle.
+    pub(crate) unsafe fn limits(&self) -> Result<Limits, CallError> {
+        unreserved("pc_system_options.reserved", self.reserved.into())?;
+        let mut limits = Limits::default();
+        if self.memory_limit != 0 {
+            limits.memory = self.memory_limit;
+        }
+        if self.time_limit.is_nan() || self.time_limit < 0.0 {
+            return Err(CallError::TimeLimit { value: self.time_limit });
+        }
+        if self.time_limit != 0.0 {
+            // More seconds than can be counted are no limit.
+            limits.time = Duration::try_from_secs_f64(self.time_limit).ok();
+        }
+        // SAFETY: as promised.
+        if let Some(handle) = unsafe { self.cancel.as_ref() } {
+            limits.cancel = handle.cancel.clone();
+        }
+        Ok(limits)
+    }
+}
+
+/// Refuses a choice that is not known here.
+fn unreserved(what: &'static str, value: i64) -> Result<(), CallError> {
+    if value == 0 { Ok(()) } else { Err(CallError::Reserved { what, value }) }
 }
 
 /// The method of integration; values of pc_solver_options.method.
@@ -208,6 +256,7 @@ impl pc_solver_options {
     /// # Safety
     /// The tolerances are null or as many numbers as said.
     pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, CallError> {
+        unreserved("pc_solver_options.reserved", self.reserved.into())?;
         let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };
         let mut options = Options::new(match self.method {
             0 => Method::Adams,

@@ -9,7 +9,7 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{apart, are_usable, finite, fresh, numbers, room, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::system::{Inner, Inventory, holding, inside, pc_system};
+use crate::machinery::system::{Inner, Inventory, Room, holding, inside, pc_system};
 
 /// A state from C.
 #[derive(Clone, Copy)]
@@ -74,7 +74,7 @@ unsafe fn misfits<'a>(
 /// only where that happens during its evaluation, and where it fails while the handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -125,7 +125,7 @@ unsafe fn rates_without_lock(
 /// Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jacobian(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -184,7 +184,7 @@ const NO_PATTERN: CallError =
 /// Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_sparse_jacobian(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -207,7 +207,7 @@ pub unsafe extern "C" fn pc_system_sparse_jacobian(
 /// Writes the product (∂f/∂y) v; all three arrays have the length dim.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jvp(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *const f64,
     y_length: usize,
@@ -228,13 +228,43 @@ pub unsafe extern "C" fn pc_system_jvp(
         // SAFETY: as the preamble demands.
         let (y, product) = unsafe { slices(state, dim, target) }?;
         let pattern = inventory.pattern.as_ref().ok_or(NO_PATTERN)?;
-        let mut values = vec![0.0; pattern.len()];
-        inner.field.sparse_jacobian(t, y, &mut values)?;
+        let values = inner.room.numbers(pattern.len());
+        inner.field.sparse_jacobian(t, y, values)?;
         product.fill(0.0);
-        for ((i, j), value) in pattern.entries().zip(values) {
+        for ((i, j), value) in pattern.entries().zip(&*values) {
             product[i] += value * v[j];
         }
         Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
+/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product:
+/// by each parameter while the others, also those that follow it, stay; by an input with a table
+/// that by its values. PC_UNSUPPORTED unless pc_model_differentiate was asked, or there are
+/// external forces.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_parameter_jacobian(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    jacobian: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        if !inner.field.has_parameter_jacobian() {
+            let why = "pc_model_differentiate was not asked";
+            return Err(CallError::Unsupported { what: "∂f/∂p", why });
+        }
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let expected = dim * inventory.parameters.len();
+        let target = Target { data: jacobian, length, expected, what: "jacobian" };
+        // SAFETY: as the preamble demands.
+        let (y, jacobian) = unsafe { slices(state, dim, target) }?;
+        Ok(inner.field.parameter_jacobian(t, y, jacobian)?)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -245,7 +275,7 @@ pub unsafe extern "C" fn pc_system_jvp(
 /// pc_system_keep_from said. Where there is nothing to be kept it stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
-    system: *mut pc_system,
+    system: *const pc_system,
     t: f64,
     y: *mut f64,
     y_length: usize,
@@ -253,12 +283,14 @@ pub unsafe extern "C" fn pc_system_project(
 ) -> pc_status {
     let project = |inventory: &Inventory, inner: &mut Inner| {
         // SAFETY: as the preamble demands.
-        let mut projected = unsafe { numbers(y, y_length, inventory.dim(), "y") }?.to_vec();
-        if inner.field.has_projection() {
-            inner.field.project(t, &mut projected)?;
+        let given = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
+        let Inner { field, room: Room { state, .. }, .. } = inner;
+        state.copy_from_slice(given);
+        if field.has_projection() {
+            field.project(t, state)?;
         }
         // SAFETY: as the preamble demands.
-        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&projected);
+        unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(state);
         Ok(())
     };
     // SAFETY: as the preamble demands.

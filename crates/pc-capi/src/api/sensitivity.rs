@@ -29,7 +29,7 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
         if parameter >= values.len() {
             return Err(CallError::Index { what: "parameter", index: parameter, count: values.len() });
         }
-        let mut model = inventory.model.clone();
+        let mut model = inventory.model_anew();
         // Those that follow others have followed when their turn comes.
         for (place, &value) in values.iter().enumerate() {
             let known = model.parameters().nth(place).map(|(name, known)| (name.to_owned(), known));

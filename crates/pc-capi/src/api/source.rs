@@ -56,7 +56,8 @@ pub unsafe extern "C" fn pc_system_print(
 }
 
 fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
-    let (model, graph) = (&inventory.model, inventory.model.graph());
+    let model = inventory.model_anew();
+    let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let form = match inventory.variables {
         Variables::QuasiVelocities => Form::Poincare,
@@ -102,7 +103,8 @@ pub unsafe extern "C" fn pc_system_emit_c(
 }
 
 fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
-    let (model, graph) = (&inventory.model, inventory.model.graph());
+    let model = inventory.model_anew();
+    let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let equations = assembly.equations()?;
     let mut options = EmitOptions::new(Language::C, name);

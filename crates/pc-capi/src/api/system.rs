@@ -25,11 +25,15 @@ pub unsafe extern "C" fn pc_system_new(
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(system, "system") }?;
         // SAFETY: as the preamble demands.
-        let options = unsafe { take(options, "options") }?;
+        let options = unsafe { take::<pc_system_options>(options, "options") }?;
         let variables = options.variables()?;
         // SAFETY: as the preamble demands.
+        let limits = unsafe { options.limits() }?;
+        // SAFETY: as the preamble demands.
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
-        let derived = pc_system::new(contents.model()?, variables, contents.observes_reactions)?;
+        let mut model = contents.model()?;
+        model.limit(limits);
+        let derived = pc_system::new(model, variables, contents.observes_reactions)?;
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };
@@ -209,7 +213,7 @@ pub unsafe extern "C" fn pc_system_set_parameters(
             finite(value, "a parameter")?;
         }
         inner.values.set_all(values);
-        system.set_parameters(inner, |parameters| parameters.copy_from_slice(values));
+        system.take_values(inner);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -238,8 +242,7 @@ pub unsafe extern "C" fn pc_system_set_parameter(
             });
         }
         inner.values.set(index, value);
-        let values = inner.values.values().to_vec();
-        system.set_parameters(inner, |parameters| parameters.copy_from_slice(&values));
+        system.take_values(inner);
         Ok(())
     };
     // SAFETY: as the preamble demands.

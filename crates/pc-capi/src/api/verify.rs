@@ -40,7 +40,7 @@ pub unsafe extern "C" fn pc_system_verify(
 }
 
 fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, CallError> {
-    let mut model = inventory.model.clone();
+    let mut model = inventory.model_anew();
     let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
     for (name, &value) in names.iter().zip(parameters) {
         model.set(name, value)?;

@@ -19,6 +19,12 @@ pub extern "C" fn pc_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
+/// The PC_ABI_VERSION of the library that runs.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_abi_version() -> u32 {
+    PC_ABI_VERSION
+}
+
 /// The head of the header: what is true of every function.
 pub const PREAMBLE: &str = "\
 /*
@@ -63,9 +69,10 @@ pub const PREAMBLE: &str = "\
  * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
  * safe, as ever.) Different handles are independent; to evaluate on many threads, give each its
  * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
- * call. Names and sizes may be read at any time, by any number of threads.
+ * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
+ * That a function takes a handle as `const` says that what it computes stays, no more.
  *
- * Not for signal handlers. A fault of the library is PC_INTERNAL and does not end your program;
- * memory that is exhausted does, and a stack: threads that make models and systems need some 256
- * KiB, more for long expressions.
+ * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
+ * does not end your program; memory that is exhausted does, and a stack: threads that make models
+ * and systems need some 256 KiB, more for long expressions.
  */";

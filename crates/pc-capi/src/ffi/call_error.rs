@@ -33,6 +33,10 @@ pub(crate) enum CallError {
     NoValue { what: &'static str, value: f64 },
     #[error("{value} is not a value of {what}")]
     Choice { what: &'static str, value: i64 },
+    #[error("{what} is {value}, but must be 0: this library has no such choice")]
+    Reserved { what: &'static str, value: i64 },
+    #[error("the time limit is {value} s, but must be positive, or 0 for none")]
+    TimeLimit { value: f64 },
     #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
     StructSize { what: &'static str, found: usize, least: usize, most: usize },
     #[error("{what}: there is no number {index}, there are {count}")]
@@ -65,6 +69,14 @@ pub(crate) enum CallError {
     NotEnded,
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    #[error(
+        "the checkpoint is of another model: its names, their number or its equations are not those of the system"
+    )]
+    OtherModel,
+    #[error("the checkpoint does not say of which model it is: pc_solver_checkpoint did not write it")]
+    NoModel,
+    #[error("there is no {what} called `{name}`; there are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
+    UnknownName { what: &'static str, name: String, known: Vec<String> },
     #[error("{0}")]
     Ensemble(#[from] EnsembleError),
     #[error(transparent)]
@@ -98,6 +110,8 @@ impl CallError {
             | CallError::NotFinite { .. }
             | CallError::Overlap { .. }
             | CallError::Choice { .. }
+            | CallError::Reserved { .. }
+            | CallError::TimeLimit { .. }
             | CallError::StructSize { .. }
             | CallError::Index { .. }
             | CallError::NotADraft { .. }
@@ -112,6 +126,7 @@ impl CallError {
             CallError::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
             CallError::Unsupported { .. } | CallError::Verify(_) => pc_status::PC_UNSUPPORTED,
             CallError::NoSuchModel { .. }
+            | CallError::UnknownName { .. }
             | CallError::UnknownParameter(_)
             | CallError::UnknownIntegral(_)
             | CallError::UnknownStart(_)
@@ -129,7 +144,9 @@ impl CallError {
             CallError::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
             CallError::Stopped => pc_status::PC_STOPPED,
             CallError::Terminal => pc_status::PC_EVENT,
-            CallError::Checkpoint(_) => pc_status::PC_INVALID_CHECKPOINT,
+            CallError::Checkpoint(_) | CallError::OtherModel | CallError::NoModel => {
+                pc_status::PC_INVALID_CHECKPOINT
+            }
             CallError::Busy => pc_status::PC_BUSY,
             // Of the solver: its set-up, which fails for want of memory, as threads do.
             CallError::Broken | CallError::Panic { .. } | CallError::Ensemble(_) | CallError::Solve(_) => {

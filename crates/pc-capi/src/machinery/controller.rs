@@ -3,7 +3,7 @@
 use std::ffi::{c_int, c_void};
 use std::sync::Arc;
 
-use pc_mech::{ExternalForce, Failure};
+use pc_mech::{ExternalForce, Failure, difference_quotients};
 
 use crate::ffi::user_data::User;
 
@@ -11,7 +11,11 @@ type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, usize, *m
 
 /// The functions of the forces, if they have been set; copies share them.
 #[derive(Clone, Default)]
-pub(crate) struct Controller(Option<Arc<Callback>>);
+pub(crate) struct Controller {
+    callback: Option<Arc<Callback>>,
+    /// For difference quotients.
+    room: Vec<f64>,
+}
 
 struct Callback {
     function: Function,
@@ -52,7 +56,8 @@ impl NoForce {
 impl Controller {
     /// The forces that `function` computes, and `jacobian` derives if there is one.
     pub(crate) fn new(function: Function, jacobian: Option<Function>, user: User) -> Controller {
-        Controller(Some(Arc::new(Callback { function, jacobian, user: Shared(user) })))
+        let callback = Callback { function, jacobian, user: Shared(user) };
+        Controller { callback: Some(Arc::new(callback)), room: Vec::new() }
     }
 }
 
@@ -66,23 +71,19 @@ impl Callback {
 
 impl ExternalForce for Controller {
     fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
-        let callback = self.0.as_ref().ok_or_else(|| Failure::fatal(NoForce::Unset))?;
+        let callback = self.callback.as_ref().ok_or_else(|| Failure::fatal(NoForce::Unset))?;
         NoForce::read(callback.call(callback.function, t, y, q), NoForce::Function)
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
-        match self.0.as_ref().and_then(|callback| Some((callback, callback.jacobian?))) {
+        match self.callback.as_ref().and_then(|callback| Some((callback, callback.jacobian?))) {
             Some((callback, jacobian)) => NoForce::read(callback.call(jacobian, t, y, dq), NoForce::Jacobian),
-            None => Quotients(self).jacobian(t, y, dq),
+            None => {
+                let mut room = std::mem::take(&mut self.room);
+                let outcome = difference_quotients(self, (t, y), dq, &mut room);
+                self.room = room;
+                outcome
+            }
         }
-    }
-}
-
-/// A force whose derivatives are difference quotients.
-struct Quotients<'a>(&'a mut Controller);
-
-impl ExternalForce for Quotients<'_> {
-    fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure> {
-        self.0.force(t, y, q)
     }
 }

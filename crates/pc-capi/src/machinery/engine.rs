@@ -10,6 +10,7 @@ use pc_solve::{
 };
 
 use crate::ffi::call_error::CallError;
+use crate::ffi::user_data::User;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::motion_field::MotionField;
 
@@ -54,7 +55,7 @@ pub(crate) struct Record {
 pub(crate) struct Observer {
     pub(crate) function:
         unsafe extern "C" fn(usize, f64, *const f64, *const f64, usize, *mut c_void) -> std::ffi::c_int,
-    pub(crate) user: *mut c_void,
+    pub(crate) user: User,
 }
 
 impl Record {
@@ -69,7 +70,7 @@ impl Record {
         let Occurrence { event, time, state_before, state_after } = occurrence;
         let (before, after) = (state_before.as_ptr(), state_after.as_ptr());
         // SAFETY: a function of that type, as pc_solver_observe_events demands; both states are as long as said.
-        match unsafe { function(*event, *time, before, after, state_after.len(), *user) } {
+        match unsafe { function(*event, *time, before, after, state_after.len(), user.data) } {
             0 => ControlFlow::Continue(()),
             _ => ControlFlow::Break(()),
         }
@@ -166,6 +167,11 @@ impl Integration {
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
+    }
+
+    /// A number that tells its equations from others.
+    pub(crate) fn digest(&self) -> u64 {
+        self.engine.field().digest()
     }
 
     fn stand(&self, what: &'static str) -> Result<Checkpoint, CallError> {

@@ -45,16 +45,19 @@ impl Direct {
 
     /// Takes over the parameters of the field; one call at a time.
     pub(crate) fn publish(&self, field: &mut MotionField) {
-        let fixed: Vec<f64> = field.fixed_pivots().unwrap_or_default().to_vec();
+        // They are computed now, while nobody has to wait for them, and only read below.
+        let _ = field.fixed_pivots();
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version + 1, Ordering::Relaxed);
         // None of the numbers is seen before that.
         fence(Ordering::Release);
-        for (places, values) in [(&self.fixed_pivots, &fixed[..]), (&self.parameters, field.parameters())] {
+        let store = |places: &[AtomicU64], values: &[f64]| {
             for (place, value) in places.iter().zip(values) {
                 place.store(value.to_bits(), Ordering::Relaxed);
             }
-        }
+        };
+        store(&self.fixed_pivots, field.fixed_pivots().unwrap_or_default());
+        store(&self.parameters, field.parameters());
         self.version.store(version + 2, Ordering::Release);
     }
 

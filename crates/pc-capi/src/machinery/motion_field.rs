@@ -28,6 +28,11 @@ impl MotionField {
         }
     }
 
+    /// A number that tells it from fields of other equations, or with other names.
+    pub(crate) fn digest(&self) -> u64 {
+        self.motion().digest()
+    }
+
     fn motion(&self) -> &Motion {
         match self {
             MotionField::Free(motion) => motion,
@@ -66,11 +71,11 @@ impl MotionField {
         self.motion().constraint_names()
     }
 
-    /// What should be zero of each of them.
-    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+    /// Writes what should be zero of each of them.
+    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         match self {
-            MotionField::Free(motion) => motion.constraint_residuals(t, y),
-            MotionField::Forced(forced) => forced.constraint_residuals(t, y),
+            MotionField::Free(motion) => motion.constraint_residuals_to(t, y, residuals),
+            MotionField::Forced(forced) => forced.constraint_residuals_to(t, y, residuals),
         }
     }
 
@@ -98,24 +103,19 @@ impl MotionField {
         }
     }
 
-    /// The observables; those that contain a force that cannot be computed are not finite.
-    pub(crate) fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+    /// Writes the observables; those that contain a force that cannot be computed are not finite.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         match self {
-            MotionField::Free(motion) => motion.observe(t, y),
-            MotionField::Forced(forced) => forced.observe(t, y),
+            MotionField::Free(motion) => motion.observe_to(t, y, values),
+            MotionField::Forced(forced) => forced.observe_to(t, y, values),
         }
     }
 
-    /// The observables without a call of the function of the forces; those that contain a force are not finite.
-    pub(crate) fn observe_unforced(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+    /// Writes the observables without a call of the function of the forces; those that contain a force are not finite.
+    pub(crate) fn observe_unforced(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         match self {
-            MotionField::Free(motion) => motion.observe(t, y),
-            MotionField::Forced(forced) => {
-                let controller = std::mem::take(forced.force_mut());
-                let values = forced.observe(t, y);
-                *forced.force_mut() = controller;
-                values
-            }
+            MotionField::Free(motion) => motion.observe_to(t, y, values),
+            MotionField::Forced(forced) => forced.observe_unforced_to(t, y, values),
         }
     }
 }

@@ -55,6 +55,13 @@ impl Inventory {
         self.names.len()
     }
 
+    /// The model for another derivation, which may take as much as the first one.
+    pub(crate) fn model_anew(&self) -> Model {
+        let mut model = self.model.clone();
+        model.limit(self.model.budget().limits().clone());
+        model
+    }
+
     /// The time and state from which the model starts.
     pub(crate) fn start(&self) -> (f64, &[f64]) {
         (self.t_start, &self.start)
@@ -73,6 +80,29 @@ pub(crate) struct Inner {
     /// Derived when first asked for.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
+    pub(crate) room: Room,
+}
+
+/// Room for what calls have on the way, so that only the first ones allocate.
+#[derive(Clone, Default)]
+pub(crate) struct Room {
+    /// As long as the state.
+    pub(crate) state: Vec<f64>,
+    /// As long as each call needs it.
+    values: Vec<f64>,
+}
+
+impl Room {
+    /// So many numbers, and room for a state.
+    pub(crate) fn split(&mut self, len: usize) -> (&mut [f64], &mut [f64]) {
+        self.values.resize(len, 0.0);
+        (&mut self.values, &mut self.state)
+    }
+
+    /// So many numbers.
+    pub(crate) fn numbers(&mut self, len: usize) -> &mut [f64] {
+        self.split(len).0
+    }
 }
 
 impl pc_system {
@@ -116,7 +146,9 @@ impl pc_system {
         let field = MotionField::new(flow.motion, forces)?;
         let kept_at = (assembly.t_start, flow.start);
         let values = inventory.model.parameter_values().clone();
-        let inner = Inner { field, values, kept_at, events: flow.events, mechanics: None, legendre: None };
+        let room = Room { state: vec![0.0; inventory.dim()], values: Vec::new() };
+        let events = flow.events;
+        let inner = Inner { field, values, kept_at, events, mechanics: None, legendre: None, room };
         Ok(pc_system {
             inventory: Arc::new(inventory),
             direct: OnceLock::new(),
@@ -146,8 +178,9 @@ impl pc_system {
         self.direct.get_or_init(|| Direct::of(&mut inner.field));
     }
 
-    pub(crate) fn set_parameters(&self, inner: &mut Inner, set: impl Fn(&mut [f64])) {
-        inner.set_parameters(set);
+    /// Makes those in `values` the parameters.
+    pub(crate) fn take_values(&self, inner: &mut Inner) {
+        inner.take_values();
         if let Some(direct) = self.direct() {
             direct.publish(&mut inner.field);
         }
@@ -156,12 +189,13 @@ impl pc_system {
 
 impl Inner {
     /// What is kept by projection are then the values of these parameters.
-    fn set_parameters(&mut self, set: impl Fn(&mut [f64])) {
-        set(self.field.parameters_mut());
+    fn take_values(&mut self) {
+        let values = self.values.values();
+        self.field.parameters_mut().copy_from_slice(values);
         self.field.restart(self.kept_at.0, &self.kept_at.1);
         self.events.set_parameters(self.field.parameters());
         if let Some(legendre) = &mut self.legendre {
-            set(legendre.parameters_mut());
+            legendre.parameters_mut().copy_from_slice(values);
         }
     }
 

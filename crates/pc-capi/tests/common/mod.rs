@@ -335,7 +335,7 @@ macro_rules! refused {
 }
 
 pub(crate) type At = unsafe extern "C" fn(
-    *mut pc_system,
+    *const pc_system,
     f64,
     *const f64,
     usize,

@@ -131,12 +131,16 @@ fn nothing(which: u8) -> Outcome {
     unsafe {
         let static_text = |text: *const c_char| assert!(!CStr::from_ptr(text).to_str().unwrap().is_empty());
         static_text(pc_version());
+        assert_eq!(pc_abi_version(), PC_ABI_VERSION);
         static_text(pc_status_name(i32::from(which) - 4));
         let name = pc_builtin_name(usize::from(which));
         assert_eq!(name.is_null(), usize::from(which) >= pc_builtin_count());
         pc_string_free(ptr::null_mut());
         pc_bytes_free(ptr::null_mut());
         pc_kernel_free(ptr::null_mut());
+        pc_cancel_request(ptr::null());
+        assert_eq!(pc_cancel_is_requested(ptr::null()), 0);
+        pc_cancel_free(ptr::null_mut());
         pc_system_options_init(ptr::null_mut(), 8);
         pc_solver_options_init(ptr::null_mut(), 8);
     }

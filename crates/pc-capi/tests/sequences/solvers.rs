@@ -82,6 +82,12 @@ impl Handles {
                 }
                 SolverCall::Observe(which) => {
                     let observer: pc_event_observer = if which % 3 == 0 { None } else { Some(observe_event) };
+                    if which % 5 == 0 {
+                        let user = Own::boxed(2, 0);
+                        return self.call(|error| {
+                            pc_solver_set_event_observer(solver, observer, user, Some(destroy), error)
+                        });
+                    }
                     self.call(|error| pc_solver_observe_events(solver, observer, flag(which % 2 == 0), error))
                 }
                 SolverCall::Occurrences(event, before, after) => self.occurrences(*event, *before, *after),

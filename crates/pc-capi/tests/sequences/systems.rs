@@ -31,8 +31,14 @@ impl Handles {
         unsafe {
             match call {
                 SystemCall::New(form) => {
-                    let options = pc_system_options { form: c_int::from(*form), ..Default::default() };
-                    self.made_system(|place, error| pc_system_new(model, &raw const options, place, error))
+                    let mut cancel = ptr::null_mut();
+                    self.call(|error| pc_cancel_new(&raw mut cancel, error))?;
+                    let form = c_int::from(*form);
+                    let options = pc_system_options { form, cancel, ..Default::default() };
+                    let outcome = self
+                        .made_system(|place, error| pc_system_new(model, &raw const options, place, error));
+                    pc_cancel_free(cancel);
+                    outcome
                 }
                 SystemCall::Clone => self.made_system(|place, error| pc_system_clone(system, place, error)),
                 SystemCall::Free => {
@@ -103,7 +109,9 @@ impl Handles {
             let _ = self.call(|error| {
                 pc_system_jacobian_pattern(system, &raw mut entries, ptr::null_mut(), ptr::null_mut(), error)
             });
-            let functions: [(At, usize); 12] = [
+            let functions: [(At, usize); 14] = [
+                (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system)),
+                (pc_system_right_hand_side, velocities),
                 (pc_system_events, pc_system_event_count(system)),
                 (pc_system_rhs, dim),
                 (pc_system_jacobian, dim * dim),
@@ -154,6 +162,12 @@ impl Handles {
     fn inventory(&self, index: usize) -> Outcome {
         type Count = unsafe extern "C" fn(*const pc_system) -> usize;
         type Name = unsafe extern "C" fn(*const pc_system, usize) -> *const c_char;
+        type Find = unsafe extern "C" fn(
+            *const pc_system,
+            *const c_char,
+            *mut usize,
+            *mut *mut pc_error,
+        ) -> pc_status;
         let system = self.system;
         let lists: [(Count, Name); 7] = [
             (pc_system_dim, pc_system_name),
@@ -168,6 +182,17 @@ impl Handles {
         unsafe {
             for (count, name) in lists {
                 assert_eq!(name(system, index).is_null(), index >= count(system));
+            }
+            let finds = [
+                (pc_system_find as Find, pc_system_name as Name),
+                (pc_system_find_parameter, pc_system_parameter_name),
+                (pc_system_find_observable, pc_system_observable_name),
+            ];
+            for (find, name) in finds {
+                let (known, mut place) = (name(system, index), usize::MAX);
+                let found = self.call(|error| find(system, known, &raw mut place, error));
+                assert_eq!(found.is_ok(), !known.is_null());
+                assert!(known.is_null() || place <= index); // the first one of the name
             }
             assert!(pc_system_conserved_count(system) <= pc_system_observable_count(system));
             assert!((-1..2).contains(&pc_system_event_direction(system, index)));
@@ -190,11 +215,12 @@ impl Handles {
             let answers = [
                 pc_kernel_rhs(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
                 pc_kernel_jacobian(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
+                pc_kernel_rhs_many(0.0, y.data(), 1, room.as_mut_ptr(), kernel.cast()),
                 // In its own place, which is refused.
                 pc_kernel_rhs(0.0, y.data(), y.data(), kernel.cast()),
             ];
             assert!(answers.iter().all(|answer| (-1..2).contains(answer)));
-            assert!(answers[2] == -1 && (outcome.is_ok() || answers == [-1; 3]));
+            assert!(answers[3] == -1 && (outcome.is_ok() || answers == [-1; 4]));
             let values = vec![value; pc_system_parameter_count(system)];
             let (data, len) = (values.as_ptr(), values.len());
             let set = self.call(|error| pc_kernel_set_parameters(kernel, data, len, error));

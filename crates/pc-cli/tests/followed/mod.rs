@@ -187,7 +187,7 @@ impl System {
 
 /// A function that writes numbers which belong to a state.
 type At = unsafe extern "C" fn(
-    *mut pc_system,
+    *const pc_system,
     f64,
     *const f64,
     usize,

@@ -28,7 +28,8 @@ const LONGEST: usize = 256;
 impl TimeDependence {
     /// That of rates computed by these programs, whose states begin with `dim` components of y, for values of the parameters.
     pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> TimeDependence {
-        let mut profile = TimeProfile { parts: Vec::new(), mixed: Vec::new(), sampled: false };
+        let mut profile =
+            TimeProfile { parts: Vec::new(), mixed: Vec::new(), sampled: false, room: Vec::new() };
         let mut explicit = false;
         for program in programs {
             let Analysis { explicit: here, forcing, mixed } = Analysis::of(program, parameters);
@@ -86,6 +87,8 @@ pub struct TimeProfile {
     mixed: Vec<Part>,
     /// Whether there are functions of t and the state that are not followed.
     sampled: bool,
+    /// Room for what is seen of each function of a part.
+    room: Vec<Seen>,
 }
 
 /// Times at which something may be that nobody would see at both ends of an interval, in order.
@@ -153,14 +156,14 @@ impl TimeProfile {
                 }
             };
             let (known, features) = scan.between(part, (t, to), Line::default(), enough);
-            choose(features.iter(), (t, known), part, &mut times);
+            choose(features.iter(), (t, known), part, &mut self.room, &mut times);
             times.limit(known, (t, to));
         }
         let line = Line { t, state: at.0, rates: at.1 };
         for part in &mut self.mixed {
             let mut scan = Scan::new(part, t, to, line);
             let (known, features) = scan.between(part, (t, to), line, enough);
-            choose(features.iter(), (t, known), part, &mut times);
+            choose(features.iter(), (t, known), part, &mut self.room, &mut times);
             times.limit(known, (t, to));
         }
         for times in [&mut times.few, &mut times.many] {
@@ -177,11 +180,13 @@ fn choose<'a>(
     features: impl Iterator<Item = &'a Feature> + Clone,
     (t, to): (f64, f64),
     part: &Part,
+    seen: &mut Vec<Seen>,
     times: &mut Surprises,
 ) {
     let direction = if to < t { -1.0 } else { 1.0 };
     let inside = features.filter(|feature| (feature.t - to) * direction < 0.0);
-    let mut seen = vec![Seen::default(); part.watched.len()];
+    seen.clear();
+    seen.resize(part.watched.len(), Seen::default());
     for feature in inside.clone() {
         seen[feature.function].note(feature.kind, (to - t).abs());
     }
@@ -195,7 +200,7 @@ fn choose<'a>(
 }
 
 /// How often a function does what.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     places: usize,
     sharp: usize,

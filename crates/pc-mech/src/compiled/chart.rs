@@ -20,6 +20,7 @@ pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
+    room: Vec<f64>,
 }
 
 impl Chart {
@@ -42,27 +43,30 @@ impl Chart {
         let entries =
             Evaluator::new(Program::new(system.graph(), &inputs, a.entries())?, Backend::Interpreter);
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
-        Ok(Some(Chart { coordinates, parameters, entries }))
+        let room = vec![0.0; coordinates * coordinates];
+        Ok(Some(Chart { coordinates, parameters, entries, room }))
     }
 
-    /// a at (t, y).
-    fn matrix(&mut self, t: f64, y: &[f64], parameters: &[f64]) -> Matrix<f64> {
-        let n = self.coordinates;
-        let mut entries = vec![f64::NAN; n * n];
-        self.entries.eval(t, &y[..n], &parameters[..self.parameters], &mut entries);
-        Matrix::from_fn(n, n, |i, j| entries[i * n + j])
+    /// a at (t, y), row after row.
+    fn matrix(&mut self, t: f64, y: &[f64], parameters: &[f64]) -> &mut [f64] {
+        self.entries.eval(t, &y[..self.coordinates], &parameters[..self.parameters], &mut self.room);
+        &mut self.room
     }
 
     /// Whether det a has another sign at the end of a step than at its start.
     pub(crate) fn is_left(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> bool {
-        let mut sign = |(t, y): (f64, &[f64])| sign_of_determinant(self.matrix(t, y, parameters));
+        let n = self.coordinates;
+        let mut sign = |(t, y): (f64, &[f64])| sign_of_determinant(self.matrix(t, y, parameters), n);
         sign(from) * sign(to) < 0.0
     }
 
     /// Whether a motion with these velocities does not move along the direction in which a is nearest to singular: then it needs
     /// no quasi-velocity to say how it does.
     pub(crate) fn rests(&mut self, (t, y): (f64, &[f64]), velocities: &[f64], parameters: &[f64]) -> bool {
-        let Ok(SingularValues { right, .. }) = SingularValues::of(&self.matrix(t, y, parameters)) else {
+        let n = self.coordinates;
+        let entries = self.matrix(t, y, parameters);
+        let a = Matrix::from_fn(n, n, |i, j| entries[i * n + j]);
+        let Ok(SingularValues { right, .. }) = SingularValues::of(&a) else {
             return false;
         };
         let last = right.columns() - 1;
@@ -71,24 +75,26 @@ impl Chart {
     }
 }
 
-/// The sign of det A by elimination with row pivots; 0 where a pivot is 0 or no number.
-fn sign_of_determinant(mut a: Matrix<f64>) -> f64 {
-    let n = a.rows();
+/// The sign of det A, n × n and row after row, by elimination with row pivots; 0 where a pivot is 0 or no number.
+fn sign_of_determinant(a: &mut [f64], n: usize) -> f64 {
+    let at = |i: usize, j: usize| i * n + j;
     let mut sign = 1.0;
     for k in 0..n {
-        let Some(best) = (k..n).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs())) else { break };
-        let pivot = a[(best, k)];
+        let Some(best) = (k..n).max_by(|&i, &j| a[at(i, k)].abs().total_cmp(&a[at(j, k)].abs())) else {
+            break;
+        };
+        let pivot = a[at(best, k)];
         if pivot == 0.0 || pivot.is_nan() {
             return 0.0;
         }
         sign *= if best == k { pivot.signum() } else { -pivot.signum() };
         for j in k..n {
-            (a[(k, j)], a[(best, j)]) = (a[(best, j)], a[(k, j)]);
+            a.swap(at(k, j), at(best, j));
         }
         for i in k + 1..n {
-            let factor = a[(i, k)] / pivot;
+            let factor = a[at(i, k)] / pivot;
             for j in k..n {
-                a[(i, j)] -= factor * a[(k, j)];
+                a[at(i, j)] -= factor * a[at(k, j)];
             }
         }
     }
@@ -101,7 +107,7 @@ mod tests {
 
     #[test]
     fn determinants_have_the_sign_of_their_permutation() {
-        let of = |rows: [[f64; 3]; 3]| sign_of_determinant(Matrix::from_fn(3, 3, |i, j| rows[i][j]));
+        let of = |rows: [[f64; 3]; 3]| sign_of_determinant(&mut rows.concat(), 3);
         assert_eq!(of([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), 1.0);
         assert_eq!(of([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0]]), -1.0);
         // 1 (4·1 − 1·2) − 2 (3·1 − 1·1) + 0 = −2

@@ -191,10 +191,37 @@ impl<F: ExternalForce> ForcedMotion<F> {
     /// # Panics
     /// If `y` has not the length of the state.
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        if self.apply(t, y).is_err() {
-            self.motion.parameters_mut()[self.parameters..].fill(f64::NAN);
+        let mut values = vec![f64::NAN; self.motion.observable_names().len()];
+        self.observe_to(t, y, &mut values);
+        values
+    }
+
+    /// Writes the observables at (t, y) to `values`, as [`observe`](ForcedMotion::observe) gives them.
+    ///
+    /// # Panics
+    /// As for [`Motion::observe_to`].
+    pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        match self.apply(t, y) {
+            Ok(()) => self.motion.observe_to(t, y, values),
+            Err(_) => self.observe_unforced_to(t, y, values),
         }
-        self.motion.observe(t, y)
+    }
+
+    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are not finite.
+    ///
+    /// # Panics
+    /// As for [`Motion::observe_to`].
+    pub fn observe_unforced_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.motion.inputs_mut(self.parameters).fill(f64::NAN);
+        self.motion.watch(t, y, values, false);
+    }
+
+    /// Writes what should be zero of each constraint at (t, y), as [`Motion::constraint_residuals_to`] does.
+    ///
+    /// # Panics
+    /// As there.
+    pub fn constraint_residuals_to(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
+        self.motion.constraint_residuals_to(t, y, residuals);
     }
 
     /// Computes the forces and gives them to the motion.
@@ -210,7 +237,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
                 state: self.state(y),
             }));
         }
-        self.motion.parameters_mut()[self.parameters..].copy_from_slice(&self.values);
+        self.motion.inputs_mut(self.parameters).copy_from_slice(&self.values);
         Ok(())
     }
 
@@ -283,6 +310,11 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
 
     fn sparsity(&self) -> Option<&Pattern> {
         self.motion.has_jacobian().then_some(&self.pattern)
+    }
+
+    /// The pattern is full, so that both storages are one.
+    fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.jacobian(t, y, values)
     }
 
     fn has_jvp(&self) -> bool {

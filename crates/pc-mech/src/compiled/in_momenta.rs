@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use pc_algebra::Matrix;
 use pc_expr::{
     Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField,
 };
@@ -95,10 +94,15 @@ impl InMomenta {
             let columns = symbols.iter().flat_map(|&q| [by(&rates, q), by(&balance, q)].concat());
             let moving = eta.iter().chain(&accelerations).flat_map(|&eta| by(&rates, eta));
             let entries: Vec<Expr<'g>> = columns.chain(moving).collect();
+            let (columns, bound) = (symbols.len() + eta.len(), multipliers.constraints().len());
             Ok::<_, ExprError>(Slopes {
                 symbols: symbols.len(),
-                multipliers: multipliers.constraints().len(),
+                multipliers: bound,
+                values: vec![0.0; entries.len()],
                 entries: derivative(graph, &inputs, &entries, options.backend)?,
+                by_symbol: Vec::new(),
+                of_unknowns: vec![0.0; columns * (eta.len() + bound)],
+                columns: vec![0.0; columns * system.state().len()],
             })
         };
         let states = system.states().iter().map(|&(z, _)| z);
@@ -114,6 +118,10 @@ impl InMomenta {
             quasi_velocities: eta.len(),
             known: vec![0.0; dim + eta.len()],
             full: Pattern::full(dim, dim),
+            state: vec![0.0; dim],
+            projected: vec![0.0; dim],
+            rates: vec![0.0; dim],
+            of_inner: vec![0.0; dim * dim],
             transform,
         })
     }
@@ -142,30 +150,35 @@ impl InMomenta {
         self.jacobian.as_ref().map(|_| &self.full)
     }
 
-    /// (x, η) of (x, y).
+    /// Leaves the (x, η, z) of (x, y, z) in `state`.
     ///
     /// # Errors
     /// As [`LegendreTransform::to_quasi_velocities`].
-    pub(crate) fn read(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
+    pub(crate) fn read(&mut self, t: f64, y: &[f64]) -> Result<(), MechError> {
         let parameters = self.transform.parameters_mut();
         let known = parameters.len();
         parameters.copy_from_slice(&self.inner.parameters()[..known]);
-        self.transform.to_quasi_velocities(t, y)
+        self.transform.to_quasi_velocities_in(t, y, &mut self.state)
     }
 
-    /// The observables, not finite where momenta have no quasi-velocities.
-    pub(crate) fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+    /// The (x, η, z) read last.
+    pub(crate) fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// The observables, not finite where momenta have no quasi-velocities; without accelerations unless these are `solved` for.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         match self.read(t, y) {
-            Ok(state) => self.inner.observe(t, &state),
-            Err(_) => vec![f64::NAN; self.inner.observable_names().len()],
+            Ok(()) => self.inner.watch(t, &self.state, values, solved),
+            Err(_) => values.fill(f64::NAN),
         }
     }
 
     /// What should be zero of each constraint, not finite where momenta have no quasi-velocities.
-    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+    pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         match self.read(t, y) {
-            Ok(state) => self.inner.constraint_residuals(t, &state),
-            Err(_) => vec![f64::NAN; self.inner.constraint_names().len()],
+            Ok(()) => self.inner.constraint_residuals_to(t, &self.state, residuals),
+            Err(_) => residuals.fill(f64::NAN),
         }
     }
 
@@ -177,10 +190,10 @@ impl InMomenta {
 
     /// Leaves (x, η, z, η̇) in `known`, and ẋ and ż in `rates`.
     fn solve(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
-        let state = self.read(t, y).map_err(Failure::recoverable)?;
-        self.inner.rhs(t, &state, rates)?;
+        self.read(t, y).map_err(Failure::recoverable)?;
+        self.inner.rhs(t, &self.state, rates)?;
         let moving = self.moving();
-        self.known[..y.len()].copy_from_slice(&state);
+        self.known[..y.len()].copy_from_slice(&self.state);
         self.known[y.len()..].copy_from_slice(&rates[moving]);
         Ok(())
     }
@@ -196,19 +209,21 @@ impl InMomenta {
 
     /// To where the motion of (x, η) is projected; momenta of a state that is there are left as they are.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        let state = self.read(t, y).map_err(Failure::recoverable)?;
-        let mut projected = state.clone();
-        self.inner.project(t, &mut projected)?;
-        if projected != state {
-            y.copy_from_slice(&self.transform.to_momenta(t, &projected).map_err(Failure::recoverable)?);
+        self.read(t, y).map_err(Failure::recoverable)?;
+        self.projected.copy_from_slice(&self.state);
+        self.inner.project(t, &mut self.projected)?;
+        if self.projected != self.state {
+            let written = self.transform.to_momenta_in(t, &self.projected, &mut self.state);
+            written.map_err(Failure::recoverable)?;
+            y.copy_from_slice(&self.state);
         }
         Ok(())
     }
 
     pub(crate) fn restart(&mut self, t: f64, y: &[f64]) {
         // Where momenta have no quasi-velocities the next evaluation says so.
-        if let Ok(state) = self.read(t, y) {
-            self.inner.restart(t, &state);
+        if self.read(t, y).is_ok() {
+            self.inner.restart(t, &self.state);
         }
     }
 
@@ -216,28 +231,44 @@ impl InMomenta {
     ///
     ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y,   ∂f/∂z as ∂f/∂x.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
-        let Some(slopes) = self.jacobian.clone() else {
+        let Some(mut slopes) = self.jacobian.take() else {
             return Err(Failure::fatal(MechError::NotCompiled { what: "Jacobian" }));
         };
-        let of_inner = self.inner_jacobian(t, y)?;
-        let moving = self.moving();
+        let outcome = self.jacobian_by(&mut slopes, t, y, entries);
+        self.jacobian = Some(slopes);
+        outcome
+    }
+
+    fn jacobian_by(
+        &mut self,
+        slopes: &mut Slopes,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.find_inner_jacobian(t, y)?;
+        let (dim, moving) = (y.len(), self.moving());
         let place = |q: usize| if q < moving.start { q } else { q + moving.len() };
-        let columns = self.changes(&slopes, t, &of_inner, |i, q| of_inner[(i, place(q))])?;
+        slopes.by_symbol.clear();
+        for q in 0..slopes.symbols {
+            slopes.by_symbol.extend_from_slice(&self.of_inner[place(q) * dim..(place(q) + 1) * dim]);
+        }
+        self.change(slopes, t)?;
         // Those by x and z come first.
         let places = (0..slopes.symbols).map(place).chain(moving.clone());
-        for (place, column) in places.zip(columns.chunks_exact(y.len())) {
-            entries[place * y.len()..(place + 1) * y.len()].copy_from_slice(column);
+        for (place, column) in places.zip(slopes.columns.chunks_exact(dim)) {
+            entries[place * dim..(place + 1) * dim].copy_from_slice(column);
         }
         Ok(())
     }
 
-    /// The derivative of (ẋ, η̇, ż) by (x, η, z); leaves (x, η, z, η̇) in `known`.
-    fn inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<Matrix<f64>, Failure> {
-        let dim = y.len();
-        self.solve(t, y, &mut vec![0.0; dim])?;
-        let mut entries = vec![0.0; dim * dim];
-        self.inner.jacobian(t, &self.known[..dim], &mut entries)?;
-        Ok(Matrix::from_fn(dim, dim, |i, j| entries[i + j * dim]))
+    /// Leaves the derivative of (ẋ, η̇, ż) by (x, η, z) in `of_inner`, and (x, η, z, η̇) in `known`.
+    fn find_inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let mut rates = std::mem::take(&mut self.rates);
+        let outcome = self.solve(t, y, &mut rates);
+        self.rates = rates;
+        outcome?;
+        self.inner.jacobian(t, &self.known[..y.len()], &mut self.of_inner)
     }
 
     /// ∂f/∂p, column after column, as [`jacobian`](InMomenta::jacobian).
@@ -247,61 +278,66 @@ impl InMomenta {
         y: &[f64],
         entries: &mut [f64],
     ) -> Result<(), Failure> {
-        let Some(slopes) = self.parameter_jacobian.clone() else {
+        let Some(mut slopes) = self.parameter_jacobian.take() else {
             return Err(Failure::fatal(MechError::NotCompiled { what: "derivative by parameters" }));
         };
-        let (dim, of_inner) = (y.len(), self.inner_jacobian(t, y)?);
-        let mut by_parameters = vec![0.0; entries.len()];
-        self.inner.parameter_jacobian(t, &self.known[..dim], &mut by_parameters)?;
-        let columns = self.changes(&slopes, t, &of_inner, |i, q| by_parameters[i + q * dim])?;
-        entries.copy_from_slice(&columns[..entries.len()]);
+        let outcome = self.parameter_jacobian_by(&mut slopes, t, y, entries);
+        self.parameter_jacobian = Some(slopes);
+        outcome
+    }
+
+    fn parameter_jacobian_by(
+        &mut self,
+        slopes: &mut Slopes,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.find_inner_jacobian(t, y)?;
+        slopes.by_symbol.resize(entries.len(), 0.0);
+        self.inner.parameter_jacobian(t, &self.known[..y.len()], &mut slopes.by_symbol)?;
+        self.change(slopes, t)?;
+        entries.copy_from_slice(&slopes.columns[..entries.len()]);
         Ok(())
     }
 
-    /// The columns of ∂f/∂q for each symbol q of `slopes`, then those of ∂f/∂y; (ẋ, η̇, ż) has the derivatives `of_inner` by
-    /// (x, η, z) and `by_symbol` by q.
-    fn changes(
-        &mut self,
-        slopes: &Slopes,
-        t: f64,
-        of_inner: &Matrix<f64>,
-        by_symbol: impl Fn(usize, usize) -> f64,
-    ) -> Result<Vec<f64>, Failure> {
-        let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, of_inner.rows());
-        let m = slopes.multipliers;
+    /// Leaves the columns of ∂f/∂q for each symbol q, then those of ∂f/∂y, in `columns` of `slopes`; (ẋ, η̇, ż) has the
+    /// derivatives `of_inner` by (x, η, z) and `by_symbol` by q.
+    fn change(&mut self, slopes: &mut Slopes, t: f64) -> Result<(), Failure> {
+        let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, self.state.len());
+        let (m, of_inner) = (slopes.multipliers, &self.of_inner);
         let stride = 2 * k + m;
-        let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
-        slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
-        check_finite(&values, &slopes.entries, (t, &self.known, self.inner.parameters()))
+        slopes.entries.eval(t, &self.known, self.inner.parameters(), &mut slopes.values);
+        check_finite(&slopes.values, &slopes.entries, (t, &self.known, self.inner.parameters()))
             .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
-        let (by_q, moving) = values.split_at(slopes.symbols * stride);
+        let (by_q, moving) = slopes.values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);
         // ∂h/∂q, then ∂h/∂y
-        let mut h = vec![0.0; (slopes.symbols + k) * (k + m)];
+        let h = &mut slopes.of_unknowns;
+        h.fill(0.0);
         for (q, column) in h.chunks_exact_mut(k + m).enumerate() {
             match q.checked_sub(slopes.symbols) {
                 None => column.copy_from_slice(&by_q[q * stride + k..(q + 1) * stride]),
                 Some(s) => column[s] = 1.0,
             }
         }
-        self.transform.solve_last(&mut h);
-        let mut columns = Vec::with_capacity((slopes.symbols + k) * dim);
+        self.transform.solve_last(h);
         for (q, h) in h.chunks_exact(k + m).enumerate() {
             let is_symbol = q < slopes.symbols;
-            let inner: Vec<f64> = (0..dim)
-                .map(|i| {
-                    let direct = if is_symbol { by_symbol(i, q) } else { 0.0 };
-                    direct + (0..k).map(|s| of_inner[(i, n + s)] * h[s]).sum::<f64>()
-                })
-                .collect();
-            columns.extend_from_slice(&inner[..n]);
-            columns.extend((0..k).map(|r| {
+            let column = &mut slopes.columns[q * dim..(q + 1) * dim];
+            for (i, change) in column.iter_mut().enumerate() {
+                let direct = if is_symbol { slopes.by_symbol[i + q * dim] } else { 0.0 };
+                *change = direct + (0..k).map(|s| of_inner[i + (n + s) * dim] * h[s]).sum::<f64>();
+            }
+            // η̇, of which ẏ is made.
+            let accelerations = &mut self.rates[..k];
+            accelerations.copy_from_slice(&column[n..n + k]);
+            for (r, change) in column[n..n + k].iter_mut().enumerate() {
                 let direct = if is_symbol { by_q[q * stride + r] } else { 0.0 };
-                let along = |s: usize| by_eta[r + s * k] * h[s] + mass[r + s * k] * inner[n + s];
-                direct + (0..k).map(along).sum::<f64>()
-            }));
-            columns.extend_from_slice(&inner[n + k..]);
+                let along = |s: usize| by_eta[r + s * k] * h[s] + mass[r + s * k] * accelerations[s];
+                *change = direct + (0..k).map(along).sum::<f64>();
+            }
         }
-        Ok(columns)
+        Ok(())
     }
 }

@@ -34,12 +34,13 @@ enum QuasiVelocities {
 struct Implicit {
     newton: Newton,
     solver: Solver,
-    /// Number of unknowns.
-    size: usize,
     /// Equations of η alone, whose solution is where the method begins.
     nearby: Option<Box<QuasiVelocities>>,
     /// Where it begins if these have none.
     guess: Vec<f64>,
+    /// Room for where it begins, and for the state and w.
+    begin: Vec<f64>,
+    known: Vec<f64>,
 }
 
 /// M w = r with w = (η, μ), in numbers.
@@ -50,6 +51,8 @@ struct Linear {
     lower: Pattern,
     values: Vec<f64>,
     solver: Solver,
+    /// w
+    solution: Vec<f64>,
 }
 
 impl QuasiVelocities {
@@ -66,9 +69,10 @@ impl QuasiVelocities {
         Ok(QuasiVelocities::Implicit(Box::new(Implicit {
             newton: Newton::new(equations, implicit, Backend::Interpreter)?,
             solver: Solver::new(size, equations.multipliers),
-            size,
             nearby: nearby.map(|nearby| QuasiVelocities::solved(nearby, None).map(Box::new)).transpose()?,
             guess: implicit.guess.clone(),
+            begin: vec![0.0; size],
+            known: vec![0.0; equations.state.len() + size],
         })))
     }
 
@@ -77,8 +81,8 @@ impl QuasiVelocities {
         match self {
             QuasiVelocities::Closed(program) => evaluate(program, at, eta),
             QuasiVelocities::Linear(linear) => {
-                let solution = linear.solve(at)?;
-                eta.copy_from_slice(&solution[..eta.len()]);
+                linear.solve(at)?;
+                eta.copy_from_slice(&linear.solution[..eta.len()]);
                 Ok(())
             }
             QuasiVelocities::Implicit(implicit) => implicit.solve(at, eta),
@@ -93,7 +97,9 @@ impl Implicit {
         at @ (t, state, p): (f64, &[f64], &[f64]),
         eta: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
-        let mut guess = self.guess.clone();
+        let guess = &mut self.begin;
+        guess.fill(0.0);
+        guess[..self.guess.len()].copy_from_slice(&self.guess);
         if let Some(nearby) = &mut self.nearby {
             let found = nearby.solve(at, eta);
             if found.is_ok() {
@@ -101,11 +107,12 @@ impl Implicit {
                 guess[eta.len()..].fill(0.0);
             }
         }
-        guess.resize(self.size, 0.0);
-        self.newton.begin_at(&guess);
-        let mut known = [state, &vec![0.0; self.size]].concat();
-        let outcome = self.newton.solve(t, &mut known, p, &mut self.solver);
-        eta.copy_from_slice(&known[state.len()..state.len() + eta.len()]);
+        self.newton.begin_at(guess);
+        let (given, unknowns) = self.known.split_at_mut(state.len());
+        given.copy_from_slice(state);
+        unknowns.fill(0.0);
+        let outcome = self.newton.solve(t, &mut self.known, p, &mut self.solver);
+        eta.copy_from_slice(&self.known[state.len()..state.len() + eta.len()]);
         outcome
     }
 }
@@ -116,19 +123,20 @@ impl Linear {
         entries.extend(&equations.right);
         let program = Program::new(equations.graph, &equations.inputs(&[]), &entries)?;
         let solver = Solver::new(equations.unknowns.len(), equations.multipliers);
-        let (equations, values) = (Evaluator::new(program, Backend::Interpreter), vec![0.0; entries.len()]);
-        Ok(Linear { equations, lower, values, solver })
+        let (values, solution) = (vec![0.0; entries.len()], vec![0.0; equations.unknowns.len()]);
+        let equations = Evaluator::new(program, Backend::Interpreter);
+        Ok(Linear { equations, lower, values, solver, solution })
     }
 
-    /// w, and M factorised.
-    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
+    /// Leaves w in `solution`, and M factorised.
+    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<(), EvaluationFailure> {
         self.equations.eval(t, state, p, &mut self.values);
         check_finite(&self.values, &self.equations, at)?;
         let (matrix, right) = self.values.split_at(self.lower.len());
         self.solver.factorise(&self.lower, matrix)?;
-        let mut solution = right.to_vec();
-        self.solver.solve(&mut solution);
-        Ok(solution)
+        self.solution.copy_from_slice(right);
+        self.solver.solve(&mut self.solution);
+        Ok(())
     }
 }
 
@@ -214,11 +222,21 @@ impl LegendreTransform {
     /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
     /// ∂L/∂η.
     pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
-        let mut result = self.checked(state)?;
+        let mut result = state.to_vec();
+        self.to_momenta_in(t, state, &mut result)?;
+        Ok(result)
+    }
+
+    /// Writes (x, y) of the state (x, η) to `result`, as [`to_momenta`](LegendreTransform::to_momenta) gives it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn to_momenta_in(&mut self, t: f64, state: &[f64], result: &mut [f64]) -> Result<(), MechError> {
+        self.check(state, result)?;
+        result.copy_from_slice(state);
         let moving = &mut result[self.moving()];
         evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
-            .map_err(|failure| self.error(failure, t, state))?;
-        Ok(result)
+            .map_err(|failure| self.error(failure, t, state))
     }
 
     /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not quadratic, Newton's method finds it from
@@ -228,18 +246,34 @@ impl LegendreTransform {
     /// [`MechError::Shape`]; [`MechError::LegendreNotSolved`], [`MechError::SingularMassMatrix`] or
     /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
-        let mut result = self.checked(state)?;
-        let moving = &mut result[self.moving()];
-        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
-        outcome.map_err(|failure| self.error(failure, t, state))?;
+        let mut result = state.to_vec();
+        self.to_quasi_velocities_in(t, state, &mut result)?;
         Ok(result)
     }
 
-    /// The state, if it has the right length.
-    fn checked(&self, state: &[f64]) -> Result<Vec<f64>, MechError> {
+    /// Writes (x, η) of the state (x, y) to `result`, as [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives
+    /// it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn to_quasi_velocities_in(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        result: &mut [f64],
+    ) -> Result<(), MechError> {
+        self.check(state, result)?;
+        result.copy_from_slice(state);
+        let moving = &mut result[self.moving()];
+        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
+        outcome.map_err(|failure| self.error(failure, t, state))
+    }
+
+    /// That both states have the right length.
+    fn check(&self, state: &[f64], result: &[f64]) -> Result<(), MechError> {
         let length = self.names[0].len() + self.names[1].len() + self.names[3].len();
         shape("the state", state.len(), length)?;
-        Ok(state.to_vec())
+        shape("the result", result.len(), length)
     }
 
     /// The places of η, or y, in a state.

@@ -1,6 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
-use pc_expr::{Cost, Evaluator, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::cost;
@@ -76,6 +76,12 @@ pub(crate) struct InMomenta {
     /// x, η, z, then η̇.
     pub(super) known: Vec<f64>,
     pub(super) full: Pattern,
+    /// Room for x, η, z as they were read last, for what they are projected to, and for the rates of both motions.
+    pub(super) state: Vec<f64>,
+    pub(super) projected: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+    /// The derivative of (ẋ, η̇, ż) by (x, η, z), column after column.
+    pub(super) of_inner: Vec<f64>,
 }
 
 /// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
@@ -85,6 +91,11 @@ pub(super) struct Slopes {
     pub(super) symbols: usize,
     pub(super) multipliers: usize,
     pub(super) entries: Evaluator,
+    pub(super) values: Vec<f64>,
+    /// The derivatives of (ẋ, η̇, ż) by q at fixed (x, η, z), those of (η, μ) by q and y, and of (ẋ, ẏ, ż) by both.
+    pub(super) by_symbol: Vec<f64>,
+    pub(super) of_unknowns: Vec<f64>,
+    pub(super) columns: Vec<f64>,
 }
 
 impl<'g> Equations<'g> {
@@ -177,6 +188,14 @@ impl Motion {
         &mut self.parameters
     }
 
+    /// The values of what M does not depend on, such as external forces, to be changed: those from place `first` on.
+    pub(crate) fn inputs_mut(&mut self, first: usize) -> &mut [f64] {
+        match &mut self.form {
+            Form::InMomenta(motion) => motion.inner_mut().inputs_mut(first),
+            Form::Unrolled(_) | Form::Staged(_) => &mut self.parameters[first..],
+        }
+    }
+
     /// The motion of the quasi-velocities, where that of momenta under constraints is made from it; else this one.
     pub fn in_quasi_velocities(&self) -> &Motion {
         match &self.form {
@@ -244,17 +263,31 @@ impl Motion {
     /// # Panics
     /// If `y` has not the length of the state.
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        assert_eq!(y.len(), self.names.len(), "length of the state");
         let mut values = vec![f64::NAN; self.observable_names.len()];
+        self.observe_to(t, y, &mut values);
+        values
+    }
+
+    /// Writes the observables at (t, y) to `values`, as [`observe`](Motion::observe) gives them.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state, or `values` not that of [`observable_names`](Motion::observable_names).
+    pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.watch(t, y, values, true);
+    }
+
+    /// The same; without accelerations where these are not to be `solved` for: what contains one is not finite then.
+    pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        assert_eq!(values.len(), self.observable_names.len(), "number of observables");
         if self.signals.show(t, &mut self.parameters).is_err() {
-            return values;
+            return values.fill(f64::NAN);
         }
         match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, &mut values),
-            Form::Staged(staged) => staged.observe(t, y, &self.parameters, &mut values),
-            Form::InMomenta(motion) => return motion.observe(t, y),
+            Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, values),
+            Form::Staged(staged) => staged.observe((t, y, &self.parameters), values, solved),
+            Form::InMomenta(motion) => motion.observe(t, y, values, solved),
         }
-        values
     }
 
     /// The same of a system whose quasi-velocities are defined by velocities: it [leads](VectorField::leads) nowhere past a
@@ -323,12 +356,45 @@ impl Motion {
     /// # Panics
     /// If `y` has not the length of the state.
     pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut residuals = vec![f64::NAN; self.constraints.len()];
+        self.constraint_residuals_to(t, y, &mut residuals);
+        residuals
+    }
+
+    /// Writes what should be zero of each constraint to `residuals`, as
+    /// [`constraint_residuals`](Motion::constraint_residuals) gives it.
+    ///
+    /// # Panics
+    /// If `y` has not the length of the state, or `residuals` not that of [`constraint_names`](Motion::constraint_names).
+    pub fn constraint_residuals_to(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
+        assert_eq!(residuals.len(), self.constraints.len(), "number of constraints");
         if let Form::InMomenta(motion) = &mut self.form {
-            return motion.constraint_residuals(t, y);
+            return motion.constraint_residuals(t, y, residuals);
         }
-        let parameters = &self.parameters;
-        self.surface.as_mut().map_or_else(Vec::new, |surface| surface.residuals(t, y, parameters))
+        if let Some(surface) = &mut self.surface {
+            surface.residuals((t, y, &self.parameters), residuals);
+        }
+    }
+
+    /// A number that tells this motion from those of other equations, or with other names: of the names of states, parameters and
+    /// constraints, and of the programs of f. It is the same on every run, whatever the values of the parameters are.
+    pub fn digest(&self) -> u64 {
+        let mut digest = Digest::default();
+        self.add_to(&mut digest);
+        digest.value()
+    }
+
+    fn add_to(&self, digest: &mut Digest) {
+        self.names.iter().chain(&self.constraints).for_each(|name| digest.name(name));
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.programs().for_each(|program| digest.program(program)),
+            Form::Staged(staged) => staged.programs().for_each(|program| digest.program(program)),
+            Form::InMomenta(motion) => {
+                motion.inner().add_to(digest);
+                digest.program(motion.transport.program());
+            }
+        }
     }
 
     /// Operations of one evaluation of the right-hand side, kinematics included; without those of the

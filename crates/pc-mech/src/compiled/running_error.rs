@@ -83,8 +83,8 @@ impl Measured {
     }
 
     /// The bounds of the rounding errors of all functions.
-    pub(crate) fn errors(&self) -> Vec<f64> {
-        (0..self.values().len()).map(|place| self.error(place)).collect()
+    pub(crate) fn errors(&self) -> impl Iterator<Item = f64> {
+        (0..self.values().len()).map(|place| self.error(place))
     }
 
     /// The largest of the values in units of the bound of its error: no more than 1 where only rounding is left of them.

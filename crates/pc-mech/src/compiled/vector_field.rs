@@ -155,13 +155,15 @@ impl VectorField for Motion {
             return motion.restart(t, y);
         }
         let Some(kept) = &mut self.kept else { return };
-        let mut state = y.to_vec();
+        let mut state = std::mem::take(&mut kept.room.state);
+        state.copy_from_slice(y);
         if let Some(surface) = &mut self.surface
             && surface.project(t, &mut state, &self.parameters).is_err()
         {
             state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
         }
         kept.set_levels((t, &state, &self.parameters));
+        kept.room.state = state;
     }
 
     fn breaks(&self) -> &[f64] {
@@ -178,10 +180,11 @@ impl VectorField for Motion {
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
         let Some(mut chart) = self.chart.take() else { return Ok(()) };
         let is_left = chart.is_left(from, to, self.parameters());
-        let mut rates = vec![f64::NAN; to.1.len()];
-        let outcome = if is_left { self.rhs(to.0, to.1, &mut rates) } else { Ok(()) };
-        let velocities = &rates[..self.coordinates];
-        let rests = is_left && outcome.is_ok() && chart.rests(to, velocities, self.parameters());
+        let rests = is_left && {
+            let mut rates = vec![f64::NAN; to.1.len()];
+            let outcome = self.rhs(to.0, to.1, &mut rates);
+            outcome.is_ok() && chart.rests(to, &rates[..self.coordinates], self.parameters())
+        };
         self.chart = Some(chart);
         match is_left && !rests {
             true => Err(Failure::fatal(MechError::Undetermined { from: from.0, to: to.0 })),

@@ -25,19 +25,36 @@ pub trait ExternalForce {
     /// # Errors
     /// As [`force`](ExternalForce::force).
     fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
-        let forces = dq.len().checked_div(y.len()).unwrap_or(0).max(1);
-        let (mut here, mut moved) = (vec![f64::NAN; forces], y.to_vec());
-        self.force(t, y, &mut here)?;
-        for (j, column) in dq.chunks_exact_mut(forces).enumerate() {
-            moved[j] = y[j] + f64::EPSILON.sqrt() * y[j].abs().max(1.0);
-            let step = moved[j] - y[j];
-            column.fill(f64::NAN);
-            self.force(t, &moved, column)?;
-            moved[j] = y[j];
-            column.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - here) / step);
-        }
-        Ok(())
+        difference_quotients(self, (t, y), dq, &mut Vec::new())
     }
+}
+
+/// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does unless it is implemented;
+/// `room` is for numbers on the way.
+///
+/// # Errors
+/// As [`ExternalForce::force`].
+pub fn difference_quotients<F: ExternalForce + ?Sized>(
+    force: &mut F,
+    (t, y): (f64, &[f64]),
+    dq: &mut [f64],
+    room: &mut Vec<f64>,
+) -> Result<(), Failure> {
+    let forces = dq.len().checked_div(y.len()).unwrap_or(0).max(1);
+    room.clear();
+    room.extend_from_slice(y);
+    room.resize(y.len() + forces, f64::NAN);
+    let (moved, here) = room.split_at_mut(y.len());
+    force.force(t, y, here)?;
+    for (j, column) in dq.chunks_exact_mut(forces).enumerate() {
+        moved[j] = y[j] + f64::EPSILON.sqrt() * y[j].abs().max(1.0);
+        let step = moved[j] - y[j];
+        column.fill(f64::NAN);
+        force.force(t, moved, column)?;
+        moved[j] = y[j];
+        column.iter_mut().zip(&*here).for_each(|(there, here)| *there = (*there - here) / step);
+    }
+    Ok(())
 }
 
 impl<F: FnMut(f64, &[f64], &mut [f64])> ExternalForce for F {

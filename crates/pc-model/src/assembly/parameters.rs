@@ -27,7 +27,7 @@ enum Formula {
     /// It was given as a number.
     Number,
     /// An expression in all parameters, of which it contains none but those before it.
-    Of(Arc<Program>),
+    Of(Box<Interpreter>),
     /// A function of time, of which this is the value at the start.
     Table(Arc<Table>),
     /// An expression that means nothing, or a table that is none.
@@ -62,7 +62,7 @@ impl Parameters {
                 Some((_, &AstKind::Number(value))) => (value, Formula::Number),
                 Some((expression, _)) => match scope.parameter(place, expression) {
                     Ok(value) => match Program::new(&graph, &inputs, &[value]) {
-                        Ok(program) => (f64::NAN, Formula::Of(Arc::new(program))),
+                        Ok(program) => (f64::NAN, Formula::Of(Box::new(Interpreter::new(Arc::new(program))))),
                         Err(_) => (f64::NAN, Formula::Wrong(not_finite(document, expression, f64::NAN))),
                     },
                     Err(error) => (f64::NAN, Formula::Wrong(error)),
@@ -147,10 +147,10 @@ impl Parameters {
     }
 
     fn follow(&mut self) {
-        for (place, formula) in self.formulas.iter().enumerate() {
+        for (place, formula) in self.formulas.iter_mut().enumerate() {
             if let Formula::Of(program) = formula {
                 let mut value = [f64::NAN];
-                Interpreter::new(Arc::clone(program)).eval(0.0, &[], &self.values, &mut value);
+                program.eval(0.0, &[], &self.values, &mut value);
                 self.values[place] = value[0];
             }
         }

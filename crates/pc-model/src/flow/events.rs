@@ -33,6 +33,8 @@ pub struct FlowEvents {
     constraints: Option<Motion>,
     /// The quasi-velocities that determine the others, and keep the values that resets give them.
     determining: Vec<usize>,
+    /// Room for (x, η, z) with all η.
+    room: Vec<f64>,
 }
 
 /// Components of (x, η, z) and their new values.
@@ -104,6 +106,7 @@ impl FlowEvents {
             slopes,
             tables: model.parameter_values().tables().iter().map(|&(place, _)| place).collect(),
             constraints: held.then(|| watch.clone().without_kept()),
+            room: Vec::new(),
         })
     }
 
@@ -169,9 +172,9 @@ impl Events for FlowEvents {
     }
 
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        let all = self.reading.read(t, y).map_err(Failure::recoverable)?;
+        self.reading.read_in(t, y, &mut self.room).map_err(Failure::recoverable)?;
         self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
-        self.functions.eval(t, &all, self.reading.parameters(), values);
+        self.functions.eval(t, &self.room, self.reading.parameters(), values);
         Ok(())
     }
 

@@ -90,6 +90,7 @@ impl Flow {
             free: free_places,
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             transform,
+            room: Vec::new(),
         };
         let explicit = reading.transform.is_none()
             && !matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
@@ -122,7 +123,9 @@ impl Flow {
             let mut free = state.to_vec();
             let states = free.len() - self.motion.states();
             free[n..states].fill(f64::NAN);
-            self.reading.complete(t, &free)
+            let mut all = Vec::new();
+            self.reading.complete(t, &free, &mut all);
+            all
         })
     }
 

@@ -15,6 +15,8 @@ pub(super) struct Reading {
     pub(super) parameters: Vec<f64>,
     /// From momenta to quasi-velocities, where the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
+    /// Room for a state in quasi-velocities.
+    pub(super) room: Vec<f64>,
 }
 
 impl Reading {
@@ -23,24 +25,38 @@ impl Reading {
     /// # Errors
     /// [`MechError`] where momenta have no quasi-velocities.
     pub(super) fn read(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
-        match &mut self.transform {
-            Some(transform) => {
-                let free = transform.to_quasi_velocities(t, state)?;
-                Ok(self.complete(t, &free))
-            }
-            None => Ok(self.complete(t, state)),
-        }
+        let mut all = Vec::new();
+        self.read_in(t, state, &mut all)?;
+        Ok(all)
     }
 
-    /// (x, η, z) with all η of one with the free ones.
-    pub(super) fn complete(&mut self, t: f64, free: &[f64]) -> Vec<f64> {
+    /// The same, left in `all`.
+    ///
+    /// # Errors
+    /// As [`read`](Reading::read).
+    pub(super) fn read_in(&mut self, t: f64, state: &[f64], all: &mut Vec<f64>) -> Result<(), MechError> {
+        let Some(transform) = &mut self.transform else {
+            self.complete(t, state, all);
+            return Ok(());
+        };
+        let mut free = std::mem::take(&mut self.room);
+        free.resize(state.len(), 0.0);
+        let outcome = transform.to_quasi_velocities_in(t, state, &mut free);
+        if outcome.is_ok() {
+            self.complete(t, &free, all);
+        }
+        self.room = free;
+        outcome
+    }
+
+    /// Leaves in `all` the (x, η, z) with all η of one with the free ones.
+    pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
         let n = self.coordinates;
-        let mut all = vec![0.0; n + self.quasi_velocities.program().outputs_len()];
-        let (coordinates, quasi_velocities) = all.split_at_mut(n);
-        coordinates.copy_from_slice(&free[..n]);
-        self.quasi_velocities.eval(t, free, &self.parameters, quasi_velocities);
+        all.clear();
+        all.extend_from_slice(&free[..n]);
+        all.resize(n + self.quasi_velocities.program().outputs_len(), 0.0);
+        self.quasi_velocities.eval(t, free, &self.parameters, &mut all[n..]);
         all.extend_from_slice(&free[n + self.free.len()..]);
-        all
     }
 
     /// The state of an (x, η, z) with all η.

@@ -50,33 +50,40 @@ impl<F: VectorField> Cvode<F> {
             return Ok(None);
         }
         let mut dependence = std::mem::replace(&mut self.foresight.dependence, TimeDependence::Absent);
-        let landing = self.foresee_in(&mut dependence, (t, reach, end), least);
-        self.foresight.dependence = dependence;
+        let mut few = std::mem::take(&mut self.foresight.few);
+        few.clear();
+        let landing = self.foresee_in(&mut dependence, &mut few, (t, reach, end), least);
+        (self.foresight.dependence, self.foresight.few) = (dependence, few);
         landing
     }
 
     fn foresee_in(
         &mut self,
         dependence: &mut TimeDependence,
+        few: &mut Vec<f64>,
         (t, reach, end): (f64, f64, f64),
         least: f64,
     ) -> Result<Option<f64>, SolveError> {
-        let Surprises { mut few, mut many, until } = match dependence {
+        let Surprises { mut many, until, .. } = match dependence {
             TimeDependence::Absent => Surprises::default(),
             // A first step whose length is given is taken at the word.
             TimeDependence::Unknown if self.direction.is_none() && self.initial_step.is_some() => {
                 Surprises::default()
             }
-            TimeDependence::Unknown => Surprises { few: self.samples(t, reach, end), ..Surprises::default() },
+            TimeDependence::Unknown => {
+                few.extend(self.samples(t, reach, end));
+                Surprises::default()
+            }
             TimeDependence::Known(profile) => {
-                let mut places = self.surprises(profile, (t, reach, end))?;
+                let places = self.surprises(profile, (t, reach, end))?;
+                few.extend_from_slice(&places.few);
                 if profile.is_partial() {
-                    places.few.extend(self.samples(t, reach, end));
+                    few.extend(self.samples(t, reach, end));
                 }
                 places
             }
         };
-        for places in [&mut few, &mut many] {
+        for places in [&mut *few, &mut many] {
             places.retain(|place| (place - t).abs() > least);
         }
         let crowd = many.len();
@@ -86,7 +93,7 @@ impl<F: VectorField> Cvode<F> {
         many.truncate(allowed);
         let stride = many.len().div_ceil(MOST).max(1);
         few.extend(many.iter().skip(stride - 1).step_by(stride));
-        few.sort_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
+        few.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
         if few.is_empty() && crowded.is_none() {
             self.foresight.unsurprising = 0;
             return Ok(None);
@@ -95,7 +102,7 @@ impl<F: VectorField> Cvode<F> {
             return Ok(few.first().copied().or(crowded)); // nothing is known yet, and the first step is short
         }
         self.read_polynomial()?;
-        for place in few {
+        for &place in &*few {
             if crowded.is_some_and(|crowded| (place - crowded) * (reach - t) > 0.0) {
                 break;
             }
@@ -132,22 +139,20 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Places evenly spaced over the integration from its start to `end`, those of the next step.
-    fn samples(&self, t: f64, reach: f64, end: f64) -> Vec<f64> {
+    fn samples(&self, t: f64, reach: f64, end: f64) -> impl Iterator<Item = f64> + use<F> {
         let begin = self.foresight.begin;
         let spacing = (end - begin).abs().max((reach - begin).abs()) / SAMPLES;
         let (from, to) = ((t - begin).abs() / spacing, (reach - begin).abs() / spacing);
         let direction = 1.0_f64.copysign(reach - t);
-        let place = |k: f64| begin + (k * spacing).copysign(direction);
-        if (t - begin) * direction < 0.0 || !spacing.is_normal() {
-            return Vec::new(); // an integration that has turned round
-        }
+        let place = move |k: f64| begin + (k * spacing).copysign(direction);
+        // None of an integration that has turned round.
+        let is_ahead = (t - begin) * direction >= 0.0 && spacing.is_normal();
         // In the middle between whole multiples, which steps and switches tend to fall on.
         let first = (from - 0.5).ceil().max(0.0);
-        let count = (to - 0.5 - first).ceil().clamp(0.0, 2.0 * SAMPLES);
+        let count = if is_ahead { (to - 0.5 - first).ceil().clamp(0.0, 2.0 * SAMPLES) } else { 0.0 };
         (0..count as u32)
-            .map(|k| place(first + f64::from(k) + 0.5))
-            .filter(|s| (s - reach) * direction < 0.0)
-            .collect()
+            .map(move |k| place(first + f64::from(k) + 0.5))
+            .filter(move |s| (s - reach) * direction < 0.0)
     }
 
     /// What the profile shows in the next step.
@@ -168,28 +173,31 @@ impl<F: VectorField> Cvode<F> {
     fn read_polynomial(&mut self) -> Result<(), SolveError> {
         let t = self.step_time;
         if self.direction.is_none() {
-            let y = self.step_state.as_slice().to_vec();
-            let mut rates = vec![0.0; y.len()];
-            self.foresight.evaluations += 1;
-            if !self.callbacks.look(t, &y, &mut rates) {
-                rates.fill(0.0); // CVODE will say so
+            let foresight = &mut self.foresight;
+            if let [y, rates, ..] = &mut foresight.polynomial[..] {
+                y.copy_from_slice(self.step_state.as_slice());
+                foresight.evaluations += 1;
+                if !self.callbacks.look(t, y, rates) {
+                    rates.fill(0.0); // CVODE will say so
+                }
+                foresight.terms = 2;
             }
-            self.foresight.polynomial = vec![y, rates];
             return Ok(());
         }
         let mut order = 0;
         // SAFETY: the memory is live and initialised; `order` is a place for the result.
         unsafe { sys::CVodeGetLastOrder(self.memory.raw(), &raw mut order) };
-        self.foresight.polynomial.clear();
+        self.foresight.terms = 0;
         let mut factorial = 1.0;
-        for k in 0..=order {
+        for (k, terms) in (0..=order).zip(&mut self.foresight.polynomial) {
             factorial *= f64::from(k.max(1));
             // SAFETY: memory and vector are live and of one context; a step has been taken.
             let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, k, self.work.raw()) };
             self.context.check("CVodeGetDky", code)?;
-            self.foresight
-                .polynomial
-                .push(self.work.as_slice().iter().map(|term| term / factorial).collect());
+            for (place, term) in terms.iter_mut().zip(self.work.as_slice()) {
+                *place = term / factorial;
+            }
+            self.foresight.terms += 1;
         }
         // SAFETY: as above; CVODES copies to the vector.
         let code = unsafe { sys::CVodeGetEstLocalErrors(self.memory.raw(), self.work.raw()) };

@@ -22,8 +22,9 @@ pub(super) struct Foresight {
     /// Evaluations and shortened steps since the last restart.
     pub(super) evaluations: u64,
     pub(super) limited: u64,
-    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, and work.
+    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, the first `terms` of them, and work.
     pub(super) polynomial: Vec<Vec<f64>>,
+    pub(super) terms: usize,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -31,13 +32,19 @@ pub(super) struct Foresight {
     pub(super) errors: Vec<f64>,
     pub(super) last_step: f64,
     pub(super) order: i32,
+    /// Room for places to be looked at.
+    pub(super) few: Vec<f64>,
 }
 
 impl Foresight {
     pub(super) fn new(field: &impl VectorField, t0: f64, options: &Options) -> Foresight {
-        let dim = field.dim();
+        let (dim, dependence) = (field.dim(), field.time_dependence());
+        let most = match dependence {
+            TimeDependence::Absent => 0,
+            TimeDependence::Known(_) | TimeDependence::Unknown => options.method.highest_order() as usize + 1,
+        };
         Foresight {
-            dependence: field.time_dependence(),
+            dependence,
             begin: t0,
             min_step: options.min_step.unwrap_or(0.0),
             relative_tolerance: options.relative_tolerance,
@@ -45,13 +52,15 @@ impl Foresight {
             unsurprising: 0,
             evaluations: 0,
             limited: 0,
-            polynomial: Vec::new(),
+            polynomial: vec![vec![0.0; dim]; most],
+            terms: 0,
             state: vec![0.0; dim],
             slope: vec![0.0; dim],
             rates: vec![0.0; dim],
             errors: vec![0.0; dim],
             last_step: 0.0,
             order: 0,
+            few: Vec::new(),
         }
     }
 
@@ -96,7 +105,7 @@ impl Foresight {
     pub(super) fn predict(&mut self, since: f64) {
         self.state.fill(0.0);
         self.slope.fill(0.0);
-        for terms in self.polynomial.iter().rev() {
+        for terms in self.polynomial[..self.terms].iter().rev() {
             for ((state, slope), term) in self.state.iter_mut().zip(&mut self.slope).zip(terms) {
                 *slope = *slope * since + *state;
                 *state = *state * since + term;

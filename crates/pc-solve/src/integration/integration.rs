@@ -64,6 +64,8 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) beyond: Vec<f64>,
     /// y(`time`), unless `time` is the front.
     pub(crate) output: Vec<f64>,
+    /// Room for the end of a step.
+    pub(crate) ahead: Vec<f64>,
     /// Whether there has been no step since a new start on the way.
     pub(crate) restarted: bool,
     /// Whether the motion has been started anew from a state that it did not come to by itself.
@@ -107,6 +109,7 @@ impl<S: Stepper> Integration<S> {
             direction: None,
             front: Sample { t, values: Vec::new() },
             output: state.clone(),
+            ahead: state.clone(),
             front_state: state,
             sides_before: sides.clone(),
             sides,
@@ -148,6 +151,7 @@ impl<S: Stepper> Integration<S> {
             direction: self.direction,
             front: Sample { t, values: Vec::new() },
             output: state.clone(),
+            ahead: state.clone(),
             front_state: state.clone(),
             sides_before: sides.clone(),
             sides,
@@ -308,9 +312,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 return Ok(());
             }
             self.engine.step(towards)?;
-            let (to, state) = (self.engine.last_step().end, self.engine.end_state().to_vec());
+            let to = self.engine.last_step().end;
+            self.ahead.copy_from_slice(self.engine.end_state());
             let from = (self.front.t, &self.front_state[..]);
-            if let Err(failure) = self.engine.field_mut().leads(from, (to, &state)) {
+            if let Err(failure) = self.engine.field_mut().leads(from, (to, &self.ahead)) {
                 return Err(self.failed(Reason::Rates { t: to }, Some(failure)));
             }
             self.engine.stand_at(time);

@@ -89,8 +89,10 @@ impl Handles {
     }
 
     fn by_handle(&self) -> Box<Call<'static>> {
-        let (system, rhs) =
-            (self.system, black_box(pc::pc_system_rhs as unsafe extern "C" fn(_, _, _, _, _, _, _) -> _));
+        let (system, rhs) = (
+            self.system.cast_const(),
+            black_box(pc::pc_system_rhs as unsafe extern "C" fn(_, _, _, _, _, _, _) -> _),
+        );
         Box::new(move |y, dy| {
             // SAFETY: a live system, arrays as long as its state, and null for the error.
             let status =

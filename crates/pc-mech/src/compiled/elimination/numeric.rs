@@ -84,12 +84,21 @@ impl Staged {
         &self.cost
     }
 
-    pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
-        let equations = match &self.unknowns {
+    /// The program of the equations of w.
+    fn equations(&self) -> &Program {
+        match &self.unknowns {
             Unknowns::Linear { equations, .. } => equations.program(),
             Unknowns::Implicit(newton) => newton.program(),
-        };
-        TimeDependence::of(&[equations, self.rates.program()], self.dim, p)
+        }
+    }
+
+    /// The programs of ẏ.
+    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
+        [self.equations(), self.rates.program()].into_iter()
+    }
+
+    pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
+        TimeDependence::of(&[self.equations(), self.rates.program()], self.dim, p)
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
@@ -145,9 +154,9 @@ impl Staged {
         check_finite(ydot, &self.rates, (t, &self.known, p))
     }
 
-    /// Observables of w are not finite where w cannot be solved for.
-    pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
-        if self.solve(t, y, p).is_err() {
+    /// Observables of w are not finite where w cannot be solved for, or is not to be `solved` for.
+    pub(crate) fn observe(&mut self, (t, y, p): (f64, &[f64], &[f64]), values: &mut [f64], solved: bool) {
+        if !solved || self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);

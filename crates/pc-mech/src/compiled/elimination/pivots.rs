@@ -117,8 +117,9 @@ impl PivotPartition {
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,
     of_parameters: Evaluator,
-    /// What says what is fixed, for the parameters as they are; empty if that is not known.
+    /// What says what is fixed, for the parameters as they were when it was known.
     fixed: Vec<f64>,
+    is_known: bool,
 }
 
 impl Pivots {
@@ -146,7 +147,8 @@ impl Pivots {
             fixed,
         };
         let of_parameters = Evaluator::new(program, Backend::Interpreter);
-        Ok((Pivots { partition: Arc::new(partition), of_parameters, fixed: Vec::new() }, values))
+        let fixed = vec![0.0; partition.fixed_len()];
+        Ok((Pivots { partition: Arc::new(partition), of_parameters, fixed, is_known: false }, values))
     }
 
     /// Which there are.
@@ -156,7 +158,7 @@ impl Pivots {
 
     /// Says that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
-        self.fixed.clear();
+        self.is_known = false;
     }
 
     /// Whether no pivot vanishes; `moving` are the values of those that change.
@@ -170,7 +172,7 @@ impl Pivots {
         parameters: &[f64],
         moving: &[f64],
     ) -> Result<(), EvaluationFailure> {
-        if self.fixed.is_empty() {
+        if !self.is_known {
             self.fix(state, parameters);
         }
         self.partition.check(|k| self.fixed[k], moving)
@@ -178,7 +180,7 @@ impl Pivots {
 
     /// What says what is fixed.
     pub(crate) fn fixed(&mut self, state: &[f64], parameters: &[f64]) -> &[f64] {
-        if self.fixed.is_empty() {
+        if !self.is_known {
             self.fix(state, parameters);
         }
         &self.fixed
@@ -187,12 +189,12 @@ impl Pivots {
     #[cold]
     fn fix(&mut self, state: &[f64], parameters: &[f64]) {
         let partition = &self.partition;
-        let mut fixed = vec![0.0; partition.fixed_len()];
+        let fixed = &mut self.fixed;
         self.of_parameters.eval(0.0, state, parameters, &mut fixed[ALL..]);
         let (pivots, sizes) = fixed[ALL..].split_at(partition.places.len() - partition.moving_pivots);
         (fixed[SMALLEST], fixed[LARGEST]) = if partition.moving.is_empty() {
             // Nothing is left to be compared with them, so that they are looked at closely now and not again.
-            let regular = partition.check_each(|k| fixed[k], &[]).is_ok();
+            let regular = check(pivots, sizes).is_ok();
             (if regular { f64::INFINITY } else { 0.0 }, 0.0)
         } else {
             (
@@ -200,6 +202,6 @@ impl Pivots {
                 sizes.iter().fold(0.0, |largest, size| size.abs().max(largest)),
             )
         };
-        self.fixed = fixed;
+        self.is_known = true;
     }
 }

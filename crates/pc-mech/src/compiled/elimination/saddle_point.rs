@@ -39,6 +39,13 @@ pub(crate) struct Saddle {
     full: Pattern,
     /// Room for a right-hand side.
     room: Vec<f64>,
+    /// Room for the factorisation: weights of unknowns, sizes of rows, M_DD G + M_DI over M_ID G + M_II, the reduced mass and
+    /// the sizes of its diagonal.
+    weights: Vec<f64>,
+    row_sizes: Vec<f64>,
+    moved: Vec<f64>,
+    reduced_mass: Vec<f64>,
+    reduced_sizes: Vec<f64>,
 }
 
 impl Saddle {
@@ -64,6 +71,11 @@ impl Saddle {
             reduced: DenseLdl::new(free),
             full: Pattern::from_columns(free, (0..free).map(|j| j..free)),
             room: vec![0.0; k + rank],
+            weights: vec![0.0; k],
+            row_sizes: vec![0.0; m],
+            moved: vec![0.0; k * free],
+            reduced_mass: vec![0.0; free * (free + 1) / 2],
+            reduced_sizes: vec![0.0; free],
         }
     }
 
@@ -76,9 +88,9 @@ impl Saddle {
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.eliminate(lower, values)?;
         self.express_dependent();
-        let reduced = self.reduced_mass();
-        let sizes: Vec<f64> = (0..self.k - self.rank).map(|i| self.size_of_reduced(i)).collect();
-        let outcome = self.reduced.factorise_sum(&self.full, &reduced, sizes.into_iter());
+        self.reduce_mass();
+        let sizes = self.reduced_sizes.iter().copied();
+        let outcome = self.reduced.factorise_sum(&self.full, &self.reduced_mass, sizes);
         outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
@@ -116,16 +128,17 @@ impl Saddle {
     /// unknown without mass counts as the lightest of the others.
     fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
-        let masses = || (0..k).map(|s| self.mass[s * k + s]);
+        let (mass, constraints) = (&self.mass, &self.constraints);
+        let masses = || (0..k).map(|s| mass[s * k + s]);
         let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
         let lightest = if lightest.is_finite() { lightest } else { 1.0 };
         let weight = |mass: f64| (if mass > 0.0 { mass } else { lightest }).sqrt().recip();
-        let weights: Vec<f64> = masses().map(weight).collect();
-        let sizes: Vec<f64> = (0..m)
-            .map(|a| {
-                (0..k).fold(0.0f64, |size, s| size.max((self.constraints[a * k + s] * weights[s]).abs()))
-            })
-            .collect();
+        self.weights.iter_mut().zip(masses()).for_each(|(place, mass)| *place = weight(mass));
+        let weights = &self.weights;
+        let size_of_row =
+            |a: usize| (0..k).fold(0.0f64, |size, s| size.max((constraints[a * k + s] * weights[s]).abs()));
+        self.row_sizes.iter_mut().enumerate().for_each(|(a, place)| *place = size_of_row(a));
+        let sizes = &self.row_sizes;
         (0..m).for_each(|a| self.rows[a] = a);
         (0..k).for_each(|s| self.columns[s] = s);
         for step in 0..self.rank {
@@ -181,22 +194,25 @@ impl Saddle {
         self.mass[self.columns[row] * self.k + self.columns[column]]
     }
 
-    /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, its lower triangle column after column.
-    fn reduced_mass(&self) -> Vec<f64> {
+    /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, its lower triangle column after column, and the sizes of its diagonal.
+    fn reduce_mass(&mut self) {
         let (m, free) = (self.rank, self.k - self.rank);
+        let (mut moved, mut reduced) =
+            (std::mem::take(&mut self.moved), std::mem::take(&mut self.reduced_mass));
+        let mut sizes = std::mem::take(&mut self.reduced_sizes);
         let g = |row: usize, column: usize| self.dependence[row * free + column];
-        // M_DD G + M_DI, and M_ID G + M_II
-        let moved = |row: usize, column: usize| -> f64 {
-            self.mass(row, m + column) + (0..m).map(|d| self.mass(row, d) * g(d, column)).sum::<f64>()
-        };
-        let moved: Vec<f64> = (0..self.k)
-            .flat_map(|row| (0..free).map(move |column| (row, column)))
-            .map(|(r, c)| moved(r, c))
-            .collect();
-        let entry = |i: usize, j: usize| -> f64 {
-            moved[(m + i) * free + j] + (0..m).map(|d| g(d, i) * moved[d * free + j]).sum::<f64>()
-        };
-        (0..free).flat_map(|j| (j..free).map(move |i| (i, j))).map(|(i, j)| entry(i, j)).collect()
+        let places = (0..self.k).flat_map(|row| (0..free).map(move |column| (row, column)));
+        for (place, (row, column)) in moved.iter_mut().zip(places) {
+            let through: f64 = (0..m).map(|d| self.mass(row, d) * g(d, column)).sum();
+            *place = self.mass(row, m + column) + through;
+        }
+        let places = (0..free).flat_map(|j| (j..free).map(move |i| (i, j)));
+        for (place, (i, j)) in reduced.iter_mut().zip(places) {
+            let through: f64 = (0..m).map(|d| g(d, i) * moved[d * free + j]).sum();
+            *place = moved[(m + i) * free + j] + through;
+        }
+        sizes.iter_mut().enumerate().for_each(|(i, size)| *size = self.size_of_reduced(i));
+        (self.moved, self.reduced_mass, self.reduced_sizes) = (moved, reduced, sizes);
     }
 
     /// The sum of the absolute values of all that the entry i of the diagonal of the reduced mass is the sum of.

@@ -72,6 +72,11 @@ impl Unrolled {
         self.rates.program().leading(dim).cost()
     }
 
+    /// The programs of ẏ.
+    pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
+        std::iter::once(&**self.rates.program())
+    }
+
     pub(crate) fn time_dependence(&self, dim: usize, p: &[f64]) -> TimeDependence {
         TimeDependence::of(&[self.rates.program()], dim, p)
     }
@@ -111,7 +116,8 @@ impl Unrolled {
     }
 
     pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {
-        self.pivots.fixed(&vec![0.0; dim], p)
+        // Of parameters alone, whatever the state is.
+        self.pivots.fixed(&self.known[..dim], p)
     }
 
     pub(crate) fn jacobian(

@@ -81,6 +81,15 @@ pub(crate) struct Surface {
     pub(super) change: Vec<f64>,
     /// x, then δπ.
     pub(super) displaced: Vec<f64>,
+    room: Room,
+}
+
+/// Room for a step of Newton's method: where it begins, what it changes, and the errors of f there.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    start: Vec<f64>,
+    change: Vec<f64>,
+    errors: Vec<f64>,
 }
 
 /// What of a state is moved.
@@ -123,16 +132,16 @@ impl Surface {
             change: vec![0.0; k + m],
             displaced: vec![0.0; inputs.state.len()],
             places: conditions.places,
+            room: Room::default(),
         })
     }
 
-    /// f where a constraint has a position and g where it has none, one number a constraint.
-    pub(crate) fn residuals(&mut self, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
-        let mut residuals = self.velocities.eval((t, y, p)).to_vec();
-        for (&place, &value) in self.places.iter().zip(self.positions.eval((t, y, p))) {
+    /// Writes f where a constraint has a position and g where it has none, one number a constraint.
+    pub(crate) fn residuals(&mut self, at: (f64, &[f64], &[f64]), residuals: &mut [f64]) {
+        residuals.copy_from_slice(self.velocities.eval(at));
+        for (&place, &value) in self.places.iter().zip(self.positions.eval(at)) {
             residuals[place] = value;
         }
-        residuals
     }
 
     /// Moves `y` to the surface.
@@ -188,6 +197,19 @@ impl Surface {
         y: &mut [f64],
         p: &[f64],
     ) -> Result<(), EvaluationFailure> {
+        let mut room = std::mem::take(&mut self.room);
+        let outcome = self.project_part_in(&mut room, part, (t, p), y);
+        self.room = room;
+        outcome
+    }
+
+    fn project_part_in(
+        &mut self,
+        Room { start, change, errors }: &mut Room,
+        part: Part,
+        (t, p): (f64, &[f64]),
+        y: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
         let n = self.coordinates;
         let range = if part == Part::Position { 0..n } else { n..n + self.k };
         self.measured(part).try_eval((t, y, p))?;
@@ -196,37 +218,40 @@ impl Surface {
             if rest <= ONE_ROUNDING {
                 return Ok(());
             }
-            let errors = self.measured(part).errors();
+            errors.clear();
+            errors.extend(self.measured(part).errors());
             let length = self.step(part);
-            let (start, change) = (y[range.clone()].to_vec(), self.moved(part, t, y, p));
+            start.clear();
+            start.extend_from_slice(&y[range.clone()]);
+            self.move_by(part, (t, y, p), change);
             // Constraints that depend on those which are taken are satisfied to the roundings of these, not to their own.
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let has_spare = self.rank < self.velocities.values().len();
-            if has_spare && largest(&change) <= ROUNDING * largest(&start) {
-                y[range].iter_mut().zip(&change).for_each(|(y, change)| *y += change);
+            if has_spare && largest(change) <= ROUNDING * largest(start) {
+                y[range].iter_mut().zip(&*change).for_each(|(y, change)| *y += change);
                 return Ok(());
             }
-            if start.iter().zip(&change).all(|(y, change)| y + change == *y) {
+            if start.iter().zip(&*change).all(|(y, change)| y + change == *y) {
                 return Ok(());
             }
             let mut go = |surface: &mut Surface, fraction: f64| {
-                let moving = y[range.clone()].iter_mut().zip(&start).zip(&change);
+                let moving = y[range.clone()].iter_mut().zip(&*start).zip(&*change);
                 moving.for_each(|((y, start), change)| *y = start + fraction * change);
                 let is_finite = surface.measured(part).try_eval((t, y, p)).is_ok();
                 is_finite.then(|| (surface.step(part), surface.measured(part).in_errors()))
             };
             let whole = go(self, 1.0);
             let converges = whole.is_some_and(|(next, _)| next <= CONVERGING * length);
-            if !converges && (rest <= 1.0 || self.is_rounding(part, &errors, length, &change, &start)) {
+            if !converges && (rest <= 1.0 || self.is_rounding(part, errors, length, change, start)) {
                 if whole.is_none_or(|(_, left)| left >= rest) {
-                    y[range].copy_from_slice(&start);
+                    y[range].copy_from_slice(start);
                     self.measured(part).try_eval((t, y, p))?;
                 }
                 return self.factorise(t, y, p);
             }
             if !converges && self.damped(length, |surface, fraction| Some(go(surface, fraction)?.0)).is_none()
             {
-                y[range].copy_from_slice(&start);
+                y[range].copy_from_slice(start);
                 return Err(EvaluationFailure::NoProjection { unknowns: self.k });
             }
             self.factorise(t, y, p)?;
@@ -297,18 +322,18 @@ impl Surface {
         components().fold(0.0, f64::hypot)
     }
 
-    /// What the step changes of x or of η.
-    pub(super) fn moved(&mut self, part: Part, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
+    /// Leaves in `moved` what the step changes of x or of η.
+    pub(super) fn move_by(&mut self, part: Part, (t, y, p): (f64, &[f64], &[f64]), moved: &mut Vec<f64>) {
         let (n, k) = (self.coordinates, self.k);
+        moved.clear();
         match part {
-            Part::Velocity => self.change[..k].to_vec(),
+            Part::Velocity => moved.extend_from_slice(&self.change[..k]),
             Part::Position => {
-                let mut moved = vec![0.0; n];
+                moved.resize(n, 0.0);
                 self.displaced[..n].copy_from_slice(&y[..n]);
                 self.displaced[n..n + k].copy_from_slice(&self.change[..k]);
                 self.displaced[n + k..].copy_from_slice(&y[n + k..]);
-                self.displacements.eval(t, &self.displaced, p, &mut moved);
-                moved
+                self.displacements.eval(t, &self.displaced, p, moved);
             }
         }
     }

@@ -62,10 +62,9 @@ impl Surface {
             };
             let step = self.shortest(part, fixed)?;
             self.change[..self.k].copy_from_slice(&step);
-            let (range, moved) = match part {
-                Part::Position => (0..n, self.moved(part, t, y, p)),
-                Part::Velocity => (n..n + self.k, step),
-            };
+            let range = if part == Part::Position { 0..n } else { n..n + self.k };
+            let mut moved = Vec::new();
+            self.move_by(part, (t, y, p), &mut moved);
             let still = match part {
                 Part::Position => held.coordinates,
                 Part::Velocity => held.quasi_velocities,

@@ -33,6 +33,16 @@ pub struct KeptIntegrals {
     levels: Vec<f64>,
     /// Number of first-order states, which a projection leaves alone.
     states: usize,
+    pub(crate) room: Room,
+}
+
+/// Room for the gradients, for directions that are orthogonal, one after the other, for the shortest change, and for a state.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Room {
+    entries: Vec<f64>,
+    basis: Vec<f64>,
+    change: Vec<f64>,
+    pub(crate) state: Vec<f64>,
 }
 
 impl<'g> FirstOrder<'g> {
@@ -55,12 +65,20 @@ impl<'g> FirstOrder<'g> {
         let gradients: Vec<Expr<'g>> =
             functions.iter().flat_map(|&function| self.graph.gradient(function, &variables)).collect();
         let inputs = self.inputs(&[]);
+        let dim = self.state.len();
+        let room = Room {
+            entries: vec![0.0; gradients.len()],
+            basis: vec![0.0; functions.len() * dim],
+            change: vec![0.0; dim],
+            state: vec![0.0; dim],
+        };
         Ok(KeptIntegrals {
             names: names.iter().map(|name| name.as_ref().to_owned()).collect(),
             values: Measured::new(self.graph, &inputs, &functions, Backend::Fastest)?,
             gradients: Evaluator::new(Program::new(self.graph, &inputs, &gradients)?, Backend::Fastest),
             levels: vec![0.0; functions.len()],
             states: self.states,
+            room,
         })
     }
 }
@@ -69,12 +87,13 @@ impl KeptIntegrals {
     /// The rates of change of the integrals at (t, y), where ẏ = `rates`, each with the sum of the absolute values of its
     /// terms.
     pub(super) fn rates_of_change(&mut self, at: (f64, &[f64], &[f64]), rates: &[f64]) -> Vec<(f64, f64)> {
-        let gradients = self.gradients_at(at);
-        let along = |gradient: &Vec<f64>| {
+        let held = self.held();
+        self.find_gradients(at);
+        let along = |gradient: &[f64]| {
             let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(rates)).map(|(g, rate)| g * rate);
             (terms().sum(), terms().map(f64::abs).sum())
         };
-        gradients[self.held()..].iter().map(along).collect()
+        self.room.entries.chunks_exact(at.1.len() + 1).skip(held).map(along).collect()
     }
 
     /// Takes the values at (t, y) for those to be kept.
@@ -89,11 +108,9 @@ impl KeptIntegrals {
         self.levels.len() - self.names.len()
     }
 
-    /// (∂I_j/∂t, ∂I_j/∂y), one row for each.
-    fn gradients_at(&mut self, (t, y, p): (f64, &[f64], &[f64])) -> Vec<Vec<f64>> {
-        let mut entries = vec![0.0; self.levels.len() * (y.len() + 1)];
-        self.gradients.eval(t, y, p, &mut entries);
-        entries.chunks_exact(y.len() + 1).map(<[f64]>::to_vec).collect()
+    /// Leaves (∂I_j/∂t, ∂I_j/∂y) in `entries`, one row for each.
+    fn find_gradients(&mut self, (t, y, p): (f64, &[f64], &[f64])) {
+        self.gradients.eval(t, y, p, &mut self.room.entries);
     }
 
     /// Newton's method for I(t, y) = I_0, each step the shortest.
@@ -105,9 +122,10 @@ impl KeptIntegrals {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
             self.values.try_eval((t, y, p))?;
-            let change = self.shortest((t, y, p))?;
+            self.find_shortest((t, y, p))?;
+            let change = &self.room.change;
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-            let length = largest(&change);
+            let length = largest(change);
             let first = *first.get_or_insert(length);
             let is_short = length <= SHORT * largest(y);
             if length >= before / 2.0 && (is_short || length <= SHORT * first) {
@@ -116,7 +134,7 @@ impl KeptIntegrals {
             if length >= before {
                 return Err(EvaluationFailure::NotKept);
             }
-            y.iter_mut().zip(&change).for_each(|(y, change)| *y -= change);
+            y.iter_mut().zip(change).for_each(|(y, change)| *y -= change);
             if is_short {
                 return Ok(());
             }
@@ -125,18 +143,18 @@ impl KeptIntegrals {
         Err(EvaluationFailure::NotKept)
     }
 
-    /// The shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
+    /// Leaves in `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
     /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
-    fn shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
-        let gradients = self.gradients_at(at);
-        let mut change = vec![0.0; at.1.len()];
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        for (place, row) in gradients.iter().enumerate() {
+    fn find_shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<(), EvaluationFailure> {
+        self.find_gradients(at);
+        let Room { entries, basis, change, .. } = &mut self.room;
+        let dim = at.1.len();
+        let mut independent = 0;
+        change.fill(0.0);
+        for (place, row) in entries.chunks_exact_mut(dim + 1).enumerate() {
             check_finite(row, &self.gradients, at)?;
-            let mut gradient = row[1..].to_vec();
-            let moving = gradient.len() - self.states;
-            gradient[moving..].fill(0.0);
-            let gradient = &gradient[..];
+            row[1 + dim - self.states..].fill(0.0);
+            let gradient = &row[1..];
             let difference = self.values.values()[place] - self.levels[place];
             // At the edge of the domain of a function that is part of it an integral may have no bound.
             let error =
@@ -145,21 +163,23 @@ impl KeptIntegrals {
                     ROUNDINGS * f64::EPSILON * (terms + self.levels[place].abs())
                 });
             let residual = if difference.abs() <= error { 0.0 } else { difference };
-            let mut direction = gradient.to_vec();
-            for known in &basis {
-                let along = dot(known, &direction);
+            let (known, free) = basis.split_at_mut(independent * dim);
+            let direction = &mut free[..dim];
+            direction.copy_from_slice(gradient);
+            for known in known.chunks_exact(dim.max(1)) {
+                let along = dot(known, direction);
                 direction.iter_mut().zip(known).for_each(|(d, known)| *d -= along * known);
             }
-            let (left, size) = (dot(&direction, &direction).sqrt(), dot(gradient, gradient).sqrt());
+            let (left, size) = (dot(direction, direction).sqrt(), dot(gradient, gradient).sqrt());
             if left <= DEPENDENT * size {
                 continue;
             }
             direction.iter_mut().for_each(|d| *d /= left);
-            let missing = (residual - dot(gradient, &change)) / left;
-            change.iter_mut().zip(&direction).for_each(|(change, d)| *change += missing * d);
-            basis.push(direction);
+            let missing = (residual - dot(gradient, change)) / left;
+            change.iter_mut().zip(&*direction).for_each(|(change, d)| *change += missing * d);
+            independent += 1;
         }
-        Ok(change)
+        Ok(())
     }
 }
 

@@ -104,7 +104,8 @@ impl Motion {
     /// As for [`keep`](Motion::keep).
     pub fn keep_from(&mut self, t: f64, y: &[f64]) -> Result<(), MechError> {
         if let Some(motion) = self.in_momenta() {
-            let state = motion.read(t, y)?;
+            motion.read(t, y)?;
+            let state = motion.state().to_vec();
             return motion.inner_mut().keep_from(t, &state);
         }
         let Some(mut integrals) = self.set_kept(None) else { return Ok(()) };

@@ -1,0 +1,55 @@
+//! Ending a derivation from elsewhere.
+
+use std::ffi::c_int;
+
+use pc_expr::Cancel;
+
+use crate::ffi::boundary::entry;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{clear, free, write};
+use crate::ffi::status::pc_status;
+
+/// Ends derivations that were given it in pc_system_options. Any number of threads may use it at
+/// the same time. Free it with pc_cancel_free.
+pub struct pc_cancel {
+    pub(crate) cancel: Cancel,
+}
+
+/// A handle by which derivations are ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut *mut pc_error) -> pc_status {
+    let new = || {
+        // SAFETY: null or a place for a handle, as the preamble demands.
+        unsafe { clear(cancel, "cancel") }?;
+        let made = Box::new(pc_cancel { cancel: Cancel::default() });
+        // SAFETY: as the preamble demands.
+        unsafe { write(cancel, Box::into_raw(made), "cancel") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, new) }
+}
+
+/// Ends the derivations under way with PC_LIMIT, soon, and those that begin later at once. It
+/// takes no lock and allocates nothing, so that a handler of signals may call it, which is all
+/// that one may. NULL is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_cancel_request(cancel: *const pc_cancel) {
+    // SAFETY: null or a live handle, as the preamble demands.
+    if let Some(handle) = unsafe { cancel.as_ref() } {
+        handle.cancel.cancel();
+    }
+}
+
+/// 1 after pc_cancel_request, else 0, as of NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_cancel_is_requested(cancel: *const pc_cancel) -> c_int {
+    // SAFETY: null or a live handle, as the preamble demands.
+    unsafe { cancel.as_ref() }.map_or(0, |handle| handle.cancel.is_cancelled().into())
+}
+
+/// Frees a handle; what was given it goes on. Null is allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_cancel_free(cancel: *mut pc_cancel) {
+    // SAFETY: null or a handle of ours that nobody uses any more.
+    unsafe { free(cancel) };
+}
