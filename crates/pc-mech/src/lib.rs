@@ -229,7 +229,10 @@ pub use constraints::multipliers::Multipliers;
 pub use emit::source::{EmitOptions, EmittedFile};
 pub use equations::canonical::Canonical;
 pub use equations::poincare::Equations;
-pub use error::MechError;
+pub use error::{
+    BodyError, ConstraintError, EvaluationError, ForceError, FrameError, IntegralError, LagrangianError,
+    MatrixError, MechError, ShapeError,
+};
 pub use numeric::least_squares::LeastSquares;
 pub use numeric::singular_values::SingularValues;
 pub use pc_algebra::{

@@ -2,7 +2,7 @@
 
 use pc_expr::{Evaluator, ExprError};
 
-use crate::error::MechError;
+use crate::error::{ConstraintError, EvaluationError, IntegralError, MechError};
 
 /// What is wrong, before it is known where.
 #[derive(Debug)]
@@ -42,22 +42,23 @@ impl EvaluationFailure {
         match self {
             EvaluationFailure::Pivot { index, pivot } => {
                 let quasi_velocity = unknowns[index].clone();
-                MechError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }
+                EvaluationError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }.into()
             }
             EvaluationFailure::Constraint { index } => {
-                MechError::SingularConstraint { constraint: unknowns[index].clone(), t, state: state() }
+                ConstraintError::Singular { constraint: unknowns[index].clone(), t, state: state() }.into()
             }
             EvaluationFailure::NoProjection { unknowns: k } => {
-                MechError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
+                ConstraintError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
+                    .into()
             }
             EvaluationFailure::Departed { constraint } => {
-                MechError::Departed { constraint, t, state: state() }
+                ConstraintError::Departed { constraint, t, state: state() }.into()
             }
             EvaluationFailure::NotSolved { residual, iterations } => {
-                MechError::LegendreNotSolved { residual, iterations, t, state: state() }
+                EvaluationError::LegendreNotSolved { residual, iterations, t, state: state() }.into()
             }
-            EvaluationFailure::NotKept => MechError::NotKept { t, state: state() },
-            EvaluationFailure::NotCompiled { what } => MechError::NotCompiled { what },
+            EvaluationFailure::NotKept => IntegralError::NotKept { t, state: state() }.into(),
+            EvaluationFailure::NotCompiled { what } => EvaluationError::NotCompiled { what }.into(),
             EvaluationFailure::Expr(error) => error.into(),
         }
     }

@@ -13,7 +13,7 @@ use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{InMomenta, Motion, Slopes};
 use crate::compiled::options::CompileOptions;
 use crate::constraints::multipliers::Multipliers;
-use crate::error::MechError;
+use crate::error::{EvaluationError, MechError};
 
 impl Multipliers<'_> {
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
@@ -49,7 +49,7 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`MechError::Shape`] for a guess of another length.
+    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of another length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
         let momenta = self.equations.system.momentum_symbols();
@@ -217,7 +217,9 @@ impl InMomenta {
     ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y,   ∂f/∂z as ∂f/∂x.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
         let Some(slopes) = self.jacobian.clone() else {
-            return Err(Failure::fatal(MechError::NotCompiled { what: "Jacobian" }));
+            return Err(Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled {
+                what: "Jacobian",
+            })));
         };
         let of_inner = self.inner_jacobian(t, y)?;
         let moving = self.moving();
@@ -248,7 +250,9 @@ impl InMomenta {
         entries: &mut [f64],
     ) -> Result<(), Failure> {
         let Some(slopes) = self.parameter_jacobian.clone() else {
-            return Err(Failure::fatal(MechError::NotCompiled { what: "derivative by parameters" }));
+            return Err(Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled {
+                what: "derivative by parameters",
+            })));
         };
         let (dim, of_inner) = (y.len(), self.inner_jacobian(t, y)?);
         let mut by_parameters = vec![0.0; entries.len()];

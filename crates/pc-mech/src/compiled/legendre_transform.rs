@@ -211,7 +211,7 @@ impl LegendreTransform {
     /// (x, y) of the state (x, η), length n + k both; first-order states follow and stay.
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
+    /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
     /// ∂L/∂η.
     pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
@@ -225,7 +225,9 @@ impl LegendreTransform {
     /// the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`MechError::LegendreNotSolved`], [`MechError::SingularMassMatrix`] or
+    /// [`ShapeError`](crate::ShapeError);
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved),
+    /// [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) or
     /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;

@@ -5,7 +5,7 @@ use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion};
-use crate::error::MechError;
+use crate::error::{FrameError, MechError};
 
 impl Motion {
     /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
@@ -184,7 +184,9 @@ impl VectorField for Motion {
         let rests = is_left && outcome.is_ok() && chart.rests(to, velocities, self.parameters());
         self.chart = Some(chart);
         match is_left && !rests {
-            true => Err(Failure::fatal(MechError::Undetermined { from: from.0, to: to.0 })),
+            true => {
+                Err(Failure::fatal(MechError::Frame(FrameError::Undetermined { from: from.0, to: to.0 })))
+            }
             false => Ok(()),
         }
     }

@@ -5,7 +5,7 @@ use pc_expr::{Backend, Evaluator, Expr, Program};
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::running_error::Measured;
-use crate::error::MechError;
+use crate::error::{IntegralError, MechError};
 
 /// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
 const MOST_STEPS: usize = 50;
@@ -47,7 +47,7 @@ impl<'g> FirstOrder<'g> {
         for name in names.iter().map(AsRef::as_ref) {
             let Some((_, integral)) = known.iter().find(|(known, _)| known == name) else {
                 let known = known.iter().map(|(name, _)| name.clone()).collect();
-                return Err(MechError::UnknownIntegral { name: name.to_owned(), known });
+                return Err(IntegralError::Unknown { name: name.to_owned(), known }.into());
             };
             functions.push(*integral);
         }

@@ -5,7 +5,7 @@ use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::constraints::multipliers::Multipliers;
 use crate::equations::canonical::Canonical;
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
+use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
 /// A rate of change that is larger than rounding of its terms by this is one.
@@ -27,7 +27,7 @@ impl<'g> Equations<'g> {
     /// The integrals of these names, or `energy`, to be [kept](Motion::keep).
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`].
+    /// [`IntegralError::Unknown`].
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         self.first_order().kept(names, &[])
     }
@@ -37,7 +37,8 @@ impl<'g> Canonical<'g> {
     /// The integrals of these names, or `energy`, as functions of (t, x, y), to be [kept](Motion::keep).
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`]; [`MechError::NotQuadratic`] where η is no expression in the momenta.
+    /// [`IntegralError::Unknown`]; [`LagrangianError::NotQuadratic`](crate::LagrangianError::NotQuadratic) where η is
+    /// no expression in the momenta.
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         let mut equations = self.observed_first_order()?;
         let closed = self.closed_quasi_velocities()?.iter().copied();
@@ -53,7 +54,7 @@ impl<'g> Multipliers<'g> {
     /// The integrals of these names, or `energy`, to be [kept](Motion::keep) beside the constraints.
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`].
+    /// [`IntegralError::Unknown`].
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         self.first_order().kept(names, &self.conditions())
     }
@@ -68,7 +69,7 @@ impl Motion {
     /// jumps on the way, as energy does where a potential is a step, is none there, and to keep it changes the motion.
     ///
     /// # Errors
-    /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
+    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
     /// equations of motion report at (t, y).
     ///
     /// ```
@@ -136,7 +137,7 @@ impl Motion {
     }
 
     /// # Errors
-    /// [`MechError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
+    /// [`IntegralError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
     fn check(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -148,7 +149,7 @@ impl Motion {
         for (place, &(rate, size)) in found.iter().enumerate() {
             if rate.is_nan() || rate.abs() > RATE * size && !self.is_uncertain(integrals, place, rate, t, y) {
                 let name = integrals.names[place].clone();
-                return Err(MechError::NotAnIntegral { name, t, rate });
+                return Err(IntegralError::NotAnIntegral { name, t, rate }.into());
             }
         }
         Ok(())
