@@ -214,6 +214,9 @@ mod emit;
 mod equations;
 mod error;
 mod numeric;
+#[cfg(test)]
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
 mod system;
 mod transform;
 

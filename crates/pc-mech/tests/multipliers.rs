@@ -2,11 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
+
 use pc_algebra::{LieGroup, UnitQuaternions};
 use pc_mech::{
     AlgebraError, CompileOptions, Constraint, ConstraintError, EvaluationError, Expr, Frame, FrameError,
     Graph, Matrix, MechError, Motion, Multipliers, System, VectorField,
 };
+
+use random::numbers;
 
 /// A double pendulum in Cartesian coordinates, its point of support moved up and down; a force depends on velocities.
 fn pendulum(graph: &Graph) -> Multipliers<'_> {
@@ -28,15 +33,6 @@ fn pendulum(graph: &Graph) -> Multipliers<'_> {
         Constraint::new("lower", (x2 - x1).square() + (y2 - y1).square() - l.square()),
     ];
     system.with_multipliers(&links).unwrap()
-}
-
-/// Numbers in −1..1, the same on every run.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 /// A state of the surface near a random one.
