@@ -2,6 +2,7 @@
 
 use pc_expr::{Evaluator, ExprError};
 
+use crate::compiled::point::Point;
 use crate::error::{ConstraintError, EvaluationError, IntegralError, MechError};
 
 /// What is wrong, before it is known where.
@@ -71,21 +72,14 @@ impl EvaluationFailure {
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
+    at: Point<'_>,
 ) -> Result<(), EvaluationFailure> {
     // Number by number, with an early end: to look at several at a time would wait for those just written.
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(blame(evaluator, (t, state, parameters)))
-    }
+    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(blame(evaluator, at)) }
 }
 
 /// What is to blame for values that are not finite.
 #[cold]
-pub(crate) fn blame(
-    evaluator: &Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
-) -> EvaluationFailure {
-    EvaluationFailure::Expr(evaluator.blame(t, state, parameters))
+pub(crate) fn blame(evaluator: &Evaluator, Point { t, y, p }: Point<'_>) -> EvaluationFailure {
+    EvaluationFailure::Expr(evaluator.blame(t, y, p))
 }

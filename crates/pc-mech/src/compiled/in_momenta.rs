@@ -12,6 +12,7 @@ use crate::compiled::failure::check_finite;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{InMomenta, Motion, Slopes};
 use crate::compiled::options::CompileOptions;
+use crate::compiled::point::Point;
 use crate::constraints::multipliers::Multipliers;
 use crate::error::{EvaluationError, MechError};
 
@@ -190,7 +191,7 @@ impl InMomenta {
         let parameters = self.inner.parameters();
         let rates = &mut ydot[self.moving()];
         self.transport.eval(t, &self.known, parameters, rates);
-        check_finite(rates, &self.transport, (t, &self.known, parameters))
+        check_finite(rates, &self.transport, Point { t, y: &self.known, p: parameters })
             .map_err(|failure| self.inner.failure(failure, t, &self.known[..y.len()]))
     }
 
@@ -276,7 +277,7 @@ impl InMomenta {
         let stride = 2 * k + m;
         let mut values = vec![0.0; slopes.symbols * stride + 2 * k * k];
         slopes.entries.clone().eval(t, &self.known, self.inner.parameters(), &mut values);
-        check_finite(&values, &slopes.entries, (t, &self.known, self.inner.parameters()))
+        check_finite(&values, &slopes.entries, Point { t, y: &self.known, p: self.inner.parameters() })
             .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
         let (by_q, moving) = values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);

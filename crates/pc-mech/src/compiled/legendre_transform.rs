@@ -8,6 +8,7 @@ use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
+use crate::compiled::point::Point;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
@@ -73,7 +74,7 @@ impl QuasiVelocities {
     }
 
     /// Writes η.
-    fn solve(&mut self, at: (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), EvaluationFailure> {
+    fn solve(&mut self, at: Point<'_>, eta: &mut [f64]) -> Result<(), EvaluationFailure> {
         match self {
             QuasiVelocities::Closed(program) => evaluate(program, at, eta),
             QuasiVelocities::Linear(linear) => {
@@ -90,7 +91,7 @@ impl Implicit {
     /// Writes η.
     fn solve(
         &mut self,
-        at @ (t, state, p): (f64, &[f64], &[f64]),
+        at @ Point { t, y: state, p }: Point<'_>,
         eta: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         let mut guess = self.guess.clone();
@@ -121,7 +122,7 @@ impl Linear {
     }
 
     /// w, and M factorised.
-    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
+    fn solve(&mut self, at @ Point { t, y: state, p }: Point<'_>) -> Result<Vec<f64>, EvaluationFailure> {
         self.equations.eval(t, state, p, &mut self.values);
         check_finite(&self.values, &self.equations, at)?;
         let (matrix, right) = self.values.split_at(self.lower.len());
@@ -216,7 +217,7 @@ impl LegendreTransform {
     pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
         let moving = &mut result[self.moving()];
-        evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
+        evaluate(&mut self.momenta, Point { t, y: state, p: &self.parameters }, moving)
             .map_err(|failure| self.error(failure, t, state))?;
         Ok(result)
     }
@@ -232,7 +233,7 @@ impl LegendreTransform {
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = self.checked(state)?;
         let moving = &mut result[self.moving()];
-        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
+        let outcome = self.quasi_velocities.solve(Point { t, y: state, p: &self.parameters }, moving);
         outcome.map_err(|failure| self.error(failure, t, state))?;
         Ok(result)
     }
@@ -259,9 +260,9 @@ impl LegendreTransform {
 
 fn evaluate(
     program: &mut Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
+    at @ Point { t, y, p }: Point<'_>,
     values: &mut [f64],
 ) -> Result<(), EvaluationFailure> {
-    program.eval(t, state, parameters, values);
-    check_finite(values, program, (t, state, parameters))
+    program.eval(t, y, p, values);
+    check_finite(values, program, at)
 }

@@ -4,6 +4,7 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::point::Point;
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
@@ -128,8 +129,8 @@ impl Surface {
 
     /// f where a constraint has a position and g where it has none, one number a constraint.
     pub(crate) fn residuals(&mut self, t: f64, y: &[f64], p: &[f64]) -> Vec<f64> {
-        let mut residuals = self.velocities.eval((t, y, p)).to_vec();
-        for (&place, &value) in self.places.iter().zip(self.positions.eval((t, y, p))) {
+        let mut residuals = self.velocities.eval(Point { t, y, p }).to_vec();
+        for (&place, &value) in self.places.iter().zip(self.positions.eval(Point { t, y, p })) {
             residuals[place] = value;
         }
         residuals
@@ -165,7 +166,7 @@ impl Surface {
 
     fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
-        check_finite(&self.entries, &self.bordered, (t, y, p))?;
+        check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
         let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
@@ -190,7 +191,7 @@ impl Surface {
     ) -> Result<(), EvaluationFailure> {
         let n = self.coordinates;
         let range = if part == Part::Position { 0..n } else { n..n + self.k };
-        self.measured(part).try_eval((t, y, p))?;
+        self.measured(part).try_eval(Point { t, y, p })?;
         for _ in 0..MOST_STEPS {
             let rest = self.measured(part).in_errors();
             if rest <= ONE_ROUNDING {
@@ -212,7 +213,7 @@ impl Surface {
             let mut go = |surface: &mut Surface, fraction: f64| {
                 let moving = y[range.clone()].iter_mut().zip(&start).zip(&change);
                 moving.for_each(|((y, start), change)| *y = start + fraction * change);
-                let is_finite = surface.measured(part).try_eval((t, y, p)).is_ok();
+                let is_finite = surface.measured(part).try_eval(Point { t, y, p }).is_ok();
                 is_finite.then(|| (surface.step(part), surface.measured(part).in_errors()))
             };
             let whole = go(self, 1.0);
@@ -220,7 +221,7 @@ impl Surface {
             if !converges && (rest <= 1.0 || self.is_rounding(part, &errors, length, &change, &start)) {
                 if whole.is_none_or(|(_, left)| left >= rest) {
                     y[range].copy_from_slice(&start);
-                    self.measured(part).try_eval((t, y, p))?;
+                    self.measured(part).try_eval(Point { t, y, p })?;
                 }
                 return self.factorise(t, y, p);
             }

@@ -4,6 +4,7 @@ use pc_expr::{Backend, Evaluator, Expr, Program};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::point::Point;
 use crate::compiled::running_error::Measured;
 use crate::error::{IntegralError, MechError};
 
@@ -68,7 +69,7 @@ impl<'g> FirstOrder<'g> {
 impl KeptIntegrals {
     /// The rates of change of the integrals at (t, y), where ẏ = `rates`, each with the sum of the absolute values of its
     /// terms.
-    pub(super) fn rates_of_change(&mut self, at: (f64, &[f64], &[f64]), rates: &[f64]) -> Vec<(f64, f64)> {
+    pub(super) fn rates_of_change(&mut self, at: Point<'_>, rates: &[f64]) -> Vec<(f64, f64)> {
         let gradients = self.gradients_at(at);
         let along = |gradient: &Vec<f64>| {
             let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(rates)).map(|(g, rate)| g * rate);
@@ -78,7 +79,7 @@ impl KeptIntegrals {
     }
 
     /// Takes the values at (t, y) for those to be kept.
-    pub(crate) fn set_levels(&mut self, at: (f64, &[f64], &[f64])) {
+    pub(crate) fn set_levels(&mut self, at: Point<'_>) {
         let held = self.held();
         self.levels.copy_from_slice(self.values.eval(at));
         self.levels[..held].fill(0.0);
@@ -90,7 +91,7 @@ impl KeptIntegrals {
     }
 
     /// (∂I_j/∂t, ∂I_j/∂y), one row for each.
-    fn gradients_at(&mut self, (t, y, p): (f64, &[f64], &[f64])) -> Vec<Vec<f64>> {
+    fn gradients_at(&mut self, Point { t, y, p }: Point<'_>) -> Vec<Vec<f64>> {
         let mut entries = vec![0.0; self.levels.len() * (y.len() + 1)];
         self.gradients.eval(t, y, p, &mut entries);
         entries.chunks_exact(y.len() + 1).map(<[f64]>::to_vec).collect()
@@ -104,8 +105,8 @@ impl KeptIntegrals {
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
-            self.values.try_eval((t, y, p))?;
-            let change = self.shortest((t, y, p))?;
+            self.values.try_eval(Point { t, y, p })?;
+            let change = self.shortest(Point { t, y, p })?;
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let length = largest(&change);
             let first = *first.get_or_insert(length);
@@ -127,9 +128,9 @@ impl KeptIntegrals {
 
     /// The shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
     /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
-    fn shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<Vec<f64>, EvaluationFailure> {
+    fn shortest(&mut self, at: Point<'_>) -> Result<Vec<f64>, EvaluationFailure> {
         let gradients = self.gradients_at(at);
-        let mut change = vec![0.0; at.1.len()];
+        let mut change = vec![0.0; at.y.len()];
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for (place, row) in gradients.iter().enumerate() {
             check_finite(row, &self.gradients, at)?;
@@ -141,7 +142,7 @@ impl KeptIntegrals {
             // At the edge of the domain of a function that is part of it an integral may have no bound.
             let error =
                 Some(self.values.error(place)).filter(|error| error.is_finite()).unwrap_or_else(|| {
-                    let terms: f64 = gradient.iter().zip(at.1).map(|(g, y)| (g * y).abs()).sum();
+                    let terms: f64 = gradient.iter().zip(at.y).map(|(g, y)| (g * y).abs()).sum();
                     ROUNDINGS * f64::EPSILON * (terms + self.levels[place].abs())
                 });
             let residual = if difference.abs() <= error { 0.0 } else { difference };

@@ -1,6 +1,7 @@
 //! Motions that are brought back to first integrals.
 
 use crate::compiled::motion::Motion;
+use crate::compiled::point::Point;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::constraints::multipliers::Multipliers;
 use crate::equations::canonical::Canonical;
@@ -110,7 +111,7 @@ impl Motion {
         }
         let Some(mut integrals) = self.set_kept(None) else { return Ok(()) };
         let kept = self.try_to_keep(&mut integrals, t, y);
-        integrals.set_levels((t, y, self.parameters()));
+        integrals.set_levels(Point { t, y, p: self.parameters() });
         self.set_kept(Some(integrals));
         kept
     }
@@ -145,7 +146,7 @@ impl Motion {
         y: &[f64],
         rates: &[f64],
     ) -> Result<(), MechError> {
-        let found = integrals.rates_of_change((t, y, self.parameters()), rates);
+        let found = integrals.rates_of_change(Point { t, y, p: self.parameters() }, rates);
         for (place, &(rate, size)) in found.iter().enumerate() {
             if rate.is_nan() || rate.abs() > RATE * size && !self.is_uncertain(integrals, place, rate, t, y) {
                 let name = integrals.names[place].clone();
@@ -173,7 +174,8 @@ impl Motion {
                 1.0 + LAST_DIGITS * part
             };
             let Ok((probe, rates)) = self.perturbed_rates(t, y, factor) else { return false };
-            let (there, _) = integrals.rates_of_change((t, &probe, self.parameters()), &rates)[place];
+            let (there, _) =
+                integrals.rates_of_change(Point { t, y: &probe, p: self.parameters() }, &rates)[place];
             (there - rate).abs() > UNCERTAIN * rate.abs()
         })
     }
