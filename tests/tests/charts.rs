@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::{Graph, MechError};
+use pc_mech::{FrameError, Graph, MechError};
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_solve::{Method, Options, Solution, Solve, SolveError};
 
@@ -40,7 +40,7 @@ fn a_motion_is_not_followed_past_a_place_that_forgets_its_velocity() {
         let SolveError::Integration(error) = *error else { panic!("{error}") };
         let failure = error.failure.as_ref().unwrap();
         let cause = failure.cause().downcast_ref::<MechError>();
-        let Some(MechError::Undetermined { from, to }) = cause else { panic!("{error}") };
+        let Some(MechError::Frame(FrameError::Undetermined { from, to })) = cause else { panic!("{error}") };
         assert!(
             *from < 1.0 && 1.0 < *to && error.time == *from,
             "{from} to {to}, after reaching {}",

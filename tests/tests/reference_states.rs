@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::{AlgebraError, Expr, Graph, MechError, Motion, VectorField};
+use pc_mech::{AlgebraError, Expr, Graph, LagrangianError, MechError, Motion, VectorField};
 use pc_model::{Assembly, BUILTIN, Builtin, Model};
 use pc_solve::{Method, Options, solve};
 use pc_tests::reference::{Reference, references};
@@ -144,11 +144,12 @@ fn lagranges_equations_reach_the_references() {
         let assembly = model.assemble(&graph).unwrap();
         let mut motion = match in_velocities(&assembly) {
             Ok(motion) => motion,
-            Err(MechError::Redundant { .. }) => {
+            Err(MechError::Lagrangian(LagrangianError::RedundantCoordinates { .. })) => {
                 redundant.push(name);
                 continue;
             }
             Err(error) => {
+                assert!(error.is_of_dependent_coordinates(), "{name}: {error}");
                 let singular =
                     matches!(error, MechError::Algebra(AlgebraError::DependentOperators { rank: 2, .. }));
                 assert!(singular, "{name}: {error}");

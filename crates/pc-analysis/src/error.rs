@@ -1,7 +1,7 @@
 //! What can be wrong with a question about motions.
 
 use pc_expr::{Expr, ExprError, Failure, Graph, readable};
-use pc_mech::MechError;
+use pc_mech::{MechError, ShapeError};
 use pc_nonholo::NonholoError;
 
 /// An error of this crate.
@@ -113,7 +113,7 @@ impl From<Failure> for AnalysisError {
 
 /// An error unless `found` is `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AnalysisError> {
-    if found == expected { Ok(()) } else { Err(MechError::Shape { what, found, expected }.into()) }
+    if found == expected { Ok(()) } else { Err(MechError::from(ShapeError { what, found, expected }).into()) }
 }
 
 /// An error for the first symbol in `functions` that is not `known`.

@@ -3,7 +3,7 @@
 mod roots;
 
 use pc_expr::{Evaluator, Inputs, Program};
-use pc_mech::{Backend, Canonical, Expr, Matrix, MechError, Neighbourhood};
+use pc_mech::{Backend, Canonical, Expr, Matrix, MechError, Neighbourhood, ShapeError};
 
 use crate::error::{AnalysisError, shape};
 use crate::numeric::{dense::norm, newton};
@@ -40,7 +40,8 @@ pub struct CompleteIntegral<'g> {
 /// in some symbol, as it is in the energy.
 ///
 /// # Errors
-/// [`AnalysisError::Forced`] if a generalised force is not zero; [`MechError::NotQuadratic`] if H is not
+/// [`AnalysisError::Forced`] if a generalised force is not zero;
+/// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if H is not
 /// [closed](Canonical::is_closed).
 ///
 /// ```
@@ -78,10 +79,10 @@ impl<'g> CompleteIntegral<'g> {
     /// The complete integral S = `action` with the constants α of the names given, k of them.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAnAction`] if S does not satisfy the [equation](hamilton_jacobi): its left side is not folded
-    /// to zero, and in numbers more than rounding;
-    /// [`AnalysisError::IncompleteIntegral`] if det ∂(X_s S)/∂α_r = 0 at almost all points; [`MechError::Shape`]
-    /// if there are not k constants and k coordinates; [`AnalysisError::Forced`]; [`MechError::NotQuadratic`];
+    /// [`AnalysisError::NotAnAction`] if S does not satisfy the [equation](hamilton_jacobi): its left side is not
+    /// folded to zero, and in numbers more than rounding; [`AnalysisError::IncompleteIntegral`] if
+    /// det ∂(X_s S)/∂α_r = 0 at almost all points; [`ShapeError`] if there are not k constants and k coordinates;
+    /// [`AnalysisError::Forced`]; [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic);
     /// [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
     pub fn new(
         canonical: &Canonical<'g>,
@@ -94,7 +95,7 @@ impl<'g> CompleteIntegral<'g> {
             [("the list of constants", constants.len()), ("the list of coordinates", x.len())]
         {
             if found != k {
-                return Err(MechError::Shape { what, found, expected: k }.into());
+                return Err(MechError::from(ShapeError { what, found, expected: k }).into());
             }
         }
         let remainder = hamilton_jacobi(canonical, action)?;
@@ -142,7 +143,7 @@ impl<'g> CompleteIntegral<'g> {
     /// length k.
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_mech::ExprError::NotFinite) outside the domain of S.
+    /// [`ShapeError`]; [`ExprError::NotFinite`](pc_mech::ExprError::NotFinite) outside the domain of S.
     pub fn betas(&mut self, t: f64, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>, AnalysisError> {
         let mut values = self.evaluate(t, x, alpha)?;
         values.truncate(alpha.len());

@@ -1,7 +1,7 @@
 //! The equations of variation (Poincaré; Chetaev's equations of perturbed motion in the first approximation).
 
 use pc_expr::{Failure, TimeDependence, VectorField};
-use pc_mech::MechError;
+use pc_mech::{EvaluationError, MechError};
 
 /// A motion together with deviations from it in the first approximation:
 ///
@@ -19,13 +19,13 @@ impl<F: VectorField> Variation<F> {
     /// The motion of `field`, with `deviations` deviations from it.
     ///
     /// # Errors
-    /// [`MechError::NotCompiled`] if the field has no products with its Jacobian, as a
+    /// [`EvaluationError::NotCompiled`] if the field has no products with its Jacobian, as a
     /// [`Motion`](pc_mech::Motion) has [on demand](pc_mech::CompileOptions::jvp).
     pub fn new(field: F, deviations: usize) -> Result<Variation<F>, MechError> {
         if field.has_jvp() {
             Ok(Variation { field, deviations })
         } else {
-            Err(MechError::NotCompiled { what: "products with the Jacobian" })
+            Err(EvaluationError::NotCompiled { what: "products with the Jacobian" }.into())
         }
     }
 

@@ -6,7 +6,7 @@
 mod common;
 
 use pc_analysis::Variation;
-use pc_mech::{CompileOptions, Graph, MechError, Motion, System, VectorField};
+use pc_mech::{CompileOptions, EvaluationError, Graph, MechError, Motion, System, VectorField};
 
 /// A heavy top with three moments of inertia in Euler's angles, in canonical form.
 fn top() -> Motion {
@@ -118,5 +118,8 @@ fn linear_motions_vary_as_they_move() {
     assert_eq!(variation.field().names(), ["x", "x'"]);
 
     let plain = Variation::new(equations.compile().unwrap(), 1).unwrap_err();
-    assert_eq!(plain, MechError::NotCompiled { what: "products with the Jacobian" });
+    assert_eq!(
+        plain,
+        MechError::Evaluation(EvaluationError::NotCompiled { what: "products with the Jacobian" })
+    );
 }

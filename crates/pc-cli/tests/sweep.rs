@@ -1,9 +1,14 @@
 //! `pc sweep`: the same bytes whatever happens on the way.
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
+
+use random::SplitMix64;
 
 /// A blade on ice: its constraint says that a quasi-velocity vanishes.
 const SLEIGH: &str = r#"
@@ -355,13 +360,11 @@ fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
     let mut kills = 0;
-    // Moments by a generator with a fixed seed [Knuth], some before the journal is begun.
-    let mut random = 12_345_u64;
+    // Moments of a fixed seed, some before the journal is begun.
+    let mut random = SplitMix64::new(12_345);
     for _ in 0..12 {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let patience =
-            Duration::from_millis(random >> 33).min(Duration::from_millis(20 + (random >> 40) % 60));
-        kills += u32::from(killed(&place, "a.csv", 1 + (random >> 50) % 6000, patience));
+        let patience = Duration::from_millis(20 + random.next_bits() % 60);
+        kills += u32::from(killed(&place, "a.csv", 1 + random.next_bits() % 6000, patience));
     }
     assert!(kills >= 3, "the sweep is over too soon for this test: {kills}");
     let resumed = place.swept("a.csv", &MANY);

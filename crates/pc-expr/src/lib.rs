@@ -39,6 +39,9 @@ mod ode;
 pub mod parse;
 mod print;
 mod program;
+#[cfg(test)]
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
 mod time_profile;
 
 pub use calculus::collect::Polynomial;

@@ -2,6 +2,9 @@
 #![cfg(feature = "jit")]
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests, of raw entry points among others")]
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
+
 use std::sync::Arc;
 
 use pc_expr::{
@@ -10,31 +13,12 @@ use pc_expr::{
 };
 use proptest::prelude::*;
 
+use random::SplitMix64;
+
 /// Options under which compiled code gives what the interpreter gives, bit for bit.
 const EXACT: JitOptions = JitOptions { fma: false, inline_trig: false, registers: 14, chunk: 1000 };
 const STATE: usize = 4;
 const PARAMETERS: usize = 3;
-
-/// A small generator of pseudo-random numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-
-    /// Uniform in [−a, a].
-    fn within(&mut self, a: f64) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 * a - a
-    }
-}
 
 fn call<'g>(function: Function, x: Expr<'g>, y: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     match function {
@@ -60,7 +44,7 @@ fn call<'g>(function: Function, x: Expr<'g>, y: Expr<'g>, z: Expr<'g>) -> Expr<'
 }
 
 /// A program of random operations; `smooth` leaves out what amplifies rounding or jumps.
-fn random_program(random: &mut Random, size: usize, smooth: bool) -> Program {
+fn random_program(random: &mut SplitMix64, size: usize, smooth: bool) -> Program {
     let graph = Graph::with_folding(Folding::Structural);
     let t = graph.symbol("t");
     let state = graph.symbols(["a", "b", "c", "d"]).to_vec();
@@ -101,13 +85,13 @@ fn random_program(random: &mut Random, size: usize, smooth: bool) -> Program {
     Program::new(&graph, &inputs, &outputs).unwrap()
 }
 
-fn random_inputs(random: &mut Random) -> (f64, [f64; STATE], [f64; PARAMETERS]) {
+fn random_inputs(random: &mut SplitMix64) -> (f64, [f64; STATE], [f64; PARAMETERS]) {
     let scale = [0.5, 2.0, 20.0][random.below(3)];
     let mut number = || match random.below(40) {
         0 => 0.0,
         1 => -0.0,
         2 => 1.0,
-        _ => random.within(scale),
+        _ => random.uniform(-scale, scale),
     };
     (number(), std::array::from_fn(|_| number()), std::array::from_fn(|_| number()))
 }
@@ -124,7 +108,7 @@ fn evaluate(kernel: &mut dyn Kernel, inputs: &(f64, [f64; STATE], [f64; PARAMETE
 
 #[test]
 fn exact_options_give_the_interpreters_bits() {
-    let mut random = Random(1);
+    let mut random = SplitMix64::new(1);
     let mut seen = std::collections::BTreeSet::new();
     for round in 0..60 {
         let program = random_program(&mut random, 20 + 12 * (round % 20), false);
@@ -226,7 +210,7 @@ fn bounded_call(function: Function, args: [Bounded; 3]) -> Bounded {
 
 #[test]
 fn usual_options_stay_within_the_rounding_bound() {
-    let mut random = Random(2);
+    let mut random = SplitMix64::new(2);
     let (mut compared, mut skipped) = (0, 0);
     for round in 0..50 {
         let program = random_program(&mut random, 20 + 10 * (round % 20), false);
@@ -253,13 +237,13 @@ fn usual_options_stay_within_the_rounding_bound() {
 /// Sums, products, sines and cosines: relative to the largest value on the tape, which bounds every term.
 #[test]
 fn smooth_programs_agree_to_1e_13_of_the_largest_term() {
-    let mut random = Random(3);
+    let mut random = SplitMix64::new(3);
     for _ in 0..20 {
         let program = random_program(&mut random, 120, true);
         let mut jit = Jit::new(&program).unwrap();
         let mut interpreter = Interpreter::new(Arc::new(program.clone()));
         for _ in 0..500 {
-            let mut number = || random.within(2.0);
+            let mut number = || random.uniform(-2.0, 2.0);
             let inputs = (number(), std::array::from_fn(|_| number()), std::array::from_fn(|_| number()));
             let largest = with_bounds(&program, &inputs).iter().fold(1.0_f64, |l, b| l.max(b.value.abs()));
             let expected = evaluate(&mut interpreter, &inputs, program.outputs_len());
@@ -389,7 +373,7 @@ fn threads_share_one_entry() {
         for thread in 0..8 {
             let (jit, program) = (&jit, &program);
             scope.spawn(move || {
-                let mut random = Random(100 + thread);
+                let mut random = SplitMix64::new(100 + thread);
                 let mut kernel = jit.clone();
                 let mut scratch = vec![f64::NAN; jit.scratch_len()];
                 for _ in 0..500 {
@@ -459,7 +443,7 @@ proptest! {
 
     #[test]
     fn any_option_gives_the_same_values(seed: u64, size in 10_usize..200, registers in 0_u32..40, far in -1e7..1e7) {
-        let mut random = Random(seed);
+        let mut random = SplitMix64::new(seed);
         let program = random_program(&mut random, size, true);
         let mut reference = Jit::new(&program).unwrap();
         let options = JitOptions { registers, ..JitOptions::default() };

@@ -2,7 +2,12 @@
 #![cfg(feature = "jit")]
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
+
 use pc_expr::{Graph, Inputs, Jit, JitOptions, Kernel, Program};
+
+use random::SplitMix64;
 
 /// The unevaluated sum of two numbers, the second below half a unit of the first.
 #[derive(Clone, Copy)]
@@ -96,18 +101,13 @@ fn kernels() -> (Jit, Jit) {
 }
 
 fn for_each_argument(mut f: impl FnMut(f64)) {
-    let mut seed = 7_u64;
-    let mut bits = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        seed ^ (seed >> 29)
-    };
+    let mut random = SplitMix64::new(7);
     for i in 0..600_000 {
-        let uniform = (bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
-        f(uniform * [1.0, 4.0, 100.0, 1e5][i % 4]);
+        f(random.uniform(-1.0, 1.0) * [1.0, 4.0, 100.0, 1e5][i % 4]);
         // Any exponent from the least to that of 10⁵.
         if i % 4 == 0 {
-            let exponent = bits() % (1023 + 16);
-            f(f64::from_bits(bits() >> 63 << 63 | exponent << 52 | bits() >> 12));
+            let exponent = random.next_bits() % (1023 + 16);
+            f(f64::from_bits(random.next_bits() >> 63 << 63 | exponent << 52 | random.next_bits() >> 12));
         }
     }
     // The numbers around every multiple of π/4.

@@ -5,11 +5,12 @@
 //! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
 //! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the
 //! motion of momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds
-//! rounding, `chart` sees where quasi-velocities do not determine velocities, and `failure` says why there are no rates.
+//! rounding, `point` is where all of them are evaluated, `chart` sees where quasi-velocities do not determine velocities, and `failure` says why there are no rates.
 
 pub(crate) mod chart;
 pub(crate) mod elimination;
 pub(crate) mod failure;
+pub(crate) mod point;
 pub(crate) mod projection;
 pub(crate) mod running_error;
 

@@ -214,6 +214,9 @@ mod emit;
 mod equations;
 mod error;
 mod numeric;
+#[cfg(test)]
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
 mod system;
 mod transform;
 
@@ -229,7 +232,10 @@ pub use constraints::multipliers::Multipliers;
 pub use emit::source::{EmitOptions, EmittedFile};
 pub use equations::canonical::Canonical;
 pub use equations::poincare::Equations;
-pub use error::MechError;
+pub use error::{
+    BodyError, ConstraintError, EvaluationError, ForceError, FrameError, IntegralError, LagrangianError,
+    MatrixError, MechError, ShapeError,
+};
 pub use numeric::least_squares::LeastSquares;
 pub use numeric::singular_values::SingularValues;
 pub use pc_algebra::{

@@ -6,8 +6,8 @@ mod common;
 
 use pc_algebra::RigidMotions;
 use pc_mech::{
-    EulerAngles, Expr, Graph, LieGroup, Matrix, MechError, Particle, RigidBody, System, SystemBuilder,
-    UnitQuaternions, VectorField,
+    EulerAngles, Expr, Graph, LagrangianError, LieGroup, Matrix, MechError, Particle, RigidBody, System,
+    SystemBuilder, UnitQuaternions, VectorField,
 };
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
@@ -473,7 +473,10 @@ fn what_is_refused() {
         of_body(RigidBody::turning(1, [0], [1; 3], [Expr::ZERO, x_rate * rate, 0.into()])),
         "an angular velocity is affine in the quasi-velocities; its component `w^2*x` is not"
     );
-    assert!(matches!(System::builder(&graph).coordinates(["x"]).build(), Err(MechError::NoLagrangian)));
+    assert!(matches!(
+        System::builder(&graph).coordinates(["x"]).build(),
+        Err(MechError::Lagrangian(LagrangianError::Missing))
+    ));
 }
 
 /// One sign wrong in a rotation about an axis, a column too long, a reflection.

@@ -6,7 +6,9 @@ use std::ops::{Add, Mul, Neg};
 
 use num_dual::{Dual64, DualNum};
 use pc_expr::{Function, Scalar};
-use pc_mech::{CompileOptions, Equations, Expr, Graph, MechError, Motion, System, VectorField};
+use pc_mech::{
+    CompileOptions, Equations, EvaluationError, Expr, Graph, MechError, Motion, System, VectorField,
+};
 
 /// A number with its derivative.
 #[derive(Clone, Copy, Debug)]
@@ -308,7 +310,10 @@ fn what_was_not_compiled_is_refused() {
     for (error, message) in errors.iter().zip([jacobian, jacobian, product, parameters]) {
         assert!(!error.is_recoverable());
         assert_eq!(error.to_string(), message);
-        assert!(matches!(error.cause().downcast_ref(), Some(MechError::NotCompiled { .. })));
+        assert!(matches!(
+            error.cause().downcast_ref(),
+            Some(MechError::Evaluation(EvaluationError::NotCompiled { .. }))
+        ));
     }
 }
 
@@ -406,7 +411,7 @@ fn a_mass_matrix_that_is_singular_but_for_rounding_is_refused() {
         let mut motion = system.poincare().unwrap().compile().unwrap();
         let error = motion.rhs(0.0, &[x[0], x[1], 0.1, 1.0], &mut [0.0; 4]).unwrap_err();
         match error.cause().downcast_ref() {
-            Some(MechError::SingularMassMatrix { quasi_velocity, .. }) => {
+            Some(MechError::Evaluation(EvaluationError::SingularMassMatrix { quasi_velocity, .. })) => {
                 assert_eq!(quasi_velocity, undetermined);
             }
             _ => panic!("{error}"),

@@ -6,8 +6,8 @@ mod common;
 
 use pc_analysis::{Conservation, Rates};
 use pc_mech::{
-    Backend, CompileOptions, EmitOptions, Expr, ExternalForce, Failure, Graph, Language, MechError, System,
-    SystemBuilder, VectorField,
+    Backend, CompileOptions, EmitOptions, Expr, ExternalForce, Failure, ForceError, Graph, Language,
+    MechError, System, SystemBuilder, VectorField,
 };
 
 /// Forces on ω3 and ω1 of a top, with their derivatives.
@@ -261,14 +261,14 @@ fn failures_name_the_force() {
         failure.to_string(),
         "the external force on `ω1` is NaN at t = 0.7, γ1 = 0.3, γ2 = -0.5, γ3 = 0.8, ω1 = 0.4, ω2 = -1.1, ω3 = 0.6"
     );
-    assert!(matches!(MechError::from(failure), MechError::ExternalForceNotFinite { .. }));
+    assert!(matches!(MechError::from(failure), MechError::Force(ForceError::NotFinite { .. })));
     let root = |_: f64, y: &[f64], q: &mut [f64]| (q[0], q[1]) = ((0.3 - y[0]).sqrt(), 0.0);
     let mut motion = equations.compile_forced(root).unwrap();
     motion.rhs(T, &Y, &mut rate).unwrap();
     let failure = motion.jacobian(T, &Y, &mut [0.0; 36]).unwrap_err();
     let said = "the derivative by `γ1` of the external force on `ω3` is NaN at t = 0.7";
     assert!(failure.to_string().starts_with(said), "{failure}");
-    assert!(matches!(MechError::from(failure), MechError::ExternalSlopeNotFinite { .. }));
+    assert!(matches!(MechError::from(failure), MechError::Force(ForceError::SlopeNotFinite { .. })));
 }
 
 #[test]
@@ -278,5 +278,5 @@ fn declarations_are_checked() {
     assert_eq!(error.to_string(), "`ω4` is not a quasi-velocity; these are ω1, ω2, ω3");
     let error =
         top(&graph).build().unwrap().poincare().unwrap().compile_forced(Known).map(|_| ()).unwrap_err();
-    assert_eq!(error, MechError::NoExternalForce);
+    assert_eq!(error, MechError::Force(ForceError::NoneDeclared));
 }

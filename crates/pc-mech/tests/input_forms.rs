@@ -5,7 +5,7 @@
 mod common;
 
 use pc_analysis::Rates;
-use pc_mech::{Expr, Frame, Graph, Matrix, MechError, Particle, System, SystemBuilder};
+use pc_mech::{Expr, Frame, Graph, Matrix, MatrixError, MechError, Particle, System, SystemBuilder};
 
 /// The spherical pendulum with the velocities ẋ and ẏ.
 fn spherical(graph: &Graph) -> SystemBuilder<'_> {
@@ -154,7 +154,10 @@ fn gyroscopic_forces_do_no_work() {
     };
     assert_eq!(
         refused((2, 0)),
-        MechError::NotSkew { what: "the matrix of gyroscopic forces", pair: ["ω1".into(), "ω3".into()] }
+        MechError::Matrix(MatrixError::NotSkew {
+            what: "the matrix of gyroscopic forces",
+            pair: ["ω1".into(), "ω3".into()]
+        })
     );
     assert_eq!(
         refused((1, 1)).to_string(),

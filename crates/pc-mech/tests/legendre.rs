@@ -5,7 +5,10 @@
 mod common;
 
 use common::{compiled, rates, some};
-use pc_mech::{Canonical, Expr, ExprError, Graph, MechError, System, VectorField};
+use pc_mech::{
+    Canonical, EvaluationError, Expr, ExprError, Graph, LagrangianError, MechError, ShapeError, System,
+    VectorField,
+};
 use proptest::prelude::*;
 
 /// L = ½ A_rs η_r η_s + ε |η|⁴ + a e^(b·η) + d·η, convex for ε, a ≥ 0 and positive definite A.
@@ -164,7 +167,7 @@ fn a_momentum_that_no_velocity_has_is_an_error() {
             let failure = motion.rhs(0.5, &[0.3, y], &mut [0.0; 2]).unwrap_err();
             assert!(failure.is_recoverable());
             match failure.into() {
-                MechError::LegendreNotSolved { residual, t, state, .. } => {
+                MechError::Evaluation(EvaluationError::LegendreNotSolved { residual, t, state, .. }) => {
                     let expected = y.abs() - limit;
                     assert!((residual - expected).abs() <= 1e-2 * expected, "{residual}, {expected}");
                     assert_eq!(t, 0.5);
@@ -175,7 +178,10 @@ fn a_momentum_that_no_velocity_has_is_an_error() {
             assert!(motion.observe(0.5, &[0.3, y])[0].is_nan());
             let mut transform = canonical.legendre_transform().unwrap();
             let error = transform.to_quasi_velocities(0.5, &[0.3, y]).unwrap_err();
-            assert!(matches!(error, MechError::LegendreNotSolved { .. }), "{error}");
+            assert!(
+                matches!(error, MechError::Evaluation(EvaluationError::LegendreNotSolved { .. })),
+                "{error}"
+            );
         }
         assert_eq!(rates(&mut motion, 0.0, &[0.3, 0.9 * limit]), inside, "a failure leaves no trace");
         let failure = motion.rhs(0.5, &[0.3, f64::NAN], &mut [0.0; 2]).unwrap_err();
@@ -195,7 +201,7 @@ fn messages_name_momenta_and_state() {
     let mut transform = on_a_line(&graph, |v| -(1.0 - v.square()).sqrt()).legendre_transform().unwrap();
     let error = transform.to_momenta(0.0, &[0.0, 2.0]).unwrap_err();
     assert!(matches!(error, MechError::Expr(ExprError::NotFinite { .. })), "{error}");
-    let shape = MechError::Shape { what: "the state", found: 1, expected: 2 };
+    let shape = MechError::Shape(ShapeError { what: "the state", found: 1, expected: 2 });
     assert_eq!(transform.to_momenta(0.0, &[0.0]).unwrap_err(), shape);
     assert_eq!(transform.to_quasi_velocities(0.0, &[0.0]).unwrap_err(), shape);
 }
@@ -218,7 +224,8 @@ fn the_guess_chooses_where_to_start_and_which_solution_is_found() {
         let found = transform.to_quasi_velocities(0.0, &[0.0, 0.0]).unwrap()[1];
         assert!((found - expected).abs() < 1e-15, "{found} from {guess}");
     }
-    let shape = MechError::Shape { what: "the guess of the quasi-velocities", found: 2, expected: 1 };
+    let shape =
+        MechError::Shape(ShapeError { what: "the guess of the quasi-velocities", found: 2, expected: 1 });
     assert_eq!(wells.with_guess(&[0.0, 1.0]).unwrap_err(), shape);
 }
 
@@ -230,7 +237,10 @@ fn an_undetermined_velocity_is_still_refused() {
         .lagrangian(|_, x, v| (v[0] + v[1]).powi(4) - x[0] * x[1])
         .build()
         .unwrap();
-    assert!(matches!(system.canonical(), Err(MechError::DegenerateLagrangian { rank: 1, size: 2, .. })));
+    assert!(matches!(
+        system.canonical(),
+        Err(MechError::Lagrangian(LagrangianError::Degenerate { rank: 1, size: 2, .. }))
+    ));
 }
 
 /// Where ∂²L/∂η∂η does not show η, L may jump or bend all the same.
@@ -255,7 +265,10 @@ fn a_lagrangian_that_is_quadratic_in_pieces_is_not_called_quadratic() {
         let canonical = system.canonical().unwrap();
         assert!(!canonical.is_closed(), "{}", system.lagrangian());
         let error = system.in_orthonormal_frame(["w"]).unwrap_err();
-        assert_eq!(error, MechError::NotQuadratic { quasi_velocity: "x'".to_owned() });
+        assert_eq!(
+            error,
+            MechError::Lagrangian(LagrangianError::NotQuadratic { quasi_velocity: "x'".to_owned() })
+        );
         for velocity in [-1.5, 2.0] {
             let canonical = canonical.clone().with_guess(&[velocity / 2.0]).unwrap();
             let mut transform = canonical.legendre_transform().unwrap();

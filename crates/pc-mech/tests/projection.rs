@@ -2,16 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
+
 use pc_mech::{Constraint, Graph, Multipliers, System, VectorField};
 
-/// Numbers in −1..1, the same on every run.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use random::numbers;
 
 /// A particle of mass m on a circle of radius r, with a wheel of radius r/3 that rolls as it goes.
 fn wheel(graph: &Graph) -> Multipliers<'_> {

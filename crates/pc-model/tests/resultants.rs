@@ -2,12 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/classical/random.rs"]
+mod random;
 #[path = "../../../tests/src/verified.rs"]
 mod verified;
 
 use pc_mech::{Graph, Motion, VectorField};
 use pc_model::{Document, Model, ModelError, Source};
 
+use random::numbers;
 use verified::derived_twice;
 
 fn model(text: &str) -> Model {
@@ -52,15 +55,6 @@ impl Watched {
         let mut state: Vec<f64> = self.start.iter().map(|x| x + 0.2 * next()).collect();
         self.motion.project(0.0, &mut state).unwrap();
         state
-    }
-}
-
-/// Numbers in −1..1, the same on every run.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
 

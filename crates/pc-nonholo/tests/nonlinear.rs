@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use pc_mech::{Constraint, Expr, Graph, MechError, System};
+use pc_mech::{Constraint, ConstraintError, Expr, Graph, MechError, System};
 use pc_nonholo::{Adapted, ConstraintClassification, Kind, NonholoError, Voronets};
 
 fn particle(graph: &Graph) -> System<'_> {
@@ -35,7 +35,7 @@ fn the_affine_ones_keep_their_kinds() {
     assert!(!sorted.is_holonomic());
     let again = Constraint::nonlinear("again", 2.0 * vx.square() + 2.0 * vy.square() - 2.0);
     let error = ConstraintClassification::new(&particle(&graph), &[speed, again], &at(&graph)).unwrap_err();
-    let expected = MechError::DependentConstraint { constraint: "again".to_owned() };
+    let expected = MechError::Constraint(ConstraintError::Dependent { constraint: "again".to_owned() });
     assert_eq!(error, NonholoError::Mech(expected));
 }
 
@@ -50,7 +50,7 @@ fn forms_of_independent_velocities_refuse_them() {
     let message = "Voronets' equations need constraints that are affine in the velocities; `speed` is not";
     assert_eq!(Voronets::new(&held, &at(&graph)).unwrap_err().to_string(), message);
     let error = held.in_independent_velocities(&at(&graph)).unwrap_err();
-    assert_eq!(error, MechError::ConstraintNotAffine { constraint: "speed".to_owned() });
+    assert_eq!(error, MechError::Constraint(ConstraintError::NotAffine { constraint: "speed".to_owned() }));
 }
 
 /// Of an affine constraint, λ(t, x, η) is the reaction of equations (30) on it, and so are the rates.

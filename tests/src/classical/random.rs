@@ -1,4 +1,6 @@
-//! Random numbers that are the same everywhere.
+//! Random numbers of the tests, the same everywhere.
+
+#![allow(dead_code, unreachable_pub, reason = "a module of tests of other crates, which take what they need")]
 
 /// A small generator of random numbers: a counter, well mixed [Steele, Lea and Flood 2014, SplitMix64].
 #[derive(Clone, Debug)]
@@ -19,6 +21,11 @@ impl SplitMix64 {
         z ^ (z >> 31)
     }
 
+    /// One of 0..count.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.next_bits() % count as u64) as usize
+    }
+
     /// Uniform in [low, high).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.next_bits() >> 11) as f64 / (1u64 << 53) as f64)
@@ -33,4 +40,10 @@ impl SplitMix64 {
     pub(super) fn normals(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.normal()).collect()
     }
+}
+
+/// Numbers in [−1, 1).
+pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut random = SplitMix64::new(seed);
+    move || random.uniform(-1.0, 1.0)
 }

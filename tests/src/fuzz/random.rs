@@ -15,7 +15,7 @@ impl Random {
 
     /// One of 0..count.
     pub fn below(&mut self, count: usize) -> usize {
-        (self.0.next_bits() % count as u64) as usize
+        self.0.below(count)
     }
 
     /// True in so many of a hundred cases.

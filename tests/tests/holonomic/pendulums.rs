@@ -1,6 +1,6 @@
 //! Pendulums in Cartesian coordinates with frames that keep the lengths of their links: n > k.
 
-use pc_mech::{Expr, Graph, MechError, System};
+use pc_mech::{Expr, Graph, LagrangianError, MechError, System};
 use pc_tests::closed_form::spherical_pendulum_height;
 
 use super::definition::assert_definition;
@@ -145,8 +145,11 @@ fn a_spherical_pendulum_by_rotations_is_refused() {
         .unwrap()
         .poincare()
         .unwrap_err();
-    let expected =
-        MechError::DegenerateLagrangian { rank: 2, size: 3, quasi_velocities: vec!["w3".to_owned()] };
+    let expected = MechError::Lagrangian(LagrangianError::Degenerate {
+        rank: 2,
+        size: 3,
+        quasi_velocities: vec!["w3".to_owned()],
+    });
     assert_eq!(error, expected);
     assert_eq!(
         error.to_string(),

@@ -1,4 +1,7 @@
 //! Numbers with the size of the terms that they were made of, to tell a small number from what rounding left of zero.
+//!
+//! A weight decides once, at sample points of a derivation, so that its order of magnitude is enough; the bound that a motion
+//! compares residuals with at each of its states is derived as an expression, in `pc-mech/src/compiled/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
 

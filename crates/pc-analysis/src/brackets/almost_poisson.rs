@@ -17,7 +17,7 @@ impl<'g> PoissonBracket<'g> {
     /// [`jacobi_violation`](PoissonBracket::jacobi_violation) tells.
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if H has no closed form.
+    /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if H has no closed form.
     ///
     /// ```
     /// use pc_analysis::PoissonBracket;

@@ -2,7 +2,8 @@
 
 use pc_algebra::quadratic;
 use pc_mech::{
-    Expr, Frame, Graph, LieAlgebra, Matrix, MechError, Neighbourhood, StructureCoefficients, System,
+    Expr, Frame, Graph, LieAlgebra, Matrix, MatrixError, MechError, Neighbourhood, StructureCoefficients,
+    System,
 };
 
 use crate::error::{AnalysisError, check_variables, shape};
@@ -153,7 +154,7 @@ impl<'g> PoissonBracket<'g> {
     /// The bracket with (z_i, z_j) = `tensor`_ij of the variables z, whether or not it satisfies Jacobi's identity.
     ///
     /// # Errors
-    /// [`MechError::Shape`] if the tensor is not square with a row a variable; [`MechError::NotSkew`].
+    /// [`ShapeError`](pc_mech::ShapeError) if the tensor is not square with a row a variable; [`MatrixError::NotSkew`].
     pub fn of_tensor(
         graph: &'g Graph,
         variables: Vec<Expr<'g>>,
@@ -166,7 +167,7 @@ impl<'g> PoissonBracket<'g> {
         match pairs.find(|&(i, j)| !(tensor[(i, j)] + tensor[(j, i)]).is_zero()) {
             Some((i, j)) => {
                 let pair = [i, j].map(|z| variables[z].to_string());
-                Err(MechError::NotSkew { what: "a Poisson tensor", pair }.into())
+                Err(MechError::from(MatrixError::NotSkew { what: "a Poisson tensor", pair }).into())
             }
             None => {
                 let mut constants = graph.symbols_of(tensor.entries());

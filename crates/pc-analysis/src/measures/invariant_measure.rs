@@ -55,7 +55,7 @@ fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 /// terms of (t, x, y). Under constraints, (34), that of their [free system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
-/// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+/// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
 pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
     let graph = free.graph();
     let canonical = free.canonical()?;
@@ -76,7 +76,7 @@ pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
 /// [free system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
-/// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+/// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
 ///
 /// ```
 /// use pc_analysis::invariant_measure;

@@ -1,6 +1,6 @@
 //! The measure that a motion is known to keep: Liouville's, or one that is found.
 
-use pc_mech::{Expr, Graph, Matrix, MechError, System};
+use pc_mech::{Expr, Graph, Matrix, System};
 
 use crate::error::AnalysisError;
 use crate::measures::invariant_measure::{
@@ -258,7 +258,7 @@ fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<
 /// One that is found, of positive density if there is such a one.
 fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
     let known = |error| match error {
-        AnalysisError::Mech(MechError::NotQuadratic { .. }) => Ok(None),
+        AnalysisError::Mech(error) if error.is_not_quadratic() => Ok(None),
         error => Err(error),
     };
     let factors = candidates(system)?;

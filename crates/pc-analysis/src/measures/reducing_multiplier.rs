@@ -30,7 +30,7 @@ impl<'g> ReducingMultiplier<'g> {
     /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`](pc_mech::MechError::NotQuadratic) if the equations have no closed form.
+    /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
     ///
     /// ```
     /// use pc_analysis::ReducingMultiplier;

@@ -1,18 +1,18 @@
 //! Small dense matrices of numbers: eigenvalues and norms.
 
 use faer::{Mat, Side};
-use pc_mech::{Matrix, MechError};
+use pc_mech::{Matrix, MatrixError, MechError};
 
 /// The eigenvalues of a square matrix, as pairs of real and imaginary part.
 ///
 /// # Errors
-/// [`MechError::NoEigenvalues`] for a matrix with an entry that is not finite.
+/// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
 pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechError> {
     let size = matrix.rows();
     if size == 0 {
         return Ok(Vec::new());
     }
-    let failure = || MechError::NoEigenvalues { rows: size, columns: size };
+    let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows: size, columns: size });
     let values = finite(matrix).ok_or_else(failure)?.eigenvalues().map_err(|_| failure())?;
     Ok(values.iter().map(|value| (value.re, value.im)).collect())
 }
@@ -20,13 +20,13 @@ pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechE
 /// Eigenvalues of a symmetric matrix, rising, and orthonormal eigenvectors as columns.
 ///
 /// # Errors
-/// [`MechError::NoEigenvalues`] for a matrix with an entry that is not finite.
+/// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
 pub(crate) fn symmetric_eigenvalues(matrix: &Matrix<f64>) -> Result<(Vec<f64>, Matrix<f64>), MechError> {
     let size = matrix.rows();
     if size == 0 {
         return Ok((Vec::new(), unit(0)));
     }
-    let failure = || MechError::NoEigenvalues { rows: size, columns: size };
+    let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows: size, columns: size });
     let factors =
         finite(matrix).ok_or_else(failure)?.self_adjoint_eigen(Side::Lower).map_err(|_| failure())?;
     let values = factors.S().column_vector();

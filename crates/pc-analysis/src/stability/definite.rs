@@ -16,7 +16,7 @@ const STEPS: usize = 1000;
 /// tolerance.
 ///
 /// # Errors
-/// [`MechError::NoEigenvalues`] if an entry is not finite.
+/// [`MatrixError::NoEigenvalues`](pc_mech::MatrixError::NoEigenvalues) if an entry is not finite.
 pub(crate) fn definite_combination(
     forms: &[Matrix<f64>],
     tolerance: f64,

@@ -54,7 +54,7 @@ impl SecondVariation {
     ///
     /// # Errors
     /// [`AnalysisError::NotConserved`] if H or an integral changes along motions or depends on the time;
-    /// [`MechError::Shape`]; [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
+    /// [`ShapeError`](pc_mech::ShapeError); [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
     pub fn at(equations: &Equations<'_>, state: &[f64]) -> Result<SecondVariation, AnalysisError> {
         SecondVariation::under(equations, equations.system().integrals(), state)
     }

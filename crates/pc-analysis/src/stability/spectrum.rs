@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pc_mech::{Matrix, MechError, SingularValues};
+use pc_mech::{Matrix, MechError, ShapeError, SingularValues};
 
 use crate::numeric::dense::{eigenvalues, norm, product};
 
@@ -64,12 +64,13 @@ impl Spectrum {
     /// |A|, to which a double eigenvalue is determined.
     ///
     /// # Errors
-    /// [`MechError::Shape`] if the matrix is not square; [`MechError::NoEigenvalues`] if it is not finite.
+    /// [`ShapeError`] if the matrix is not square; [`MatrixError::NoEigenvalues`](pc_mech::MatrixError::NoEigenvalues)
+    /// if it is not finite.
     pub fn of(matrix: &Matrix<f64>, uncertainty: f64) -> Result<Spectrum, MechError> {
         let size = matrix.rows();
         if matrix.columns() != size {
             let what = "a row of the matrix of the first approximation";
-            return Err(MechError::Shape { what, found: matrix.columns(), expected: size });
+            return Err(ShapeError { what, found: matrix.columns(), expected: size }.into());
         }
         let uncertainty = uncertainty.max(8.0 * size as f64 * f64::EPSILON);
         let scale = norm(matrix.entries());

@@ -1,6 +1,6 @@
 //! Equilibria and steady motions: the rates of all but the cyclic coordinates vanish.
 
-use pc_mech::{Matrix, MechError, Motion, Pattern, VectorField};
+use pc_mech::{EvaluationError, Matrix, MechError, Motion, Pattern, VectorField};
 
 use crate::error::{AnalysisError, shape};
 use crate::numeric::{dense::norm, newton};
@@ -177,7 +177,7 @@ impl SteadyMotion {
 /// Its [`Spectrum`] is that of all components, cyclic coordinates among them.
 ///
 /// # Errors
-/// [`MechError::Shape`]; [`MechError::NotCompiled`] without the Jacobian; where f is not defined, as
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not defined, as
 /// [`rhs`](VectorField::rhs).
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
@@ -203,7 +203,8 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
 
 /// The cyclic coordinates, those named or all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
-    let pattern = motion.sparsity().ok_or(MechError::NotCompiled { what: "Jacobian" })?;
+    let pattern =
+        motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;
     let Some(named) = named else { return Ok(cyclic_coordinates(pattern, motion.coordinates())) };
     let cyclic = components(motion, named)?;
     for &j in &cyclic {

@@ -259,15 +259,13 @@ mod tests {
     use std::sync::Arc;
 
     use crate::kernel::kernel::{Interpreter, Kernel, walk};
+    use crate::random::SplitMix64;
     use crate::{Expr, Folding, Graph, Inputs, Program};
 
     /// Sums, products and calls of what was made before, `count` of them.
     fn random_expressions<'g>(symbols: &[Expr<'g>], count: usize, seed: u64) -> Vec<Expr<'g>> {
-        let mut state = seed;
-        let mut below = |n: usize| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as usize % n
-        };
+        let mut random = SplitMix64::new(seed);
+        let mut below = |n: usize| random.below(n);
         let mut pool = symbols.to_vec();
         for _ in 0..count {
             let [a, b, c, d] = std::array::from_fn(|_| pool[below(pool.len())]);

@@ -2,7 +2,8 @@
 
 use pc_expr::{Evaluator, ExprError};
 
-use crate::error::MechError;
+use crate::compiled::point::Point;
+use crate::error::{ConstraintError, EvaluationError, IntegralError, MechError};
 
 /// What is wrong, before it is known where.
 #[derive(Debug)]
@@ -42,22 +43,23 @@ impl EvaluationFailure {
         match self {
             EvaluationFailure::Pivot { index, pivot } => {
                 let quasi_velocity = unknowns[index].clone();
-                MechError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }
+                EvaluationError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }.into()
             }
             EvaluationFailure::Constraint { index } => {
-                MechError::SingularConstraint { constraint: unknowns[index].clone(), t, state: state() }
+                ConstraintError::Singular { constraint: unknowns[index].clone(), t, state: state() }.into()
             }
             EvaluationFailure::NoProjection { unknowns: k } => {
-                MechError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
+                ConstraintError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
+                    .into()
             }
             EvaluationFailure::Departed { constraint } => {
-                MechError::Departed { constraint, t, state: state() }
+                ConstraintError::Departed { constraint, t, state: state() }.into()
             }
             EvaluationFailure::NotSolved { residual, iterations } => {
-                MechError::LegendreNotSolved { residual, iterations, t, state: state() }
+                EvaluationError::LegendreNotSolved { residual, iterations, t, state: state() }.into()
             }
-            EvaluationFailure::NotKept => MechError::NotKept { t, state: state() },
-            EvaluationFailure::NotCompiled { what } => MechError::NotCompiled { what },
+            EvaluationFailure::NotKept => IntegralError::NotKept { t, state: state() }.into(),
+            EvaluationFailure::NotCompiled { what } => EvaluationError::NotCompiled { what }.into(),
             EvaluationFailure::Expr(error) => error.into(),
         }
     }
@@ -70,21 +72,14 @@ impl EvaluationFailure {
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
+    at: Point<'_>,
 ) -> Result<(), EvaluationFailure> {
     // Number by number, with an early end: to look at several at a time would wait for those just written.
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(blame(evaluator, (t, state, parameters)))
-    }
+    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(blame(evaluator, at)) }
 }
 
 /// What is to blame for values that are not finite.
 #[cold]
-pub(crate) fn blame(
-    evaluator: &Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
-) -> EvaluationFailure {
-    EvaluationFailure::Expr(evaluator.blame(t, state, parameters))
+pub(crate) fn blame(evaluator: &Evaluator, Point { t, y, p }: Point<'_>) -> EvaluationFailure {
+    EvaluationFailure::Expr(evaluator.blame(t, y, p))
 }

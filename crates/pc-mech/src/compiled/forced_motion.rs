@@ -7,7 +7,7 @@ use crate::compiled::options::CompileOptions;
 use crate::constraints::multipliers::Multipliers;
 use crate::equations::canonical::Canonical;
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
+use crate::error::{ForceError, MechError, ShapeError};
 use crate::system::external_force::ExternalForce;
 
 /// A [`Motion`] under external forces: ẏ = f(t, y, q(t, y)).
@@ -53,7 +53,7 @@ impl Equations<'_> {
     /// Compiles the equations, their Jacobian and the observables, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile), and [`MechError::NoExternalForce`] if none was declared.
+    /// As [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if none was declared.
     pub fn compile_forced<F: ExternalForce>(&self, force: F) -> Result<ForcedMotion<F>, MechError> {
         self.compile_forced_for(CompileOptions::default(), force)
     }
@@ -112,19 +112,19 @@ impl Motion {
     /// Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
-    /// [`MechError::NoExternalForce`] without names; [`MechError::Shape`] for more names than the motion has inputs.
+    /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
     pub fn forced<F: ExternalForce>(
         self,
         names: Vec<String>,
         force: F,
     ) -> Result<ForcedMotion<F>, MechError> {
         if names.is_empty() {
-            return Err(MechError::NoExternalForce);
+            return Err(ForceError::NoneDeclared.into());
         }
         let (dim, inputs, forces) = (self.dim(), self.parameters_len(), names.len());
         let what = "the list of external forces";
         let parameters = inputs.checked_sub(forces);
-        let parameters = parameters.ok_or(MechError::Shape { what, found: forces, expected: inputs })?;
+        let parameters = parameters.ok_or(ShapeError { what, found: forces, expected: inputs })?;
         Ok(ForcedMotion {
             force,
             names,
@@ -171,7 +171,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
     /// The parameters, then the forces at (t, y): the run-time inputs of all that is compiled of the system.
     ///
     /// # Errors
-    /// [`MechError::ExternalForceFailed`] and [`MechError::ExternalForceNotFinite`].
+    /// [`ForceError::Failed`] and [`ForceError::NotFinite`].
     pub fn inputs(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Failure> {
         self.apply(t, y)?;
         Ok(self.motion.parameters())
@@ -230,12 +230,12 @@ impl<F: ExternalForce> ForcedMotion<F> {
         let outcome = self.force.force(t, y, &mut self.values);
         outcome.map_err(|failure| self.failed(&failure, t))?;
         if let Some(i) = self.values.iter().position(|value| !value.is_finite()) {
-            return Err(Failure::recoverable(MechError::ExternalForceNotFinite {
+            return Err(Failure::recoverable(MechError::Force(ForceError::NotFinite {
                 quasi_velocity: self.names[i].clone(),
                 value: self.values[i],
                 t,
                 state: self.state(y),
-            }));
+            })));
         }
         self.motion.inputs_mut(self.parameters).copy_from_slice(&self.values);
         Ok(())
@@ -248,13 +248,13 @@ impl<F: ExternalForce> ForcedMotion<F> {
         outcome.map_err(|failure| self.failed(&failure, t))?;
         if let Some(i) = self.slopes.iter().position(|value| !value.is_finite()) {
             let (quasi_velocity, by) = (i % self.names.len(), i / self.names.len());
-            return Err(Failure::recoverable(MechError::ExternalSlopeNotFinite {
+            return Err(Failure::recoverable(MechError::Force(ForceError::SlopeNotFinite {
                 quasi_velocity: self.names[quasi_velocity].clone(),
                 by: self.motion.component_name(by),
                 value: self.slopes[i],
                 t,
                 state: self.state(y),
-            }));
+            })));
         }
         self.motion.parameter_jacobian(t, y, &mut self.columns)
     }
@@ -272,7 +272,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
     #[cold]
     fn failed(&self, failure: &Failure, t: f64) -> Failure {
         let quasi_velocities = self.names.clone();
-        let error = MechError::ExternalForceFailed { quasi_velocities, t, cause: failure.to_string() };
+        let error = MechError::Force(ForceError::Failed { quasi_velocities, t, cause: failure.to_string() });
         if failure.is_recoverable() { Failure::recoverable(error) } else { Failure::fatal(error) }
     }
 }

@@ -5,6 +5,7 @@ use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::{FirstOrder, Implicit};
+use crate::compiled::point::Point;
 
 /// The most steps.
 const MOST_STEPS: usize = 200;
@@ -125,7 +126,7 @@ impl Newton {
     ) -> Result<(), EvaluationFailure> {
         let dim = known.len() - self.guess.len();
         self.equations.eval(t, known, p, &mut self.values);
-        check_finite(&self.values, &self.equations, (t, known, p))?;
+        check_finite(&self.values, &self.equations, Point { t, y: known, p })?;
         self.factorise(solver)?;
         let mut halvings = 0;
         for iterations in 0..MOST_STEPS {

@@ -11,8 +11,9 @@ use crate::compiled::failure::check_finite;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{InMomenta, Motion, Slopes};
 use crate::compiled::options::CompileOptions;
+use crate::compiled::point::Point;
 use crate::constraints::multipliers::Multipliers;
-use crate::error::MechError;
+use crate::error::{EvaluationError, MechError};
 
 impl Multipliers<'_> {
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
@@ -48,7 +49,7 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`MechError::Shape`] for a guess of another length.
+    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of another length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
         let momenta = self.equations.system.momentum_symbols();
@@ -203,7 +204,7 @@ impl InMomenta {
         let parameters = self.inner.parameters();
         let rates = &mut ydot[self.moving()];
         self.transport.eval(t, &self.known, parameters, rates);
-        check_finite(rates, &self.transport, (t, &self.known, parameters))
+        check_finite(rates, &self.transport, Point { t, y: &self.known, p: parameters })
             .map_err(|failure| self.inner.failure(failure, t, &self.known[..y.len()]))
     }
 
@@ -232,7 +233,9 @@ impl InMomenta {
     ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y,   ∂f/∂z as ∂f/∂x.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
         let Some(mut slopes) = self.jacobian.take() else {
-            return Err(Failure::fatal(MechError::NotCompiled { what: "Jacobian" }));
+            return Err(Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled {
+                what: "Jacobian",
+            })));
         };
         let outcome = self.jacobian_by(&mut slopes, t, y, entries);
         self.jacobian = Some(slopes);
@@ -279,7 +282,9 @@ impl InMomenta {
         entries: &mut [f64],
     ) -> Result<(), Failure> {
         let Some(mut slopes) = self.parameter_jacobian.take() else {
-            return Err(Failure::fatal(MechError::NotCompiled { what: "derivative by parameters" }));
+            return Err(Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled {
+                what: "derivative by parameters",
+            })));
         };
         let outcome = self.parameter_jacobian_by(&mut slopes, t, y, entries);
         self.parameter_jacobian = Some(slopes);
@@ -308,8 +313,12 @@ impl InMomenta {
         let (m, of_inner) = (slopes.multipliers, &self.of_inner);
         let stride = 2 * k + m;
         slopes.entries.eval(t, &self.known, self.inner.parameters(), &mut slopes.values);
-        check_finite(&slopes.values, &slopes.entries, (t, &self.known, self.inner.parameters()))
-            .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
+        check_finite(
+            &slopes.values,
+            &slopes.entries,
+            Point { t, y: &self.known, p: self.inner.parameters() },
+        )
+        .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
         let (by_q, moving) = slopes.values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);
         // ∂h/∂q, then ∂h/∂y

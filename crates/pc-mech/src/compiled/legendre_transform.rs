@@ -8,6 +8,7 @@ use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
+use crate::compiled::point::Point;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
@@ -77,7 +78,7 @@ impl QuasiVelocities {
     }
 
     /// Writes η.
-    fn solve(&mut self, at: (f64, &[f64], &[f64]), eta: &mut [f64]) -> Result<(), EvaluationFailure> {
+    fn solve(&mut self, at: Point<'_>, eta: &mut [f64]) -> Result<(), EvaluationFailure> {
         match self {
             QuasiVelocities::Closed(program) => evaluate(program, at, eta),
             QuasiVelocities::Linear(linear) => {
@@ -94,7 +95,7 @@ impl Implicit {
     /// Writes η.
     fn solve(
         &mut self,
-        at @ (t, state, p): (f64, &[f64], &[f64]),
+        at @ Point { t, y: state, p }: Point<'_>,
         eta: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         let guess = &mut self.begin;
@@ -129,7 +130,7 @@ impl Linear {
     }
 
     /// Leaves w in `solution`, and M factorised.
-    fn solve(&mut self, at @ (t, state, p): (f64, &[f64], &[f64])) -> Result<(), EvaluationFailure> {
+    fn solve(&mut self, at @ Point { t, y: state, p }: Point<'_>) -> Result<(), EvaluationFailure> {
         self.equations.eval(t, state, p, &mut self.values);
         check_finite(&self.values, &self.equations, at)?;
         let (matrix, right) = self.values.split_at(self.lower.len());
@@ -219,7 +220,7 @@ impl LegendreTransform {
     /// (x, y) of the state (x, η), length n + k both; first-order states follow and stay.
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
+    /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
     /// ∂L/∂η.
     pub fn to_momenta(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = state.to_vec();
@@ -235,7 +236,7 @@ impl LegendreTransform {
         self.check(state, result)?;
         result.copy_from_slice(state);
         let moving = &mut result[self.moving()];
-        evaluate(&mut self.momenta, (t, state, &self.parameters), moving)
+        evaluate(&mut self.momenta, Point { t, y: state, p: &self.parameters }, moving)
             .map_err(|failure| self.error(failure, t, state))
     }
 
@@ -243,7 +244,9 @@ impl LegendreTransform {
     /// the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`MechError::LegendreNotSolved`], [`MechError::SingularMassMatrix`] or
+    /// [`ShapeError`](crate::ShapeError);
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved),
+    /// [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) or
     /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = state.to_vec();
@@ -265,7 +268,7 @@ impl LegendreTransform {
         self.check(state, result)?;
         result.copy_from_slice(state);
         let moving = &mut result[self.moving()];
-        let outcome = self.quasi_velocities.solve((t, state, &self.parameters), moving);
+        let outcome = self.quasi_velocities.solve(Point { t, y: state, p: &self.parameters }, moving);
         outcome.map_err(|failure| self.error(failure, t, state))
     }
 
@@ -273,7 +276,7 @@ impl LegendreTransform {
     fn check(&self, state: &[f64], result: &[f64]) -> Result<(), MechError> {
         let length = self.names[0].len() + self.names[1].len() + self.names[3].len();
         shape("the state", state.len(), length)?;
-        shape("the result", result.len(), length)
+        Ok(shape("the result", result.len(), length)?)
     }
 
     /// The places of η, or y, in a state.
@@ -291,9 +294,9 @@ impl LegendreTransform {
 
 fn evaluate(
     program: &mut Evaluator,
-    (t, state, parameters): (f64, &[f64], &[f64]),
+    at @ Point { t, y, p }: Point<'_>,
     values: &mut [f64],
 ) -> Result<(), EvaluationFailure> {
-    program.eval(t, state, parameters, values);
-    check_finite(values, program, (t, state, parameters))
+    program.eval(t, y, p, values);
+    check_finite(values, program, at)
 }

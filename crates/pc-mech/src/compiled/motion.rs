@@ -11,6 +11,7 @@ use crate::compiled::first_order::FirstOrder;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
+use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::holding::PrescribedComponents;
 use crate::compiled::projection::integrals::KeptIntegrals;
@@ -373,7 +374,7 @@ impl Motion {
             return motion.constraint_residuals(t, y, residuals);
         }
         if let Some(surface) = &mut self.surface {
-            surface.residuals((t, y, &self.parameters), residuals);
+            surface.residuals(Point { t, y, p: &self.parameters }, residuals);
         }
     }
 
@@ -465,7 +466,9 @@ impl Motion {
         let state: Vec<f64> = y.iter().enumerate().map(by).collect();
         let mut rates = vec![0.0; y.len()];
         let outcome = match &mut self.form {
-            Form::Staged(staged) => staged.perturbed_rhs((t, &state, &self.parameters), &mut rates, factor),
+            Form::Staged(staged) => {
+                staged.perturbed_rhs(Point { t, y: &state, p: &self.parameters }, &mut rates, factor)
+            }
             Form::Unrolled(_) | Form::InMomenta(_) => {
                 self.rhs(t, &state, &mut rates)?;
                 Ok(())

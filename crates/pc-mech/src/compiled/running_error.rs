@@ -1,4 +1,7 @@
 //! How large the rounding errors of functions are.
+//!
+//! The bound is an expression, compiled with its function, for a projection ends by it at each state of a motion; a weight in
+//! numbers, by which a derivation tells zeros at a few points, is in `pc-algebra/src/identity/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
 
@@ -7,6 +10,7 @@ use pc_expr::{
 };
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::point::Point;
 
 /// What the errors are counted in. An operation errs by a quarter of it; a long sum, of whose roundings only those of the
 /// terms are counted, by more.
@@ -57,7 +61,7 @@ impl Measured {
     }
 
     /// The values at (t, y), finite or not.
-    pub(crate) fn eval(&mut self, (t, y, p): (f64, &[f64], &[f64])) -> &[f64] {
+    pub(crate) fn eval(&mut self, Point { t, y, p }: Point<'_>) -> &[f64] {
         self.functions.eval(t, y, p, &mut self.values);
         self.values()
     }
@@ -66,7 +70,7 @@ impl Measured {
     ///
     /// # Errors
     /// [`EvaluationFailure::Expr`] if one is not finite.
-    pub(crate) fn try_eval(&mut self, at: (f64, &[f64], &[f64])) -> Result<&[f64], EvaluationFailure> {
+    pub(crate) fn try_eval(&mut self, at: Point<'_>) -> Result<&[f64], EvaluationFailure> {
         self.eval(at);
         check_finite(self.values(), &self.functions, at)?;
         Ok(self.values())
@@ -215,7 +219,7 @@ mod tests {
         let inputs = Inputs { time: Some(t), state: vec![x, y], parameters: vec![a] };
         let functions = [circle, steep, flat];
         let mut measured = Measured::new(&graph, &inputs, &functions, Backend::Interpreter).expect("bound");
-        let values = measured.try_eval((0.5, &[-1.0, 3.0], &[2.0])).expect("finite");
+        let values = measured.try_eval(Point { t: 0.5, y: &[-1.0, 3.0], p: &[2.0] }).expect("finite");
         assert_eq!(values[..2], [-2.0, 0.5]);
         // About 26 units for the circle, however the graph may have written it; a thousand times the error of a difference
         // of numbers about 1; that of u⁵ with u = 1/1000 and errors of numbers about 3 in u.
@@ -241,7 +245,7 @@ mod tests {
         ];
         let inputs = Inputs { time: None, state: vec![x], parameters: Vec::new() };
         let mut measured = Measured::new(&graph, &inputs, &functions, Backend::Interpreter).expect("bound");
-        measured.eval((0.0, &[-1.0], &[]));
+        measured.eval(Point { t: 0.0, y: &[-1.0], p: &[] });
         let errors: Vec<f64> = (0..4).map(|place| measured.error(place)).collect();
         assert!(errors.iter().all(|&error| (0.0..1e-15).contains(&error)), "{errors:?}");
         // √(2 ε)

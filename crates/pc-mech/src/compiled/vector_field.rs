@@ -5,7 +5,8 @@ use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion};
-use crate::error::MechError;
+use crate::compiled::point::Point;
+use crate::error::{FrameError, MechError};
 
 impl Motion {
     /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
@@ -41,7 +42,7 @@ impl Motion {
         storage: Storage,
     ) -> Result<(), Failure> {
         self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
+        let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jacobian(at, entries, storage),
             Form::Staged(staged) => staged.jacobian(at, entries, storage),
@@ -98,7 +99,7 @@ impl VectorField for Motion {
 
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
         self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
+        let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.jvp(at, v, product),
             Form::Staged(staged) => staged.jvp(at, v, product),
@@ -117,7 +118,7 @@ impl VectorField for Motion {
 
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
         self.read_signals(t)?;
-        let at = (t, y, &self.parameters[..]);
+        let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.parameter_jacobian(at, jacobian),
             Form::Staged(staged) => staged.parameter_jacobian(at, jacobian),
@@ -162,7 +163,7 @@ impl VectorField for Motion {
         {
             state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
         }
-        kept.set_levels((t, &state, &self.parameters));
+        kept.set_levels(Point { t, y: &state, p: &self.parameters });
         kept.room.state = state;
     }
 
@@ -187,7 +188,9 @@ impl VectorField for Motion {
         };
         self.chart = Some(chart);
         match is_left && !rests {
-            true => Err(Failure::fatal(MechError::Undetermined { from: from.0, to: to.0 })),
+            true => {
+                Err(Failure::fatal(MechError::Frame(FrameError::Undetermined { from: from.0, to: to.0 })))
+            }
             false => Ok(()),
         }
     }

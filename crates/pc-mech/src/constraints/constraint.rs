@@ -3,7 +3,7 @@
 use pc_algebra::affine;
 use pc_expr::Expr;
 
-use crate::error::MechError;
+use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
 /// A condition f(t, x) = 0 on positions, or g(t, x, η) = 0 on velocities.
@@ -81,11 +81,12 @@ impl<'g> Constraint<'g> {
     /// C_s, length k, and c_0 of what [vanishes of the velocities](Constraint::velocity), C_s η_s + c_0.
     ///
     /// # Errors
-    /// [`MechError::ConstraintNotAffine`]
+    /// [`ConstraintError::NotAffine`]
     pub fn coefficients(&self, system: &System<'g>) -> Result<(Vec<Expr<'g>>, Expr<'g>), MechError> {
         let (graph, eta) = (system.graph(), &system.quasi_velocities);
         let affine = |value: Expr<'g>| affine(graph, value, eta);
         let whole = affine(self.expression).and_then(|_| affine(self.velocity(system)));
-        whole.ok_or_else(|| MechError::ConstraintNotAffine { constraint: self.name.clone() })
+        let error = || ConstraintError::NotAffine { constraint: self.name.clone() };
+        Ok(whole.ok_or_else(error)?)
     }
 }

@@ -6,7 +6,7 @@ use pc_expr::Expr;
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::constraints::constraint::Constraint;
 use crate::constraints::multipliers::Multipliers;
-use crate::error::MechError;
+use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
@@ -54,7 +54,8 @@ impl<'g> Multipliers<'g> {
     /// ```
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`] if M is singular everywhere, [`MechError::DependentConstraint`] if C M⁻¹ Cᵀ is.
+    /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if M is singular everywhere,
+    /// [`ConstraintError::Dependent`] if C M⁻¹ Cᵀ is.
     pub fn reactions_of_state(&self) -> Result<Vec<Expr<'g>>, MechError> {
         let (system, mass, c) = (&self.equations.system, &self.equations.mass, &self.coefficients);
         let graph = system.graph();
@@ -65,7 +66,7 @@ impl<'g> Multipliers<'g> {
         let pushed: Vec<Vec<Expr<'g>>> = (0..c.rows()).map(|a| factors.solve(graph, c.row(a))).collect();
         let gram = Matrix::from_fn(c.rows(), c.rows(), |a, b| dot(c.row(a.max(b)), &pushed[a.min(b)]));
         if let Some(constraint) = self.first_dependent(&gram) {
-            return Err(MechError::DependentConstraint { constraint });
+            return Err(ConstraintError::Dependent { constraint }.into());
         }
         let free = factors.solve(graph, &self.equations.right);
         let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(c.row(a), &free)).collect();

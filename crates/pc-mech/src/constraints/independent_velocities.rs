@@ -6,7 +6,7 @@ use pc_expr::Expr;
 use crate::compiled::elimination::saddle_point::Saddle;
 use crate::compiled::failure::EvaluationFailure;
 use crate::constraints::multipliers::Multipliers;
-use crate::error::{MechError, shape};
+use crate::error::{ConstraintError, MechError, shape};
 use crate::numeric::least_squares::LeastSquares;
 use crate::system::system::System;
 
@@ -25,7 +25,7 @@ impl<'g> Multipliers<'g> {
     /// over as [`Elimination::structure_coefficients`] says, whatever the rank of the frame.
     ///
     /// # Errors
-    /// [`MechError::SingularConstraint`] if the constraints are dependent there; [`MechError::ConstraintNotAffine`];
+    /// [`ConstraintError::Singular`] if the constraints are dependent there; [`ConstraintError::NotAffine`];
     /// [`AlgebraError::NotClosed`](crate::AlgebraError::NotClosed) if they are not integrable.
     ///
     /// ```
@@ -57,18 +57,18 @@ impl<'g> Multipliers<'g> {
     /// k − m others.
     ///
     /// # Errors
-    /// [`MechError::ConstraintNotAffine`] for one that is [nonlinear](crate::Constraint::nonlinear);
-    /// [`MechError::DependentConstraint`] if det C_D = 0 everywhere.
+    /// [`ConstraintError::NotAffine`] for one that is [nonlinear](crate::Constraint::nonlinear);
+    /// [`ConstraintError::Dependent`] if det C_D = 0 everywhere.
     pub fn solved_for(&self, dependent: &[usize]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, MechError> {
         if let Some(constraint) = self.constraints().iter().find(|constraint| constraint.is_nonlinear()) {
-            return Err(MechError::ConstraintNotAffine { constraint: constraint.name().to_owned() });
+            return Err(ConstraintError::NotAffine { constraint: constraint.name().to_owned() }.into());
         }
         let system = self.equations().system();
         let (graph, eta, c) = (system.graph(), system.quasi_velocities(), self.coefficients());
         let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])]);
         let name = || self.constraints().last().map_or_else(String::new, |c| c.name().to_owned());
         let inverse =
-            inverse(graph, &square).ok_or_else(|| MechError::DependentConstraint { constraint: name() })?;
+            inverse(graph, &square).ok_or_else(|| ConstraintError::Dependent { constraint: name() })?;
         let zeros: Vec<_> = dependent.iter().map(|&d| (eta[d], Expr::ZERO)).collect();
         let without = graph.substitute(self.velocities(), &zeros);
         let solution = |d: usize| -graph.dot(inverse.row(d).iter().copied(), without.iter().copied());
@@ -104,7 +104,7 @@ impl<'g> Multipliers<'g> {
     /// to be [added](System::with_added_forces) to the forces.
     ///
     /// # Errors
-    /// [`MechError::Shape`] if the number of structure coefficients does not fit.
+    /// [`ShapeError`](crate::ShapeError) if the number of structure coefficients does not fit.
     pub fn eliminated(
         &self,
         solved: &[(Expr<'g>, Expr<'g>)],
@@ -203,7 +203,7 @@ impl<'g> Multipliers<'g> {
         let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| put(&[c[(a, dependent[d])]])[0]);
         let name = || self.constraints().last().map_or_else(String::new, |c| c.name().to_owned());
         let inverse =
-            inverse(graph, &square).ok_or_else(|| MechError::DependentConstraint { constraint: name() })?;
+            inverse(graph, &square).ok_or_else(|| ConstraintError::Dependent { constraint: name() })?;
         let reactions: Vec<Expr<'g>> =
             (0..c.rows()).map(|a| graph.dot(inverse.column(a), rests.iter().copied())).collect();
         graph.check(&reactions)?;
@@ -215,7 +215,7 @@ impl<'g> Multipliers<'g> {
     /// may have other values of parameters.
     ///
     /// # Errors
-    /// [`MechError::SingularConstraint`] if the constraints are dependent there;
+    /// [`ConstraintError::Singular`] if the constraints are dependent there;
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) if a value is missing.
     pub fn dependent_at(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<usize>, MechError> {
         if let Some(dependent) = &self.dependent
@@ -235,7 +235,7 @@ impl<'g> Multipliers<'g> {
             };
             let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol);
             let state = system.state();
-            MechError::SingularConstraint {
+            ConstraintError::Singular {
                 constraint: self.constraints()[place].name().to_owned(),
                 t: value(system.frame().time()).map_or(f64::NAN, |&(_, t)| t),
                 state: state.into_iter().filter_map(|x| Some((x.to_string(), value(x)?.1))).collect(),

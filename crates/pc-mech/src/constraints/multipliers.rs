@@ -10,7 +10,7 @@ use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::{Conditions, Surface};
 use crate::constraints::constraint::Constraint;
 use crate::equations::poincare::Equations;
-use crate::error::{MechError, shape};
+use crate::error::{ConstraintError, MechError, shape};
 use crate::system::system::System;
 
 /// Poincaré's equations with multipliers (Lagrange's equations of the first kind, in quasi-velocities),
@@ -70,16 +70,16 @@ impl<'g> System<'g> {
     /// The equations of motion under constraints, with multipliers.
     ///
     /// # Errors
-    /// [`MechError::ConstraintNotAffine`] unless it was said to be [nonlinear](Constraint::nonlinear);
-    /// [`MechError::TooManyConstraints`] if no velocity is left free;
-    /// [`MechError::OfState`] for one on first-order states;
-    /// [`MechError::DependentConstraint`] for one that follows from those before it, or contradicts them;
-    /// [`MechError::DegenerateLagrangian`] if the constraints leave velocities without inertia.
+    /// [`ConstraintError::NotAffine`] unless it was said to be [nonlinear](Constraint::nonlinear);
+    /// [`ConstraintError::TooMany`] if no velocity is left free; [`FrameError::OfState`](crate::FrameError::OfState)
+    /// for one on first-order states; [`ConstraintError::Dependent`] for one that follows from those before it, or
+    /// contradicts them; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave
+    /// velocities without inertia.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
         let graph = self.graph();
         let (k, m) = (self.quasi_velocities.len(), constraints.len());
         if m >= k {
-            return Err(MechError::TooManyConstraints { constraints: m, quasi_velocities: k });
+            return Err(ConstraintError::TooMany { constraints: m, quasi_velocities: k }.into());
         }
         let mut velocities = Vec::new();
         let mut rows = Vec::new();
@@ -91,7 +91,7 @@ impl<'g> System<'g> {
                 false => constraint.coefficients(self)?.0,
             });
             if graph.generic_rank(&rows) < rows.len() {
-                return Err(MechError::DependentConstraint { constraint: constraint.name.clone() });
+                return Err(ConstraintError::Dependent { constraint: constraint.name.clone() }.into());
             }
             velocities.push(velocity);
         }
@@ -180,10 +180,10 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The same with constraints that follow from those held. Those that do so only where these hold are taken instead of them
-    /// where these are nearly dependent, as bars of a mechanism that has one too many take turns in holding it; what each
-    /// reaction is there is not determined, and not a number. A [projection](pc_expr::VectorField::project) of the compiled
-    /// motion to where one of them does not vanish is refused, as [`MechError::Departed`].
+    /// The same with constraints that follow from those held. Those that do so only where these hold are taken instead
+    /// of them where these are nearly dependent, as bars of a mechanism that has one too many take turns in holding it;
+    /// what each reaction is there is not determined, and not a number. A [projection](pc_expr::VectorField::project)
+    /// of the compiled motion to where one of them does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }

@@ -7,7 +7,7 @@ use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::emit::source::{EmitOptions, EmittedFile, Extent, Routine, Source};
 use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
+use crate::error::{MechError, ShapeError};
 
 /// Equations longer than this are not shown in the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
@@ -39,7 +39,7 @@ impl<'g> Equations<'g> {
     /// ```
     ///
     /// # Errors
-    /// [`MechError::Shape`] if the start state has the wrong length,
+    /// [`ShapeError`] if the start state has the wrong length,
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
     /// parameter.
     pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
@@ -59,7 +59,7 @@ impl<'g> Equations<'g> {
             && start.state.len() != state.len()
         {
             let (found, expected) = (start.state.len(), state.len());
-            return Err(MechError::Shape { what: "the start state", found, expected });
+            return Err(ShapeError { what: "the start state", found, expected }.into());
         }
         Ok(Source {
             options,

@@ -10,7 +10,7 @@ use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
 use crate::equations::book::{expanded, sum_of_products};
 use crate::equations::legendre::{Inverse, Legendre};
-use crate::error::{MechError, shape};
+use crate::error::{LagrangianError, MechError, shape};
 use crate::system::system::System;
 
 /// The rows up to which a block of the mass matrix is inverted by cofactors.
@@ -45,7 +45,7 @@ impl<'g> System<'g> {
     /// quasi-velocities, else in (t, x, y, η).
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`] if y = ∂L/∂η does not determine η.
+    /// [`LagrangianError::Degenerate`] if y = ∂L/∂η does not determine η.
     ///
     /// ```
     /// use pc_mech::{Graph, System, VectorField};
@@ -194,12 +194,12 @@ impl<'g> Canonical<'g> {
     }
 
     /// # Errors
-    /// [`MechError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
+    /// [`LagrangianError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
     pub(crate) fn check_closed(&self) -> Result<(), MechError> {
         match &self.legendre.inverse {
             Inverse::Closed { .. } => Ok(()),
             Inverse::Implicit { quasi_velocity, .. } => {
-                Err(MechError::NotQuadratic { quasi_velocity: quasi_velocity.to_string() })
+                Err(LagrangianError::NotQuadratic { quasi_velocity: quasi_velocity.to_string() }.into())
             }
         }
     }
@@ -211,7 +211,7 @@ impl<'g> Canonical<'g> {
     /// several η may have the same momenta, and the guess decides which of them is found.
     ///
     /// # Errors
-    /// [`MechError::Shape`]
+    /// [`ShapeError`](crate::ShapeError)
     pub fn with_guess(mut self, eta: &[f64]) -> Result<Canonical<'g>, MechError> {
         shape("the guess of the quasi-velocities", eta.len(), self.momenta.len())?;
         if let Inverse::Implicit { guess, .. } = &mut self.legendre.inverse {
@@ -239,7 +239,7 @@ impl<'g> Canonical<'g> {
     /// η_s = ∂H/∂y_s in terms of (t, x, y), length k.
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
+    /// [`LagrangianError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
     pub fn closed_quasi_velocities(&self) -> Result<&[Expr<'g>], MechError> {
         self.check_closed().map(|()| self.quasi_velocities.as_slice())
     }
@@ -289,9 +289,11 @@ impl<'g> Canonical<'g> {
     /// those of [`Equations`](crate::Equations) are.
     ///
     /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding, from the
-    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; from the last solution where the guess
-    /// leads to none. It fails, recoverably, with [`MechError::LegendreNotSolved`] where neither does, and with
-    /// [`MechError::SingularMassMatrix`] where a pivot of M = ∂²L/∂η∂η vanishes.
+    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; from the last solution where the
+    /// guess leads to none. It fails, recoverably, with
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where neither does, and with
+    /// [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a pivot of
+    /// M = ∂²L/∂η∂η vanishes.
     ///
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).

@@ -37,7 +37,7 @@ pub(crate) enum Inverse<'g> {
 
 impl<'g> Legendre<'g> {
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`]
+    /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate)
     pub(crate) fn of(system: &System<'g>) -> Result<Legendre<'g>, MechError> {
         let graph = system.graph();
         let (eta, lagrangian) = (system.quasi_velocities(), system.lagrangian());

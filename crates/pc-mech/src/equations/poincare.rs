@@ -4,7 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
-use crate::error::MechError;
+use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
 /// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k quasi-velocities, or (30)
@@ -26,7 +26,7 @@ impl<'g> System<'g> {
     /// in the form M η̇ = r with M = ∂²L/∂η∂η and r = v + X L + Q − (∂²L/∂η∂x) ẋ − (∂²L/∂η∂z) ż − ∂²L/∂η∂t.
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`] if M is singular everywhere.
+    /// [`LagrangianError::Degenerate`] if M is singular everywhere.
     pub fn poincare(&self) -> Result<Equations<'g>, MechError> {
         self.poincare_constrained(self.quasi_velocities.len())
     }
@@ -39,7 +39,7 @@ impl<'g> System<'g> {
     /// of the result has the free quasi-velocities only. With `free` = k these are the equations (9).
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`]; [`MechError::Shape`] if there are fewer than `free` quasi-velocities.
+    /// [`LagrangianError::Degenerate`]; [`ShapeError`] if there are fewer than `free` quasi-velocities.
     pub fn poincare_constrained(&self, free: usize) -> Result<Equations<'g>, MechError> {
         self.graph().stage("Poincaré's equations", || {
             let equations = self.equations(free)?;
@@ -54,7 +54,7 @@ impl<'g> System<'g> {
         let all = &self.quasi_velocities;
         if free > all.len() {
             let what = "the list of free quasi-velocities";
-            return Err(MechError::Shape { what, found: free, expected: all.len() });
+            return Err(ShapeError { what, found: free, expected: all.len() }.into());
         }
         let (x, t) = (self.frame.coordinates(), self.frame.time());
         let variables: Vec<Expr<'g>> = all.iter().chain(x).copied().collect();
@@ -114,7 +114,7 @@ impl<'g> System<'g> {
         let rank_of_first = |count: usize| graph.generic_rank(&rows[..count]);
         let undetermined = (0..size).filter(|&s| rank_of_first(s + 1) == rank_of_first(s));
         let quasi_velocities = undetermined.map(|s| self.quasi_velocities[s].to_string()).collect();
-        Err(MechError::DegenerateLagrangian { rank, size, quasi_velocities })
+        Err(LagrangianError::Degenerate { rank, size, quasi_velocities }.into())
     }
 }
 

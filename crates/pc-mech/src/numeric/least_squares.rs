@@ -24,7 +24,7 @@ impl LeastSquares {
     /// Those of `matrix`.
     ///
     /// # Errors
-    /// [`MechError::NoEigenvalues`] for a matrix with an entry that is not finite.
+    /// [`MatrixError::NoEigenvalues`](crate::MatrixError::NoEigenvalues) for a matrix with an entry that is not finite.
     pub fn of(matrix: &Matrix<f64>) -> Result<LeastSquares, MechError> {
         SingularValues::of(matrix).map(LeastSquares)
     }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use pc_algebra::Matrix;
 
-use crate::error::MechError;
+use crate::error::{MatrixError, MechError};
 
 /// A = U Σ Vᵀ, with U and V orthogonal and square.
 #[derive(Clone, Debug)]
@@ -20,13 +20,13 @@ impl SingularValues {
     /// Those of `matrix`.
     ///
     /// # Errors
-    /// [`MechError::NoEigenvalues`] for a matrix with an entry that is not finite.
+    /// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
     pub fn of(matrix: &Matrix<f64>) -> Result<SingularValues, MechError> {
         let (rows, columns) = (matrix.rows(), matrix.columns());
         if rows == 0 || columns == 0 {
             return Ok(SingularValues { left: unit(rows), values: Vec::new(), right: unit(columns) });
         }
-        let failure = || MechError::NoEigenvalues { rows, columns };
+        let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows, columns });
         let factors = finite(matrix).ok_or_else(failure)?.svd().map_err(|_| failure())?;
         let values = factors.S().column_vector();
         Ok(SingularValues {

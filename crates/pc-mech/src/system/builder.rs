@@ -3,7 +3,7 @@
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::error::{MechError, shape};
+use crate::error::{FrameError, LagrangianError, MechError, shape};
 use crate::system::bodies::body::Body;
 use crate::system::bodies::moving::Moving;
 use crate::system::bodies::particle::Particle;
@@ -370,12 +370,15 @@ impl<'g> SystemBuilder<'g> {
     /// The system, its frame closed and its structure coefficients known.
     ///
     /// # Errors
-    /// [`MechError::NoLagrangian`]; [`MechError::Shape`] for parts that do not fit together; [`MechError::Algebra`] for
-    /// velocities that are not affine in η, a frame that is not closed, or brackets that are needed, contradict it, or violate
-    /// Jacobi's identity; [`MechError::FrameOfVelocities`] for a frame that contains velocities;
-    /// [`MechError::SignalInMomentum`]; [`MechError::OfState`] for a frame or a body placed by first-order states;
-    /// [`MechError::BodyOfVelocities`] and [`MechError::AngularVelocityNotAffine`] of bodies; [`MechError::NotSkew`] and
-    /// [`MechError::NotAQuasiVelocity`] of forces; [`MechError::Expr`] for what divides by zero everywhere.
+    /// [`LagrangianError::Missing`]; [`ShapeError`](crate::ShapeError) for parts that do not fit together;
+    /// [`MechError::Algebra`] for velocities that are not affine in η, a frame that is not closed, or brackets that are
+    /// needed, contradict it, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
+    /// velocities; [`LagrangianError::SignalInMomentum`]; [`FrameError::OfState`] for a frame or a body placed by
+    /// first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
+    /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
+    /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
+    /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for what
+    /// divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
         let (eta, velocities) = (self.eta(), self.velocity_symbols());
         let k = eta.len();
@@ -423,7 +426,7 @@ impl<'g> SystemBuilder<'g> {
             bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
         }
         if terms.is_empty() {
-            return Err(MechError::NoLagrangian);
+            return Err(LagrangianError::Missing.into());
         }
         for force in &self.forces {
             parts.push(force.components(&frame, &eta)?);
@@ -442,7 +445,7 @@ impl<'g> SystemBuilder<'g> {
             momenta.iter().chain(frame.b().entries()).chain(frame.b0()).any(|part| part.depends_on(**u))
         };
         if let Some(u) = self.signals.iter().find(moving) {
-            return Err(MechError::SignalInMomentum { input: u.to_string() });
+            return Err(LagrangianError::SignalInMomentum { input: u.to_string() }.into());
         }
         self.graph.check(&forces)?;
         let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
@@ -470,9 +473,9 @@ impl<'g> SystemBuilder<'g> {
 /// constant.
 ///
 /// # Errors
-/// [`MechError::FrameOfVelocities`] naming the first that stands there.
+/// [`FrameError::OfVelocities`] naming the first that stands there.
 fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
     let entries = [frame.b().entries(), frame.b0()].concat();
     let found = frame.graph().symbols_of(&entries).into_iter().find(|symbol| velocities.contains(symbol));
-    found.map_or(Ok(()), |symbol| Err(MechError::FrameOfVelocities { velocity: symbol.to_string() }))
+    found.map_or(Ok(()), |symbol| Err(FrameError::OfVelocities { velocity: symbol.to_string() }.into()))
 }

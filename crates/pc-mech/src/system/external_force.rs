@@ -3,7 +3,7 @@
 use pc_algebra::Frame;
 use pc_expr::{Expr, Failure};
 
-use crate::error::MechError;
+use crate::error::{ForceError, MechError};
 
 /// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
 ///
@@ -67,7 +67,7 @@ impl<F: FnMut(f64, &[f64], &mut [f64])> ExternalForce for F {
 /// The symbols of external forces on the quasi-velocities called `names`: `Q_` before the name.
 ///
 /// # Errors
-/// [`MechError::NotAQuasiVelocity`].
+/// [`ForceError::NotAQuasiVelocity`].
 pub(crate) fn symbols<'g>(
     names: &[String],
     frame: &Frame<'g>,
@@ -81,7 +81,7 @@ pub(crate) fn symbols<'g>(
     let taken: Vec<String> = declared.map(Expr::to_string).collect();
     let symbol = |name: &String| {
         if !known.contains(name) {
-            return Err(MechError::NotAQuasiVelocity { name: name.clone(), known: known.clone() });
+            return Err(ForceError::NotAQuasiVelocity { name: name.clone(), known: known.clone() }.into());
         }
         let mut free = format!("Q_{name}");
         while taken.contains(&free) {

@@ -3,7 +3,7 @@
 use pc_algebra::{Frame, Matrix};
 use pc_expr::Expr;
 
-use crate::error::{MechError, shape};
+use crate::error::{MatrixError, MechError, shape};
 
 /// A part of Q_1..Q_k.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ impl<'g> Force<'g> {
     /// Q_1..Q_k in the frame of the quasi-velocities `eta`.
     ///
     /// # Errors
-    /// [`MechError::Shape`], [`MechError::NotSkew`].
+    /// [`ShapeError`](crate::ShapeError), [`MatrixError::NotSkew`].
     pub(crate) fn components(&self, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, MechError> {
         let (graph, k) = (frame.graph(), eta.len());
         match self {
@@ -41,10 +41,11 @@ impl<'g> Force<'g> {
                 let pairs = (0..k).flat_map(|s| (0..=s).map(move |r| (r, s)));
                 let skew = |(r, s)| graph.generic_rank(&[vec![gamma[(s, r)] + gamma[(r, s)]]]) == 0;
                 match pairs.into_iter().find(|&pair| !skew(pair)) {
-                    Some((r, s)) => Err(MechError::NotSkew {
+                    Some((r, s)) => Err(MatrixError::NotSkew {
                         what: "the matrix of gyroscopic forces",
                         pair: [eta[r].to_string(), eta[s].to_string()],
-                    }),
+                    }
+                    .into()),
                     None => {
                         Ok((0..k).map(|s| graph.dot(gamma.row(s).to_vec(), eta.iter().copied())).collect())
                     }

@@ -3,7 +3,7 @@
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::error::{MechError, shape};
+use crate::error::{FrameError, MechError, shape};
 use crate::system::bodies::velocity::Bodies;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
@@ -67,7 +67,7 @@ impl<'g> System<'g> {
     /// That what the frame is made of, called `what`, contains no first-order state.
     ///
     /// # Errors
-    /// [`MechError::OfState`]
+    /// [`FrameError::OfState`]
     pub(crate) fn check_no_state(&self, what: &'static str, parts: &[Expr<'g>]) -> Result<(), MechError> {
         check_no_state(&self.states, what, parts)
     }
@@ -245,7 +245,7 @@ impl<'g> System<'g> {
     /// The same system with more generalised forces, one a quasi-velocity.
     ///
     /// # Errors
-    /// [`MechError::Shape`] if there are more or fewer.
+    /// [`ShapeError`](crate::ShapeError) if there are more or fewer.
     pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
         shape("the list of forces", more.len(), self.forces.len())?;
         Ok(System {
@@ -273,14 +273,14 @@ impl<'g> System<'g> {
 /// That `parts`, called `what`, contain none of the first-order `states`.
 ///
 /// # Errors
-/// [`MechError::OfState`]
+/// [`FrameError::OfState`]
 pub(crate) fn check_no_state<'g>(
     states: &[(Expr<'g>, Expr<'g>)],
     what: &'static str,
     parts: &[Expr<'g>],
 ) -> Result<(), MechError> {
     match states.iter().find(|(z, _)| parts.iter().any(|part| part.depends_on(*z))) {
-        Some((z, _)) => Err(MechError::OfState { what, state: z.to_string() }),
+        Some((z, _)) => Err(FrameError::OfState { what, state: z.to_string() }.into()),
         None => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 use pc_algebra::{AlgebraError, Frame, LieAlgebra};
 use pc_expr::Expr;
 
-use crate::error::MechError;
+use crate::error::{LagrangianError, MechError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
@@ -12,13 +12,17 @@ impl<'g> System<'g> {
     /// With η = a ẋ + a_0 (2) for the old quasi-velocities, n = k of them, Q_i = a_si Q_s.
     ///
     /// # Errors
-    /// [`MechError::Redundant`] if there are not as many quasi-velocities as coordinates, and
+    /// [`LagrangianError::RedundantCoordinates`] if there are not as many quasi-velocities as coordinates, and
     /// [`MechError::Algebra`] if these do not determine them.
     pub fn in_velocities(&self) -> Result<System<'g>, MechError> {
         let graph = self.graph();
         let (coordinates, k) = (self.frame.coordinates(), self.quasi_velocities.len());
         if coordinates.len() != k {
-            return Err(MechError::Redundant { coordinates: coordinates.len(), quasi_velocities: k });
+            return Err(LagrangianError::RedundantCoordinates {
+                coordinates: coordinates.len(),
+                quasi_velocities: k,
+            }
+            .into());
         }
         let (rank, operators) = (self.frame.rank(), k);
         if rank < k {

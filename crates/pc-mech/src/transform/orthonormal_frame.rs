@@ -5,7 +5,7 @@ use pc_expr::Expr;
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::equations::legendre::not_quadratic_in;
-use crate::error::MechError;
+use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
@@ -14,8 +14,8 @@ impl<'g> System<'g> {
     /// quasi-velocities; the others, such as those that constraints keep at zero, stay.
     ///
     /// # Errors
-    /// [`MechError::NotQuadratic`] unless L is quadratic in η, with a metric independent of it; [`MechError::DegenerateLagrangian`];
-    /// [`MechError::Shape`] if there are more names than quasi-velocities.
+    /// [`LagrangianError::NotQuadratic`] unless L is quadratic in η, with a metric independent of it;
+    /// [`LagrangianError::Degenerate`]; [`ShapeError`] if there are more names than quasi-velocities.
     ///
     /// ```
     /// use pc_mech::{Graph, System};
@@ -42,12 +42,14 @@ impl<'g> System<'g> {
         let free = names.len();
         if free > eta.len() {
             let what = "the list of names";
-            return Err(MechError::Shape { what, found: free, expected: eta.len() });
+            return Err(ShapeError { what, found: free, expected: eta.len() }.into());
         }
         let depends = |m: &Expr<'g>| eta.iter().any(|&eta| m.depends_on(eta));
         let form = quadratic(graph, self.lagrangian, &eta[..free]);
         let Some(form) = form.filter(|form| !form.matrix.entries().iter().any(depends)) else {
-            return Err(MechError::NotQuadratic { quasi_velocity: not_quadratic_in(self).to_string() });
+            return Err(
+                LagrangianError::NotQuadratic { quasi_velocity: not_quadratic_in(self).to_string() }.into()
+            );
         };
         let entries = graph.shorten(form.matrix.entries(), &self.collecting_order());
         let mass = Matrix::from_fn(free, free, |r, s| entries[r.max(s) * free + r.min(s)]);
@@ -55,7 +57,7 @@ impl<'g> System<'g> {
         let Factors::Ldl(factors) = Factors::of(graph, &mass) else {
             // A regular matrix without a pivot on its diagonal is no metric.
             let quasi_velocities = eta[..free].iter().map(Expr::to_string).collect();
-            return Err(MechError::DegenerateLagrangian { rank: 0, size: free, quasi_velocities });
+            return Err(LagrangianError::Degenerate { rank: 0, size: free, quasi_velocities }.into());
         };
         let made = (0..free).map(|s| factors.orthonormal(graph, s, &eta[..free]));
         let definitions: Vec<Expr<'g>> = made.chain(eta[free..].iter().copied()).collect();

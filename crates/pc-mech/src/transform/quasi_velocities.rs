@@ -14,8 +14,8 @@ impl<'g> System<'g> {
     /// [`FrameChange::structure_coefficients`].
     ///
     /// # Errors
-    /// [`MechError::Shape`]; [`AlgebraError::DefinitionNotAffine`]; [`AlgebraError::SingularDefinitions`] if A is
-    /// singular everywhere.
+    /// [`ShapeError`](crate::ShapeError); [`AlgebraError::DefinitionNotAffine`]; [`AlgebraError::SingularDefinitions`]
+    /// if A is singular everywhere.
     ///
     /// ```
     /// use pc_mech::{Graph, System};

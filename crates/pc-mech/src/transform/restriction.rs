@@ -2,7 +2,7 @@
 
 use pc_expr::Expr;
 
-use crate::error::MechError;
+use crate::error::{MechError, ShapeError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
@@ -18,12 +18,12 @@ impl<'g> System<'g> {
     /// integrable; the bracket that they define does not satisfy Jacobi's identity.
     ///
     /// # Errors
-    /// [`MechError::Shape`] if there are fewer than `free` quasi-velocities.
+    /// [`ShapeError`] if there are fewer than `free` quasi-velocities.
     pub fn constrained(&self, free: usize) -> Result<System<'g>, MechError> {
         let (graph, all) = (self.graph(), &self.quasi_velocities);
         if free > all.len() {
             let what = "the list of free quasi-velocities";
-            return Err(MechError::Shape { what, found: free, expected: all.len() });
+            return Err(ShapeError { what, found: free, expected: all.len() }.into());
         }
         let restricted = self.restricted(free);
         let zeros: Vec<_> = all[free..].iter().map(|&eta| (eta, Expr::ZERO)).collect();

@@ -1,6 +1,6 @@
 //! From a document to a mechanical system.
 
-use pc_mech::{Expr, Frame, Graph, MechError, Neighbourhood, System};
+use pc_mech::{Expr, Frame, Graph, LagrangianError, Neighbourhood, System};
 
 use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
@@ -173,8 +173,8 @@ impl<'g> Assembler<'g, '_> {
         let moves = |input: &&String| momenta.iter().any(|p| p.depends_on(self.graph.symbol(input)));
         match inputs.find(moves) {
             Some(input) => {
-                let error = MechError::SignalInMomentum { input: input.clone() };
-                Err(self.model.document().derivation_error(error))
+                let error = LagrangianError::SignalInMomentum { input: input.clone() };
+                Err(self.model.document().derivation_error(error.into()))
             }
             None => Ok(()),
         }

@@ -70,13 +70,16 @@ impl<'g> Trial<'_, 'g> {
             } else {
                 let (coordinates, eta) = (&held.coordinates, &held.quasi_velocities);
                 let moved = motion.project_holding(self.t, &mut nearest, coordinates, eta);
-                moved.map_err(|failure| match MechError::from(failure) {
-                    MechError::SingularConstraint { constraint, .. } => {
-                        let held = held.names(self.system);
-                        let fault = MeaningError::StartHeld { constraint: constraint.clone(), held };
-                        self.model.document().constraint_fault(&constraint, fault)
+                moved.map_err(|failure| {
+                    let error = MechError::from(failure);
+                    match error.singular_constraint() {
+                        Some(constraint) => {
+                            let held = held.names(self.system);
+                            let fault = MeaningError::StartHeld { constraint: constraint.to_owned(), held };
+                            self.model.document().constraint_fault(constraint, fault)
+                        }
+                        None => refused(error),
                     }
-                    other => refused(other),
                 })?;
             }
         }

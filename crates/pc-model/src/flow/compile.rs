@@ -96,9 +96,12 @@ impl Model {
         };
         let mut motion = compiled.map_err(|error| refuse(error.to_string()))?.driven_by(self.signals());
         let mut rate = vec![0.0; start.len()];
-        motion.rhs(t_start, &start, &mut rate).map_err(|failure| match MechError::from(failure) {
-            error @ MechError::SingularConstraint { .. } => self.document().constraint_error(error.into()),
-            error => refuse(error.to_string()),
+        motion.rhs(t_start, &start, &mut rate).map_err(|failure| {
+            let error = MechError::from(failure);
+            match error.singular_constraint() {
+                Some(_) => self.document().constraint_error(error.into()),
+                None => refuse(error.to_string()),
+            }
         })?;
         if let Some(name) = self.kept().first().filter(|_| !self.parameter_values().tables().is_empty()) {
             let message = format!("`{name}` cannot be kept where inputs change with time");

@@ -1,6 +1,6 @@
 //! Errors of the derivation, at the place in the file that is to blame.
 
-use pc_mech::{AlgebraError, ExprError, Graph, MechError};
+use pc_mech::{AlgebraError, ConstraintError, ExprError, Graph, IntegralError, LagrangianError, MechError};
 use pc_nonholo::NonholoError;
 
 use crate::diagnostics::error::ModelError;
@@ -40,29 +40,30 @@ impl Document {
             NonholoError::Nonlinear { constraint, .. } => {
                 cannot(&constraint, "take a form with multipliers: poincare, lagrange, or canonical")
             }
-            NonholoError::Mech(error) => match error {
-                MechError::ConstraintNotAffine { constraint } => {
+            NonholoError::Mech(MechError::Constraint(error)) => match error {
+                ConstraintError::NotAffine { constraint } => {
                     let text = self.constraint_text(&constraint).map(|c| c.expression.text.clone());
                     let text = text.unwrap_or_default();
                     let fault = MeaningError::ConstraintNotAffine { constraint: constraint.clone(), text };
                     self.constraint_fault(&constraint, fault)
                 }
-                MechError::TooManyConstraints { .. } => cannot(
+                ConstraintError::TooMany { .. } => cannot(
                     last,
                     "there must be fewer independent constraints than velocities, or nothing moves",
                 ),
-                MechError::DependentConstraint { constraint } => {
+                ConstraintError::Dependent { constraint } => {
                     cannot(&constraint, "leave out what follows from other constraints")
                 }
-                MechError::SingularConstraint { constraint, .. } => {
+                ConstraintError::Singular { constraint, .. } => {
                     cannot(&constraint, "start where the constraints are independent of each other")
                 }
-                MechError::NoProjection { constraints, .. } => cannot(
+                ConstraintError::NoProjection { constraints, .. } => cannot(
                     constraints.first().map_or(last, String::as_str),
                     "start nearer to a state that satisfies them, if there is one",
                 ),
-                other => self.derivation_error(other),
+                other => self.derivation_error(other.into()),
             },
+            NonholoError::Mech(error) => self.derivation_error(error),
             NonholoError::NotAQuasiVelocity { .. }
             | NonholoError::Twice { .. }
             | NonholoError::NotInVelocities => cannot(last, "check [constraints]"),
@@ -83,28 +84,27 @@ impl Document {
 
     /// Puts an error of the derivation at the place in the file that is to blame.
     pub(crate) fn derivation_error(&self, error: MechError) -> ModelError {
+        if let Some(&ExprError::Spent { what, stage, nodes }) = error.of_expressions() {
+            return self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes });
+        }
         match error {
-            MechError::DegenerateLagrangian { rank, size, quasi_velocities: undetermined } => {
-                self.error(&self.energy_place(), MeaningError::Degenerate { rank, size, undetermined })
+            MechError::Lagrangian(LagrangianError::Degenerate { rank, size, quasi_velocities }) => {
+                let fault = MeaningError::Degenerate { rank, size, undetermined: quasi_velocities };
+                self.error(&self.energy_place(), fault)
             }
-            error @ (MechError::Redundant { .. }
-            | MechError::Algebra(AlgebraError::DependentOperators { .. })) => {
+            error if error.is_of_dependent_coordinates() => {
                 let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
                 self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
-            error @ MechError::NotQuadratic { .. } => {
+            error if error.is_not_quadratic() => {
                 let help = "its forms are poincare and, where the coordinates are independent, lagrange";
                 self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
-            MechError::Expr(ExprError::Spent { what, stage, nodes })
-            | MechError::Algebra(AlgebraError::Expr(ExprError::Spent { what, stage, nodes })) => {
-                self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes })
-            }
             MechError::Algebra(error) => self.algebra_error(error),
-            MechError::UnknownIntegral { name, known } => {
+            MechError::Integral(IntegralError::Unknown { name, known }) => {
                 self.error(&self.kept_place(&name), MeaningError::UnknownIntegral { name, known })
             }
-            MechError::NotAnIntegral { name, t, rate } => {
+            MechError::Integral(IntegralError::NotAnIntegral { name, t, rate }) => {
                 self.error(&self.kept_place(&name), MeaningError::NotAnIntegral { name, t, rate })
             }
             other => {

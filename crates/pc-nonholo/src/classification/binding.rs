@@ -72,7 +72,7 @@ impl Binding {
     ///
     /// # Errors
     /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others;
-    /// [`MechError::ConstraintNotAffine`](pc_mech::MechError::ConstraintNotAffine).
+    /// [`ConstraintError::NotAffine`](pc_mech::ConstraintError::NotAffine).
     pub fn new<'g>(
         system: &System<'g>,
         constraints: &[Constraint<'g>],

@@ -1,6 +1,6 @@
 //! Frames in which constraints are vanishing quasi-velocities.
 
-use pc_mech::{Constraint, Expr, MechError, Multipliers, System};
+use pc_mech::{Constraint, Expr, MechError, Multipliers, ShapeError, System};
 
 use crate::error::NonholoError;
 use crate::reduction::constrained::Constrained;
@@ -26,8 +26,9 @@ impl<'g> Adapted<'g> {
     /// singular where these are not determined.
     ///
     /// # Errors
-    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], of which [`MechError::SingularConstraint`] says
-    /// that the constraints are dependent at `at`.
+    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], of which
+    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) says that the constraints are dependent at
+    /// `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let eta = system.quasi_velocities();
@@ -49,7 +50,7 @@ impl<'g> Adapted<'g> {
     pub fn orthonormal<S: AsRef<str>>(&self, names: &[S]) -> Result<Adapted<'g>, NonholoError> {
         if names.len() != self.free {
             let (what, found) = ("the list of names", names.len());
-            return Err(MechError::Shape { what, found, expected: self.free }.into());
+            return Err(MechError::from(ShapeError { what, found, expected: self.free }).into());
         }
         Ok(Adapted { system: self.system.in_orthonormal_frame(names)?, free: self.free })
     }
@@ -67,7 +68,7 @@ impl<'g> Adapted<'g> {
     /// The system with η_α = 0: its equations (30) and reactions.
     ///
     /// # Errors
-    /// [`MechError::DegenerateLagrangian`] if the free quasi-velocities have
+    /// [`LagrangianError::Degenerate`](pc_mech::LagrangianError::Degenerate) if the free quasi-velocities have
     /// no inertia.
     pub fn constrained(&self) -> Result<Constrained<'g>, NonholoError> {
         Constrained::new(&self.system, &self.system.quasi_velocities()[self.free..])

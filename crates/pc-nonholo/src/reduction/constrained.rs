@@ -17,7 +17,7 @@ impl<'g> Constrained<'g> {
     ///
     /// # Errors
     /// [`NonholoError::NotAQuasiVelocity`]; [`NonholoError::Twice`];
-    /// [`MechError::DegenerateLagrangian`](pc_mech::MechError::DegenerateLagrangian) if the free quasi-velocities have no
+    /// [`LagrangianError::Degenerate`](pc_mech::LagrangianError::Degenerate) if the free quasi-velocities have no
     /// inertia.
     pub fn new(system: &System<'g>, vanishing: &[Expr<'g>]) -> Result<Constrained<'g>, NonholoError> {
         let all = system.quasi_velocities();

@@ -37,7 +37,7 @@ impl<'g> Voronets<'g> {
     ///
     /// # Errors
     /// [`NonholoError::NotInVelocities`]; [`NonholoError::Nonlinear`];
-    /// [`MechError::SingularConstraint`](pc_mech::MechError::SingularConstraint) if the constraints are dependent at `at`.
+    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) if the constraints are dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Voronets<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let (graph, x, v) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());

@@ -3,6 +3,7 @@
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::point::Point;
 
 /// A derivative of more operations is interpreted: integrators ask for it once in dozens of steps, and
 /// machine code for it would take longer to make than a run.
@@ -83,16 +84,16 @@ impl Columns {
     /// Writes the entries.
     pub(crate) fn eval(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
         if storage == Storage::Sparse || self.pattern.is_full() {
             self.entries.eval(t, y, p, entries);
-            return check_finite(entries, &self.entries, (t, y, p));
+            return check_finite(entries, &self.entries, Point { t, y, p });
         }
         self.entries.eval(t, y, p, &mut self.values);
         self.pattern.scatter(&self.values, entries);
-        check_finite(&self.values, &self.entries, (t, y, p))
+        check_finite(&self.values, &self.entries, Point { t, y, p })
     }
 }

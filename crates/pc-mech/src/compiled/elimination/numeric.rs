@@ -9,6 +9,7 @@ use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
+use crate::compiled::point::Point;
 
 /// ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
 #[derive(Clone, Debug)]
@@ -111,7 +112,7 @@ impl Staged {
         match &mut self.unknowns {
             Unknowns::Linear { equations, lower, values } => {
                 equations.eval(t, y, p, values);
-                check_finite(values, equations, (t, y, p))?;
+                check_finite(values, equations, Point { t, y, p })?;
                 let (mass, right) = values.split_at(lower.len());
                 self.solver.factorise(lower, mass)?;
                 let unknowns = &mut self.known[self.dim..];
@@ -132,13 +133,13 @@ impl Staged {
     ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
         self.rates.eval(t, &self.known, p, ydot);
-        check_finite(ydot, &self.rates, (t, &self.known, p))
+        check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
     /// The same with each number of M w = r times a `factor`, which is another one each time.
     pub(crate) fn perturbed_rhs(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         ydot: &mut [f64],
         mut factor: impl FnMut() -> f64,
     ) -> Result<(), EvaluationFailure> {
@@ -151,7 +152,7 @@ impl Staged {
             self.solver.solve(&mut self.known[self.dim..]);
         }
         self.rates.eval(t, &self.known, p, ydot);
-        check_finite(ydot, &self.rates, (t, &self.known, p))
+        check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
     /// Observables of w are not finite where w cannot be solved for, or is not to be `solved` for.
@@ -170,7 +171,7 @@ impl Staged {
 
     pub(crate) fn jacobian(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
@@ -181,7 +182,7 @@ impl Staged {
 
     pub(crate) fn parameter_jacobian(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         entries: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         self.solve(t, y, p)?;
@@ -192,7 +193,7 @@ impl Staged {
 
     pub(crate) fn jvp(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         v: &[f64],
         product: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
@@ -255,7 +256,7 @@ impl Stage {
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
         self.parts.eval(t, known, p, &mut self.values);
-        check_finite(&self.values, &self.parts, (t, known, p))?;
+        check_finite(&self.values, &self.parts, Point { t, y: known, p })?;
         let (balance, rest) = self.values.split_at(self.balance.len());
         let (rates, coupling) = rest.split_at(self.rates.len());
         self.balance.scatter(balance, &mut self.unknowns);
@@ -351,10 +352,10 @@ impl Product {
         self.known[known.len()..given].copy_from_slice(v);
         let (inputs, changes) = self.known.split_at_mut(given);
         self.balance.eval(t, inputs, p, changes);
-        check_finite(changes, &self.balance, (t, inputs, p))?;
+        check_finite(changes, &self.balance, Point { t, y: inputs, p })?;
         solver.solve(changes);
         self.rates.eval(t, &self.known, p, product);
-        check_finite(product, &self.rates, (t, &self.known, p))
+        check_finite(product, &self.rates, Point { t, y: &self.known, p })
     }
 }
 

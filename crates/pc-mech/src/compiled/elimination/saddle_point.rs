@@ -284,15 +284,7 @@ impl Saddle {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers in −1..1, the same on every run.
-    fn numbers(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
+    use crate::random::numbers;
 
     /// M = Nᵀ N + 1 and C, both of random numbers, as one symmetric matrix.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {

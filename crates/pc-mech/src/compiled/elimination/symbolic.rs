@@ -11,6 +11,7 @@ use crate::compiled::failure::{EvaluationFailure, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
+use crate::compiled::point::Point;
 
 /// ẏ = g(t, y, M⁻¹ r) and its derivatives.
 #[derive(Clone, Debug)]
@@ -95,7 +96,7 @@ impl Unrolled {
         if self.outputs.len() == ydot.len() {
             self.rates.eval(t, y, p, ydot);
             self.pivots.check(y, p, &[])?;
-            return check_finite(ydot, &self.rates, (t, y, p));
+            return check_finite(ydot, &self.rates, Point { t, y, p });
         }
         self.rates.eval(t, y, p, &mut self.outputs);
         let (rates, moving) = self.outputs.split_at(y.len());
@@ -105,7 +106,7 @@ impl Unrolled {
         for (ydot, &rate) in ydot.iter_mut().zip(rates) {
             *ydot = rate;
             if !rate.is_finite() {
-                return Err(blame(&self.rates, (t, y, p)));
+                return Err(blame(&self.rates, Point { t, y, p }));
             }
         }
         Ok(())
@@ -122,27 +123,27 @@ impl Unrolled {
 
     pub(crate) fn jacobian(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
         let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
-        jacobian.eval((t, y, p), entries, storage)
+        jacobian.eval(Point { t, y, p }, entries, storage)
     }
 
     pub(crate) fn parameter_jacobian(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         entries: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         let what = "derivative by parameters";
         let jacobian = self.parameter_jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
-        jacobian.eval((t, y, p), entries, Storage::Dense)
+        jacobian.eval(Point { t, y, p }, entries, Storage::Dense)
     }
 
     pub(crate) fn jvp(
         &mut self,
-        (t, y, p): (f64, &[f64], &[f64]),
+        Point { t, y, p }: Point<'_>,
         v: &[f64],
         product: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
@@ -152,7 +153,7 @@ impl Unrolled {
         state.copy_from_slice(y);
         direction.copy_from_slice(v);
         jvp.eval(t, &self.known, p, product);
-        check_finite(product, jvp, (t, &self.known, p))
+        check_finite(product, jvp, Point { t, y: &self.known, p })
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {

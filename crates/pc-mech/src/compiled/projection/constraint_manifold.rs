@@ -4,6 +4,7 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::point::Point;
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
@@ -137,7 +138,7 @@ impl Surface {
     }
 
     /// Writes f where a constraint has a position and g where it has none, one number a constraint.
-    pub(crate) fn residuals(&mut self, at: (f64, &[f64], &[f64]), residuals: &mut [f64]) {
+    pub(crate) fn residuals(&mut self, at: Point<'_>, residuals: &mut [f64]) {
         residuals.copy_from_slice(self.velocities.eval(at));
         for (&place, &value) in self.places.iter().zip(self.positions.eval(at)) {
             residuals[place] = value;
@@ -174,7 +175,7 @@ impl Surface {
 
     fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
-        check_finite(&self.entries, &self.bordered, (t, y, p))?;
+        check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
         let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
@@ -212,7 +213,7 @@ impl Surface {
     ) -> Result<(), EvaluationFailure> {
         let n = self.coordinates;
         let range = if part == Part::Position { 0..n } else { n..n + self.k };
-        self.measured(part).try_eval((t, y, p))?;
+        self.measured(part).try_eval(Point { t, y, p })?;
         for _ in 0..MOST_STEPS {
             let rest = self.measured(part).in_errors();
             if rest <= ONE_ROUNDING {
@@ -223,7 +224,7 @@ impl Surface {
             let length = self.step(part);
             start.clear();
             start.extend_from_slice(&y[range.clone()]);
-            self.move_by(part, (t, y, p), change);
+            self.move_by(part, Point { t, y, p }, change);
             // Constraints that depend on those which are taken are satisfied to the roundings of these, not to their own.
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let has_spare = self.rank < self.velocities.values().len();
@@ -237,7 +238,7 @@ impl Surface {
             let mut go = |surface: &mut Surface, fraction: f64| {
                 let moving = y[range.clone()].iter_mut().zip(&*start).zip(&*change);
                 moving.for_each(|((y, start), change)| *y = start + fraction * change);
-                let is_finite = surface.measured(part).try_eval((t, y, p)).is_ok();
+                let is_finite = surface.measured(part).try_eval(Point { t, y, p }).is_ok();
                 is_finite.then(|| (surface.step(part), surface.measured(part).in_errors()))
             };
             let whole = go(self, 1.0);
@@ -245,7 +246,7 @@ impl Surface {
             if !converges && (rest <= 1.0 || self.is_rounding(part, errors, length, change, start)) {
                 if whole.is_none_or(|(_, left)| left >= rest) {
                     y[range].copy_from_slice(start);
-                    self.measured(part).try_eval((t, y, p))?;
+                    self.measured(part).try_eval(Point { t, y, p })?;
                 }
                 return self.factorise(t, y, p);
             }
@@ -323,7 +324,7 @@ impl Surface {
     }
 
     /// Leaves in `moved` what the step changes of x or of η.
-    pub(super) fn move_by(&mut self, part: Part, (t, y, p): (f64, &[f64], &[f64]), moved: &mut Vec<f64>) {
+    pub(super) fn move_by(&mut self, part: Part, Point { t, y, p }: Point<'_>, moved: &mut Vec<f64>) {
         let (n, k) = (self.coordinates, self.k);
         moved.clear();
         match part {

@@ -3,6 +3,7 @@
 use pc_algebra::Matrix;
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
+use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface};
 use crate::numeric::least_squares::LeastSquares;
 
@@ -50,21 +51,21 @@ impl Surface {
         let n = self.coordinates;
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, value| size.max(value.abs()));
         for _ in 0..MOST_STEPS {
-            self.measured(part).try_eval((t, y, p))?;
+            self.measured(part).try_eval(Point { t, y, p })?;
             if self.measured(part).in_errors() <= 1.0 {
                 return Ok(());
             }
             self.bordered.eval(t, y, p, &mut self.entries);
-            check_finite(&self.entries, &self.bordered, (t, y, p))?;
+            check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
             let fixed = match part {
-                Part::Position => self.displacements_of(held.coordinates, (t, y, p)),
+                Part::Position => self.displacements_of(held.coordinates, Point { t, y, p }),
                 Part::Velocity => self.units(held.quasi_velocities),
             };
             let step = self.shortest(part, fixed)?;
             self.change[..self.k].copy_from_slice(&step);
             let range = if part == Part::Position { 0..n } else { n..n + self.k };
             let mut moved = Vec::new();
-            self.move_by(part, (t, y, p), &mut moved);
+            self.move_by(part, Point { t, y, p }, &mut moved);
             let still = match part {
                 Part::Position => held.coordinates,
                 Part::Velocity => held.quasi_velocities,
@@ -80,7 +81,7 @@ impl Surface {
     }
 
     /// The rows b_i of some coordinates.
-    fn displacements_of(&mut self, coordinates: &[usize], (t, y, p): (f64, &[f64], &[f64])) -> Vec<Vec<f64>> {
+    fn displacements_of(&mut self, coordinates: &[usize], Point { t, y, p }: Point<'_>) -> Vec<Vec<f64>> {
         let n = self.coordinates;
         let mut rows = vec![vec![0.0; self.k]; coordinates.len()];
         let mut column = vec![0.0; n];

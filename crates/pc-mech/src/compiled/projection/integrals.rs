@@ -4,8 +4,9 @@ use pc_expr::{Backend, Evaluator, Expr, Program};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::point::Point;
 use crate::compiled::running_error::Measured;
-use crate::error::MechError;
+use crate::error::{IntegralError, MechError};
 
 /// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
 const MOST_STEPS: usize = 50;
@@ -57,7 +58,7 @@ impl<'g> FirstOrder<'g> {
         for name in names.iter().map(AsRef::as_ref) {
             let Some((_, integral)) = known.iter().find(|(known, _)| known == name) else {
                 let known = known.iter().map(|(name, _)| name.clone()).collect();
-                return Err(MechError::UnknownIntegral { name: name.to_owned(), known });
+                return Err(IntegralError::Unknown { name: name.to_owned(), known }.into());
             };
             functions.push(*integral);
         }
@@ -86,18 +87,18 @@ impl<'g> FirstOrder<'g> {
 impl KeptIntegrals {
     /// The rates of change of the integrals at (t, y), where ẏ = `rates`, each with the sum of the absolute values of its
     /// terms.
-    pub(super) fn rates_of_change(&mut self, at: (f64, &[f64], &[f64]), rates: &[f64]) -> Vec<(f64, f64)> {
+    pub(super) fn rates_of_change(&mut self, at: Point<'_>, rates: &[f64]) -> Vec<(f64, f64)> {
         let held = self.held();
         self.find_gradients(at);
         let along = |gradient: &[f64]| {
             let terms = || gradient.iter().zip(std::iter::once(&1.0).chain(rates)).map(|(g, rate)| g * rate);
             (terms().sum(), terms().map(f64::abs).sum())
         };
-        self.room.entries.chunks_exact(at.1.len() + 1).skip(held).map(along).collect()
+        self.room.entries.chunks_exact(at.y.len() + 1).skip(held).map(along).collect()
     }
 
     /// Takes the values at (t, y) for those to be kept.
-    pub(crate) fn set_levels(&mut self, at: (f64, &[f64], &[f64])) {
+    pub(crate) fn set_levels(&mut self, at: Point<'_>) {
         let held = self.held();
         self.levels.copy_from_slice(self.values.eval(at));
         self.levels[..held].fill(0.0);
@@ -109,7 +110,7 @@ impl KeptIntegrals {
     }
 
     /// Leaves (∂I_j/∂t, ∂I_j/∂y) in `entries`, one row for each.
-    fn find_gradients(&mut self, (t, y, p): (f64, &[f64], &[f64])) {
+    fn find_gradients(&mut self, Point { t, y, p }: Point<'_>) {
         self.gradients.eval(t, y, p, &mut self.room.entries);
     }
 
@@ -121,8 +122,8 @@ impl KeptIntegrals {
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
-            self.values.try_eval((t, y, p))?;
-            self.find_shortest((t, y, p))?;
+            self.values.try_eval(Point { t, y, p })?;
+            self.find_shortest(Point { t, y, p })?;
             let change = &self.room.change;
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let length = largest(change);
@@ -145,10 +146,10 @@ impl KeptIntegrals {
 
     /// Leaves in `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
     /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
-    fn find_shortest(&mut self, at: (f64, &[f64], &[f64])) -> Result<(), EvaluationFailure> {
+    fn find_shortest(&mut self, at: Point<'_>) -> Result<(), EvaluationFailure> {
         self.find_gradients(at);
         let Room { entries, basis, change, .. } = &mut self.room;
-        let dim = at.1.len();
+        let dim = at.y.len();
         let mut independent = 0;
         change.fill(0.0);
         for (place, row) in entries.chunks_exact_mut(dim + 1).enumerate() {
@@ -159,7 +160,7 @@ impl KeptIntegrals {
             // At the edge of the domain of a function that is part of it an integral may have no bound.
             let error =
                 Some(self.values.error(place)).filter(|error| error.is_finite()).unwrap_or_else(|| {
-                    let terms: f64 = gradient.iter().zip(at.1).map(|(g, y)| (g * y).abs()).sum();
+                    let terms: f64 = gradient.iter().zip(at.y).map(|(g, y)| (g * y).abs()).sum();
                     ROUNDINGS * f64::EPSILON * (terms + self.levels[place].abs())
                 });
             let residual = if difference.abs() <= error { 0.0 } else { difference };

@@ -1,11 +1,12 @@
 //! Motions that are brought back to first integrals.
 
 use crate::compiled::motion::Motion;
+use crate::compiled::point::Point;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::constraints::multipliers::Multipliers;
 use crate::equations::canonical::Canonical;
 use crate::equations::poincare::Equations;
-use crate::error::MechError;
+use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
 /// A rate of change that is larger than rounding of its terms by this is one.
@@ -27,7 +28,7 @@ impl<'g> Equations<'g> {
     /// The integrals of these names, or `energy`, to be [kept](Motion::keep).
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`].
+    /// [`IntegralError::Unknown`].
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         self.first_order().kept(names, &[])
     }
@@ -37,7 +38,8 @@ impl<'g> Canonical<'g> {
     /// The integrals of these names, or `energy`, as functions of (t, x, y), to be [kept](Motion::keep).
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`]; [`MechError::NotQuadratic`] where η is no expression in the momenta.
+    /// [`IntegralError::Unknown`]; [`LagrangianError::NotQuadratic`](crate::LagrangianError::NotQuadratic) where η is
+    /// no expression in the momenta.
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         let mut equations = self.observed_first_order()?;
         let closed = self.closed_quasi_velocities()?.iter().copied();
@@ -53,7 +55,7 @@ impl<'g> Multipliers<'g> {
     /// The integrals of these names, or `energy`, to be [kept](Motion::keep) beside the constraints.
     ///
     /// # Errors
-    /// [`MechError::UnknownIntegral`].
+    /// [`IntegralError::Unknown`].
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         self.first_order().kept(names, &self.conditions())
     }
@@ -68,7 +70,7 @@ impl Motion {
     /// jumps on the way, as energy does where a potential is a step, is none there, and to keep it changes the motion.
     ///
     /// # Errors
-    /// [`MechError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
+    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
     /// equations of motion report at (t, y).
     ///
     /// ```
@@ -110,7 +112,7 @@ impl Motion {
         }
         let Some(mut integrals) = self.set_kept(None) else { return Ok(()) };
         let kept = self.try_to_keep(&mut integrals, t, y);
-        integrals.set_levels((t, y, self.parameters()));
+        integrals.set_levels(Point { t, y, p: self.parameters() });
         self.set_kept(Some(integrals));
         kept
     }
@@ -137,7 +139,7 @@ impl Motion {
     }
 
     /// # Errors
-    /// [`MechError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
+    /// [`IntegralError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
     fn check(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -145,11 +147,11 @@ impl Motion {
         y: &[f64],
         rates: &[f64],
     ) -> Result<(), MechError> {
-        let found = integrals.rates_of_change((t, y, self.parameters()), rates);
+        let found = integrals.rates_of_change(Point { t, y, p: self.parameters() }, rates);
         for (place, &(rate, size)) in found.iter().enumerate() {
             if rate.is_nan() || rate.abs() > RATE * size && !self.is_uncertain(integrals, place, rate, t, y) {
                 let name = integrals.names[place].clone();
-                return Err(MechError::NotAnIntegral { name, t, rate });
+                return Err(IntegralError::NotAnIntegral { name, t, rate }.into());
             }
         }
         Ok(())
@@ -173,7 +175,8 @@ impl Motion {
                 1.0 + LAST_DIGITS * part
             };
             let Ok((probe, rates)) = self.perturbed_rates(t, y, factor) else { return false };
-            let (there, _) = integrals.rates_of_change((t, &probe, self.parameters()), &rates)[place];
+            let (there, _) =
+                integrals.rates_of_change(Point { t, y: &probe, p: self.parameters() }, &rates)[place];
             (there - rate).abs() > UNCERTAIN * rate.abs()
         })
     }

@@ -18,7 +18,8 @@ impl<'g> Body<'g> {
     /// T and Q_1..Q_k.
     ///
     /// # Errors
-    /// [`MechError::Shape`], [`MechError::BodyOfVelocities`], [`MechError::AngularVelocityNotAffine`].
+    /// [`ShapeError`](crate::ShapeError), [`BodyError::OfVelocities`](crate::BodyError::OfVelocities),
+    /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine).
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         match self {
             Body::Particle(particle) => particle.share(moving),
@@ -29,7 +30,7 @@ impl<'g> Body<'g> {
     /// m g · r, what L has of it in a field of gravity.
     ///
     /// # Errors
-    /// [`MechError::Shape`]
+    /// [`ShapeError`](crate::ShapeError)
     pub(crate) fn weight(&self, graph: &'g Graph, acceleration: &[Expr<'g>]) -> Result<Expr<'g>, MechError> {
         let (mass, position) = match self {
             Body::Particle(particle) => particle.mass_and_position(),

@@ -3,7 +3,7 @@
 use pc_algebra::Frame;
 use pc_expr::Expr;
 
-use crate::error::MechError;
+use crate::error::{BodyError, MechError};
 use crate::system::system::check_no_state;
 
 /// What a body adds to a system.
@@ -49,8 +49,8 @@ impl<'a, 'g> Moving<'a, 'g> {
     /// X_s f for each function f of (t, x), s = 0..k.
     ///
     /// # Errors
-    /// [`MechError::BodyOfVelocities`] if they depend on velocities, [`MechError::OfState`] if on first-order states; `what` is
-    /// their name.
+    /// [`BodyError::OfVelocities`] if they depend on velocities, [`FrameError::OfState`](crate::FrameError::OfState) if
+    /// on first-order states; `what` is their name.
     pub(crate) fn operators(
         &self,
         what: &'static str,
@@ -62,12 +62,12 @@ impl<'a, 'g> Moving<'a, 'g> {
     }
 
     /// # Errors
-    /// [`MechError::BodyOfVelocities`] if one of the functions depends on velocities.
+    /// [`BodyError::OfVelocities`] if one of the functions depends on velocities.
     pub(crate) fn check_at_rest(&self, what: &'static str, functions: &[Expr<'g>]) -> Result<(), MechError> {
         let known = self.frame.graph().symbols_of(functions);
         let mut velocities = self.velocities.iter().map(|(symbol, _)| symbol).chain(self.eta);
         match velocities.find(|velocity| known.contains(velocity)) {
-            Some(velocity) => Err(MechError::BodyOfVelocities { what, velocity: velocity.to_string() }),
+            Some(velocity) => Err(BodyError::OfVelocities { what, velocity: velocity.to_string() }.into()),
             None => Ok(()),
         }
     }

@@ -3,7 +3,7 @@
 use pc_algebra::{Matrix, Neighbourhood, affine, determinant};
 use pc_expr::Expr;
 
-use crate::error::{MechError, shape};
+use crate::error::{BodyError, MechError, shape};
 use crate::system::bodies::moving::{Moving, Share};
 use crate::system::bodies::particle::Particle;
 
@@ -204,7 +204,9 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
             // Numbers such as cos 0.3 are rounded.
             let defect = graph.sum(terms.iter().copied());
             if near.residual(graph, &[terms]) > Neighbourhood::ROUNDING {
-                return Err(MechError::NotARotation { columns: (i + 1, j + 1), defect: defect.to_string() });
+                return Err(
+                    BodyError::NotARotation { columns: (i + 1, j + 1), defect: defect.to_string() }.into()
+                );
             }
         }
     }
@@ -212,7 +214,7 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
     // det R + |det R| = 0
     if near.residual(graph, &[vec![determinant, determinant.abs()]]) <= Neighbourhood::ROUNDING {
         let shown = near.largest(graph, &[determinant]);
-        return Err(MechError::Reflection { determinant: -shown });
+        return Err(BodyError::Reflection { determinant: -shown }.into());
     }
     Ok(())
 }
@@ -222,7 +224,8 @@ fn affine_parts<'g>(omega: &[Expr<'g>; 3], moving: &Moving<'_, 'g>) -> Result<Ve
     let (graph, eta) = (moving.frame.graph(), moving.eta);
     let mut parts = vec![Vec::new(); eta.len() + 1];
     for component in moving.in_quasi_velocities(omega) {
-        let error = || MechError::AngularVelocityNotAffine { component: component.to_string() };
+        let error =
+            || MechError::Body(BodyError::AngularVelocityNotAffine { component: component.to_string() });
         let (slopes, rest) = affine(graph, component, eta).ok_or_else(error)?;
         parts.iter_mut().zip([rest].into_iter().chain(slopes)).for_each(|(part, value)| part.push(value));
     }

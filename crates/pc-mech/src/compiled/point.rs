@@ -1,0 +1,11 @@
+//! Where the functions of a motion are evaluated.
+
+/// Time t, state y and parameters p: the arguments of every program of a motion.
+///
+/// To some programs y is the state with the unknowns behind it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point<'a> {
+    pub(crate) t: f64,
+    pub(crate) y: &'a [f64],
+    pub(crate) p: &'a [f64],
+}

@@ -1,0 +1,69 @@
+//! What can be wrong with constraints, everywhere or at a state.
+
+use crate::error::lists::{listed, quoted};
+
+/// An error of constraints.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConstraintError {
+    /// A condition on velocities that is not affine in them.
+    #[error("the constraint `{constraint}` is not affine in the quasi-velocities")]
+    NotAffine {
+        /// Its name.
+        constraint: String,
+    },
+    /// Constraints that leave nothing to move.
+    #[error("nothing is left free: constraints {constraints}, quasi-velocities {quasi_velocities}")]
+    TooMany {
+        /// Number of constraints.
+        constraints: usize,
+        /// Number k of quasi-velocities.
+        quasi_velocities: usize,
+    },
+    /// A constraint that restricts no velocity, or none that those before it leave free.
+    #[error("the constraint `{constraint}` restricts no velocity that those before it leave free")]
+    Dependent {
+        /// Its name.
+        constraint: String,
+    },
+    /// The same at one state only.
+    #[error(
+        "the constraint `{constraint}` restricts no velocity that the others leave free at t = {t}{}",
+        listed(state)
+    )]
+    Singular {
+        /// Its name.
+        constraint: String,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// A constraint that was left to follow from the others, which it does not everywhere.
+    #[error(
+        "the constraint `{constraint}`, which followed from the others, does not at t = {t}{}",
+        listed(state)
+    )]
+    Departed {
+        /// Its name.
+        constraint: String,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// A state from which no way was found to where the constraints are satisfied.
+    #[error(
+        "no state that satisfies the constraints {} was found near t = {t}{}",
+        quoted(constraints),
+        listed(state)
+    )]
+    NoProjection {
+        /// Their names.
+        constraints: Vec<String>,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+}

@@ -1,0 +1,56 @@
+//! Why a motion has no rates, or no momenta, at a state.
+
+use pc_expr::readable;
+
+use crate::error::lists::listed;
+
+/// An error of the numbers of a motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// A pivot of the mass matrix vanished on the way.
+    #[error(
+        "the mass matrix is singular: the kinetic energy {}`{quasi_velocity}` (pivot {}) at t = {t}{}",
+        if *pivot == 0.0 { "lacks " } else { "hardly knows " },
+        readable(*pivot),
+        listed(state)
+    )]
+    SingularMassMatrix {
+        /// The quasi-velocity whose acceleration is not determined.
+        quasi_velocity: String,
+        /// The pivot.
+        pivot: f64,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+    /// Newton's method found no quasi-velocities that have the momenta.
+    #[error(
+        "y = ∂L/∂η has no solution η that could be found: after {iterations} steps |y − ∂L/∂η| is {} at t = {t}{}",
+        readable(*residual),
+        listed(state)
+    )]
+    LegendreNotSolved {
+        /// |y − ∂L/∂η|
+        residual: f64,
+        /// Number of steps made.
+        iterations: usize,
+        /// Time.
+        t: f64,
+        /// Names and values of the state (x, y).
+        state: Vec<(String, f64)>,
+    },
+    /// A derivative was asked for that was not [compiled](crate::CompileOptions).
+    #[error("the motion was compiled without its {what}")]
+    NotCompiled {
+        /// The derivative.
+        what: &'static str,
+    },
+    /// A vector field that could not be evaluated for a reason of its own.
+    #[error("{cause}")]
+    NotEvaluated {
+        /// What it said.
+        cause: String,
+    },
+}

@@ -1,0 +1,35 @@
+//! What can be wrong with integrals that are to be kept.
+
+use crate::error::lists::{listed, quoted};
+
+/// An error of integrals.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IntegralError {
+    /// An integral to be kept that the system does not have.
+    #[error("`{name}` is not an integral of the system; there are {}", quoted(known))]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// Those there are.
+        known: Vec<String>,
+    },
+    /// An integral to be kept that is none.
+    #[error("`{name}` cannot be kept: it changes along the motion, at t = {t} at the rate {rate}")]
+    NotAnIntegral {
+        /// The integral.
+        name: String,
+        /// When it was seen to change.
+        t: f64,
+        /// Its rate of change.
+        rate: f64,
+    },
+    /// Newton's method found no state with the values of the [kept](crate::Motion::keep) integrals.
+    #[error("no state with the values of the integrals is found near t = {t}{}", listed(state))]
+    NotKept {
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
+}

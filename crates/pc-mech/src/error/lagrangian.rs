@@ -1,0 +1,59 @@
+//! What can be wrong with a Lagrangian for the form of the equations that is asked for.
+
+use crate::error::lists::quoted;
+
+/// An error of a Lagrangian.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LagrangianError {
+    /// Neither a Lagrangian was given nor one that depends on the quasi-velocities.
+    #[error("the system has no Lagrangian")]
+    Missing,
+    /// ∂²L/∂η∂η is singular at almost all states.
+    #[error(
+        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank {rank} of {size}, so that {} not \
+         determined by its equation",
+        undetermined(quasi_velocities)
+    )]
+    Degenerate {
+        /// Rank of the Hessian.
+        rank: usize,
+        /// Number of quasi-velocities.
+        size: usize,
+        /// The quasi-velocities in whose elimination no pivot was left.
+        quasi_velocities: Vec<String>,
+    },
+    /// H(t, x, y) was asked for where y = ∂L/∂η is not linear in the quasi-velocities.
+    #[error(
+        "the Hamiltonian as a function of the momenta needs a Lagrangian that is quadratic in the quasi-velocities; \
+         this one is not in `{quasi_velocity}`"
+    )]
+    NotQuadratic {
+        /// A quasi-velocity in which L is not quadratic.
+        quasi_velocity: String,
+    },
+    /// Lagrange's equations asked for in coordinates that are not independent.
+    #[error(
+        "Lagrange's equations need independent coordinates; here {coordinates} coordinates move with \
+         {quasi_velocities} quasi-velocities"
+    )]
+    RedundantCoordinates {
+        /// Number n of coordinates.
+        coordinates: usize,
+        /// Number k of quasi-velocities.
+        quasi_velocities: usize,
+    },
+    /// A frame or a kinetic energy that contains an input whose rate is not known.
+    #[error("velocities or momenta depend on the input `{input}`, whose rate is not known")]
+    SignalInMomentum {
+        /// The input.
+        input: String,
+    },
+}
+
+fn undetermined(names: &[String]) -> String {
+    match names {
+        [_] => format!("{} is", quoted(names)),
+        _ => format!("{} are", quoted(names)),
+    }
+}

@@ -1,0 +1,11 @@
+//! Names and states in messages.
+
+use pc_expr::readable;
+
+pub(super) fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+pub(super) fn listed(values: &[(String, f64)]) -> String {
+    values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
+}
