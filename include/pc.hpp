@@ -12,6 +12,7 @@
 #ifndef PC_HPP
 #define PC_HPP
 
+#include "pc/cancel.hpp"     // what derivations may take
 #include "pc/catching.hpp"   // what functions of the program throw
 #include "pc/checkpoint.hpp" // integrations that are taken up again
 #include "pc/dense.hpp"      // motions as functions of time

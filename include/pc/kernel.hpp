@@ -40,6 +40,19 @@ public:
     {
         return at(pc_kernel_jacobian, dim_ * dim_, t, y, matrix);
     }
+    /// Writes f of as many states as there are, one after the other; otherwise as f.
+    int many(double t, view<const double> states, view<double> rates)
+    {
+        if (states.size() % dim_ != 0 || rates.size() != states.size()) {
+            throw std::invalid_argument("a kernel of dimension " + std::to_string(dim_) + " was given " +
+                                        std::to_string(states.size()) + " numbers of states, and room for " +
+                                        std::to_string(rates.size()));
+        }
+        catching thrown;
+        const int code = pc_kernel_rhs_many(t, states.data(), states.size() / dim_, rates.data(), get());
+        thrown.rethrow();
+        return code;
+    }
     pc_kernel *get() const noexcept { return handle_.get(); }
 
 private:

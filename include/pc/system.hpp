@@ -12,6 +12,7 @@
 
 #include "../pc.h"
 #include "call.hpp"
+#include "cancel.hpp"
 #include "force.hpp"
 #include "model.hpp"
 #include "view.hpp"
@@ -37,11 +38,14 @@ struct c_source {
 /// What is evaluated in loops can be written to numbers that are there.
 class system {
 public:
-    explicit system(const model &of, pc_form form = PC_POINCARE)
+    explicit system(const model &of, pc_form form = PC_POINCARE, const limits &within = {})
     {
         pc_system_options options;
         pc_system_options_init(&options, sizeof options);
         options.form = form;
+        options.memory_limit = within.memory;
+        options.time_limit = within.time;
+        options.cancel = within.by == nullptr ? nullptr : within.by->get();
         detail::call(pc_system_new, of.get(), &options, handle_.place());
     }
     /// A copy for another thread. Both call the same functions of forces.
@@ -77,6 +81,11 @@ public:
     std::vector<std::string> reaction_names() const { return list(pc_system_reaction_name, reaction_count()); }
     std::vector<std::string> force_names() const { return list(pc_system_force_name, force_count()); }
     std::vector<std::string> event_names() const { return list(pc_system_event_name, event_count()); }
+
+    /// The places of a component of the state, of a parameter and of an observable, by name.
+    std::size_t find(const std::string &name) const { return place(pc_system_find, name); }
+    std::size_t find_parameter(const std::string &name) const { return place(pc_system_find_parameter, name); }
+    std::size_t find_observable(const std::string &name) const { return place(pc_system_find_observable, name); }
 
     pc_direction event_direction(std::size_t event) const noexcept
     {
@@ -160,6 +169,16 @@ public:
         to(product, pc_system_jvp, t, y, v.data(), v.size());
     }
 
+    /// ∂f/∂p; see model::differentiate().
+    vector parameter_jacobian(double t, view<const double> y)
+    {
+        return at(pc_system_parameter_jacobian, dim() * parameter_count(), t, y);
+    }
+    void parameter_jacobian(double t, view<const double> y, view<double> matrix)
+    {
+        to(matrix, pc_system_parameter_jacobian, t, y);
+    }
+
     /// F(t, y, ẏ), which vanishes on motions.
     vector residual(double t, view<const double> y, view<const double> ydot)
     {
@@ -223,6 +242,11 @@ public:
         const std::size_t k = dim() - coordinate_count() - state_count();
         return at(pc_system_mass_matrix, k * k, t, y);
     }
+    /// r of M η̇ = r
+    vector right_hand_side(double t, view<const double> y)
+    {
+        return at(pc_system_right_hand_side, dim() - coordinate_count() - state_count(), t, y);
+    }
     /// The number K of operators X_1 … X_K.
     std::size_t operator_count()
     {
@@ -265,6 +289,12 @@ private:
     template <class Name> std::vector<std::string> list(Name name, std::size_t count) const
     {
         return detail::names(get(), name, count);
+    }
+    template <class Find> std::size_t place(Find find, const std::string &name) const
+    {
+        std::size_t index = 0;
+        detail::call(find, get(), name.c_str(), &index);
+        return index;
     }
     /// Has a function write to the target what it has at (t, y), and of further numbers.
     template <class Function, class... Further>

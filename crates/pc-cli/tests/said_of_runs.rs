@@ -57,7 +57,7 @@ fn what_is_too_large_is_refused_before_it_is_done() {
     let (code, text) = said(&["derive", "-", "--limit-memory", "1M"], &model);
     assert_eq!(code, Some(4), "{text}");
     assert!(text.contains("more memory would be needed than the limit of 1 MiB"), "{text}");
-    assert!(text.contains("help: raise the limit (`--limit-memory`, `--limit-time`)"), "{text}");
+    assert!(text.contains("help: raise the limit (`--limit-memory`, `--limit-time`;"), "{text}");
     let (code, text) = said(&["check", "-", "--limit-time", "1e-6"], &model);
     assert_eq!(code, Some(4), "{text}");
     assert!(text.contains("more time would be needed than the limit of 0.000001 s"), "{text}");

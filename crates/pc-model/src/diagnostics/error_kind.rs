@@ -295,8 +295,9 @@ impl ErrorKind {
         match self {
             Self::NotText { .. } => "save the model as plain text in UTF-8".into(),
             Self::Toml { help, .. } => (*help).into(),
+            Self::Spent { what: Spent::Cancelled, .. } => "begin anew, if it was not meant".into(),
             Self::Spent { .. } => {
-                "raise the limit (`--limit-memory`, `--limit-time`), or write the model with fewer or shorter expressions"
+                "raise the limit (`--limit-memory`, `--limit-time`; in C `memory_limit`, `time_limit`), or write the model with fewer or shorter expressions"
                     .into()
             }
             Self::DuplicateKey { .. } => "keep one of them".into(),

@@ -1,0 +1,41 @@
+// What derivations may take, and how they are ended.
+
+#ifndef PC_CANCEL_HPP
+#define PC_CANCEL_HPP
+
+#include <cstdint>
+
+#include "../pc.h"
+#include "call.hpp"
+
+namespace pc {
+
+/// Ends derivations, from another thread or a handler of signals.
+class cancel {
+public:
+    cancel() : handle_(detail::make<handle>(pc_cancel_new)) {}
+
+    /// Ends those under way, and those that begin later.
+    void request() const noexcept { pc_cancel_request(get()); }
+    bool is_requested() const noexcept { return pc_cancel_is_requested(get()) != 0; }
+    const pc_cancel *get() const noexcept { return handle_.get(); }
+
+private:
+    using handle = detail::owned<pc_cancel, pc_cancel_free>;
+
+    handle handle_;
+};
+
+/// What a derivation may take.
+struct limits {
+    /// Bytes of its expressions; 0 for 4 GiB.
+    std::uint64_t memory = 0;
+    /// Seconds; 0 for any time.
+    double time = 0.0;
+    /// Ends it, unless null; it may be gone when the system is there.
+    const cancel *by = nullptr;
+};
+
+} // namespace pc
+
+#endif // PC_CANCEL_HPP
