@@ -94,16 +94,16 @@ fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<(String, String)
         None => format!("X_{{{s}}}"),
     };
     let mut lines = Vec::new();
-    for (r, s) in (0..=free).flat_map(|r| (r + 1..=free).map(move |s| (r, s))) {
-        // The operators stand in for symbols of a sum, so that signs and brackets are set as in any other.
-        let placeholders: Vec<Expr<'_>> = (1..=k).map(|m| graph.symbol(&format!("X_{m}"))).collect();
-        let sum = graph.dot((1..=k).map(|m| structure.get(r, s, m)), placeholders.iter().copied());
-        if !sum.is_zero() {
-            let text = (1..=k)
-                .rev()
-                .fold(sum.display(Style::Latex), |text, m| text.replace(&format!("X_{{{m}}}"), &operator(m)));
-            lines.push((format!("[{}, {}]", operator(r), operator(s)), text));
-        }
+    // The operators stand in for symbols of a sum, so that signs and brackets are set as in any other.
+    let placeholders: Vec<Expr<'_>> = (1..=k).map(|m| graph.symbol(&format!("X_{m}"))).collect();
+    let nonzero: Vec<_> = structure.nonzero().filter(|&(_, s, m, _)| s <= free && m <= k).collect();
+    for pair in nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let sum = graph.sum(pair.iter().map(|&(_, _, m, c)| c * placeholders[m - 1]));
+        let named = |text: String, &(_, _, m, _): &(usize, usize, usize, Expr<'_>)| {
+            text.replace(&format!("X_{{{m}}}"), &operator(m))
+        };
+        let text = pair.iter().rev().fold(sum.display(Style::Latex), named);
+        lines.push((format!("[{}, {}]", operator(pair[0].0), operator(pair[0].1)), text));
     }
     lines
 }

@@ -103,19 +103,14 @@ pub fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<String> {
     let all: Vec<String> = free.iter().chain(vanishing).map(Expr::to_string).collect();
     let name: Vec<String> = std::iter::once("t".to_owned()).chain(all).collect();
     let mut lines = Vec::new();
-    for (r, s) in (0..=free.len()).flat_map(|r| (r + 1..=free.len()).map(move |s| (r, s))) {
-        let components = 1..=structure.operators().min(name.len() - 1);
-        let sum =
-            combination(components.map(|m| (structure.get(r, s, m).display(Style::Book), name[m].clone())));
-        if sum != "0" {
-            lines.push(format!("[{}, {}] = {sum}", name[r], name[s]));
-        }
+    let nonzero: Vec<_> =
+        structure.nonzero().filter(|&(_, s, m, _)| s <= free.len() && m < name.len()).collect();
+    for pair in nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let sum = combination(pair.iter().map(|&(_, _, m, c)| (c.display(Style::Book), name[m].clone())));
+        lines.push(format!("[{}, {}] = {sum}", name[pair[0].0], name[pair[0].1]));
     }
-    let pairs = (0..=free.len()).flat_map(|r| (r + 1..=free.len()).map(move |s| (r, s)));
-    let frame = system.frame();
-    let commute = || pairs.into_iter().all(|(r, s)| frame.commutator(r, s).iter().all(|c| c.is_zero()));
     if lines.is_empty() {
-        let words = if commute() {
+        let words = if system.frame().restricted(free.len()).commutes() {
             "all operators commute"
         } else {
             "none within the frame, which is not closed: the constraints are not integrable"

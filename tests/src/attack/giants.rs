@@ -27,7 +27,7 @@ pub fn giants() -> Vec<Giant> {
             one(&(1..30_000).map(|i| format!("sin({i}*x)/{i}^3")).collect::<Vec<_>>().join(" + ")),
         ),
         giant("power-of-power", one("((x^65535)^65535)^65535")),
-        giant("samples", uncoupled(20).replace("samples = 5", "samples = 10000000")),
+        giant("samples", uncoupled(2).replace("samples = 5", "samples = 2000000")),
         giant("long-name", one("x").replace('x', &"x".repeat(1_000_000))),
         giant("dense-frame", dense_frame(10)),
         giant("sum-of-squares", sum_of_squares(100)),

@@ -210,6 +210,11 @@ impl<'g> Frame<'g> {
         coupled.into_iter().collect()
     }
 
+    /// Whether all operators commute, X_0 among them, as far as the graph knows.
+    pub fn commutes(&self) -> bool {
+        self.coupled_pairs().into_iter().all(|(r, s)| self.commutator(r, s).iter().all(|c| c.is_zero()))
+    }
+
     /// Which operators move what.
     pub(crate) fn movers(&self) -> Movers<'g> {
         let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
