@@ -44,7 +44,8 @@ fn main() -> ExitCode {
 fn attack(time: Duration, seed: u64) -> io::Result<usize> {
     let begin = Instant::now();
     let program = beside()?;
-    let mut random = Random::new(seed, 0);
+    // Each attack has choices of its own: how many there was time for does not change those of the others.
+    let [mut of_damage, mut of_kills, mut of_texts] = [0, 1, 2].map(|attack| Random::new(seed, attack));
     let mut found = 0;
     let mut tell = |what: &str, count: usize, findings: &[Finding]| {
         println!("{what}: {count}, findings {}", findings.len());
@@ -92,7 +93,7 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
     let (mut findings, mut count) = (Vec::new(), 0);
     let end = begin.elapsed() + time.mul_f64(SHARE);
     while count == 0 || begin.elapsed() < end {
-        findings.extend(damage::damage(&victim, 20, &mut random)?);
+        findings.extend(damage::damage(&victim, 20, &mut of_damage)?);
         count += 20;
     }
     tell("damaged checkpoints", count, &findings);
@@ -101,7 +102,7 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
     let end = begin.elapsed() + time.mul_f64(SHARE);
     while count == 0 || begin.elapsed() < end {
         let victim = room(&format!("kills{count}"))?.patient(Duration::from_secs(60));
-        findings.extend(kills::kills(&victim, 10, &mut random)?);
+        findings.extend(kills::kills(&victim, 10, &mut of_kills)?);
         count += 10;
     }
     tell("kills", count, &findings);
@@ -109,8 +110,8 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
     let victim = room("texts")?;
     let (mut findings, mut count) = (Vec::new(), 0);
     while count < 20 || begin.elapsed() < time {
-        fs::write(victim.file("changed.toml"), texts::changed(&mut random))?;
-        let command = COMMANDS[random.below(COMMANDS.len())];
+        fs::write(victim.file("changed.toml"), texts::changed(&mut of_texts))?;
+        let command = COMMANDS[of_texts.below(COMMANDS.len())];
         let arguments = [&[command[0], "changed.toml"], &command[1..], LIMITS].concat();
         if let Err(mut finding) = victim.run(&arguments)? {
             let kept = std::env::temp_dir().join(format!("attack-{seed}-{count}.toml"));
