@@ -50,6 +50,22 @@ fn values_that_are_not_finite_are_named() {
     assert_eq!(line, "  values   lg is NaN at t = 2, not finite in 5 of 9 rows", "{said}");
 }
 
+/// The same is said of rows that are written as they come, because the limit has no room for them.
+#[test]
+fn values_of_rows_that_are_not_held_are_named() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let output = directory.path().join("rows.csv").display().to_string();
+    let model = block("[outputs]\nlg = \"log(1.25 - x)\"").replace("samples = 9", "samples = 50001");
+    let line = |limit: &str| {
+        let (code, said) = said(&["run", "-", "-o", &output, "--limit-memory", limit], &model);
+        assert_eq!(code, Some(0), "{said}");
+        said.lines().find(|line| line.contains("values")).map(str::to_owned)
+    };
+    let held = line("1G");
+    assert!(held.is_some());
+    assert_eq!(line("1M"), held);
+}
+
 #[test]
 fn what_is_too_large_is_refused_before_it_is_done() {
     let sum = (1..2000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + ");

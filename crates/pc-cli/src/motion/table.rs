@@ -19,6 +19,28 @@ pub struct Table {
     given: Option<Given>,
 }
 
+/// Values of a column that are not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotFinite {
+    /// The first of them.
+    pub value: f64,
+    /// When it has this value.
+    pub t: f64,
+    /// In how many rows it has none.
+    pub rows: usize,
+}
+
+impl NotFinite {
+    /// Takes note of another value.
+    fn note(known: Option<NotFinite>, t: f64, value: f64) -> Option<NotFinite> {
+        match known {
+            _ if value.is_finite() => known,
+            None => Some(NotFinite { value, t, rows: 1 }),
+            Some(known) => Some(NotFinite { rows: known.rows + 1, ..known }),
+        }
+    }
+}
+
 /// What is known of rows that were given away.
 #[derive(Clone, Debug, PartialEq)]
 struct Given {
@@ -26,6 +48,8 @@ struct Given {
     start: Vec<f64>,
     /// The largest changes since the start.
     worst: Vec<f64>,
+    /// What was not finite, column by column.
+    not_finite: Vec<Option<NotFinite>>,
 }
 
 impl Table {
@@ -54,7 +78,7 @@ impl Table {
 
     /// A table whose rows are given away.
     pub(crate) fn given(flow: &Flow) -> Table {
-        let given = Given { rows: 0, start: Vec::new(), worst: Vec::new() };
+        let given = Given { rows: 0, start: Vec::new(), worst: Vec::new(), not_finite: Vec::new() };
         Table { given: Some(given), ..Table::empty(flow, Vec::new()) }
     }
 
@@ -67,10 +91,14 @@ impl Table {
         if given.rows == 0 {
             given.start.clone_from(&self.values);
             given.worst = vec![0.0; self.values.len()];
+            given.not_finite = vec![None; self.values.len()];
         }
         given.rows += 1;
         for (worst, (value, start)) in given.worst.iter_mut().zip(self.values.iter().zip(&given.start)) {
             *worst = raised(*worst, value - start);
+        }
+        for (known, &value) in given.not_finite.iter_mut().zip(&self.values) {
+            *known = NotFinite::note(*known, t, value);
         }
     }
 
@@ -111,6 +139,14 @@ impl Table {
     /// Column number `j`, from 0.
     pub fn column(&self, j: usize) -> impl ExactSizeIterator<Item = f64> + Clone + '_ {
         self.values.chunks_exact(self.columns.len()).map(move |row| row[j])
+    }
+
+    /// What of column number `j` is not finite, if anything is.
+    pub fn not_finite(&self, j: usize) -> Option<NotFinite> {
+        match &self.given {
+            Some(given) => given.not_finite.get(j).copied().flatten(),
+            None => self.rows().fold(None, |known, row| NotFinite::note(known, row[0], row[j])),
+        }
     }
 
     /// The numbers of the columns that are coordinates.

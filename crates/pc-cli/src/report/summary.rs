@@ -123,14 +123,9 @@ fn drifts(run: &Run) -> Vec<String> {
 fn not_finite(run: &Run) -> Vec<String> {
     let table = &run.table;
     let line = |(j, name): (usize, &String)| {
-        let mut rows = table.rows().filter(|row| !row[j].is_finite());
-        let first = rows.next()?;
-        let (count, total) = (1 + rows.count(), table.len());
-        Some(format!(
-            "{name} is {} at t = {}, not finite in {count} of {total} rows",
-            first[j],
-            short(first[0], 10)
-        ))
+        let found = table.not_finite(j)?;
+        let (value, t, rows) = (found.value, short(found.t, 10), found.rows);
+        Some(format!("{name} is {value} at t = {t}, not finite in {rows} of {} rows", table.len()))
     };
     table.columns().iter().enumerate().filter_map(line).collect()
 }

@@ -124,8 +124,6 @@ impl fmt::Display for Spent {
 const NODE: usize = 256;
 /// An operand of a sum or of a product, or a term of a value with roots.
 const OPERAND: usize = 64;
-/// The clock and the handle are looked at once in so many steps.
-const STEPS: u64 = 256;
 
 /// What is left of a budget; graphs that work for one another share it.
 #[derive(Debug)]
@@ -133,7 +131,6 @@ pub(crate) struct Meter {
     limits: Limits,
     deadline: Option<Instant>,
     used: AtomicU64,
-    steps: AtomicU64,
     stage: Mutex<&'static str>,
     /// What was spent first, and in which stage.
     spent: OnceLock<(Spent, &'static str)>,
@@ -144,7 +141,6 @@ impl Meter {
         Meter {
             deadline: limits.time.and_then(|time| Instant::now().checked_add(time)),
             used: AtomicU64::new(0),
-            steps: AtomicU64::new(0),
             stage: Mutex::new("the expressions"),
             spent: OnceLock::new(),
             limits,
@@ -171,9 +167,9 @@ impl Meter {
         self.used.fetch_sub(bytes, Ordering::Relaxed);
     }
 
-    /// Whether there is nothing left, as far as was seen when it was last looked at.
-    pub(crate) fn is_spent(&self) -> bool {
-        if self.steps.fetch_add(1, Ordering::Relaxed).is_multiple_of(STEPS) {
+    /// Whether there is nothing left; of the clock and the handle as far as was seen when they were last looked at.
+    pub(crate) fn is_spent(&self, looks: bool) -> bool {
+        if looks {
             self.look();
         }
         self.spent.get().is_some()
