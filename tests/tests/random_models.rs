@@ -15,7 +15,7 @@ fn random_models_agree_with_independent_computations() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let limit = Duration::from_secs(120);
     let campaign = Campaign { seed: 1, first: 0, count: MODELS, threads, emitted_every: 50, limit };
-    let report = Report::of(&campaign.run(|_| ()));
+    let report = Report::of(&campaign.run(|_, _| ()));
     assert!(report.is_clean(), "{}", report.text());
     // A tester whose models are all refused sees nothing.
     assert!(report.ran() * 10 > 8 * usize::try_from(MODELS).unwrap_or(0), "{}", report.text());

@@ -31,8 +31,9 @@ impl Campaign {
         Thoroughness { emitted, limit: self.limit }
     }
 
-    /// What came of the models, in their order, whatever the number of threads; `done` is told how many are.
-    pub fn run(&self, done: impl Fn(u64) + Sync) -> Vec<(u64, Examined)> {
+    /// What came of the models, in their order, whatever the number of threads; `done` sees each as soon as it is, in
+    /// the order in which they end.
+    pub fn run(&self, done: impl Fn(u64, &Examined) + Sync) -> Vec<(u64, Examined)> {
         let next = AtomicU64::new(0);
         let results = Mutex::new(Vec::new());
         let work = || {
@@ -43,8 +44,8 @@ impl Campaign {
                 }
                 let index = self.first + number;
                 let examined = examine(self.seed, index, self.thoroughness(index));
+                done(index, &examined);
                 results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, examined));
-                done(number + 1);
             }
         };
         thread::scope(|scope| (0..self.threads.max(1)).for_each(|_| _ = scope.spawn(work)));

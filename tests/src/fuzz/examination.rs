@@ -228,8 +228,8 @@ mod tests {
             emitted_every: 0,
             limit: Duration::from_secs(60),
         };
-        let one = campaign.run(|_| ());
-        let several = Campaign { threads: 3, ..campaign }.run(|_| ());
+        let one = campaign.run(|_, _| ());
+        let several = Campaign { threads: 3, ..campaign }.run(|_, _| ());
         let texts = |results: &[(u64, Examined)]| -> Vec<String> {
             results.iter().map(|(index, examined)| format!("{index} {}", examined.text)).collect()
         };

@@ -8,8 +8,8 @@
 mod arguments;
 
 use std::fs;
-use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use arguments::Arguments;
@@ -49,32 +49,38 @@ fn one(campaign: &Campaign, index: u64) -> ExitCode {
 fn many(arguments: &Arguments) -> ExitCode {
     let campaign = &arguments.campaign;
     let begin = Instant::now();
-    let results = campaign.run(|done| {
-        if done % 1000 == 0 {
-            eprintln!("{done} of {} models, {:.0} s", campaign.count, begin.elapsed().as_secs_f64());
+    let (done, found) = (AtomicU64::new(0), AtomicU64::new(0));
+    // What is found is said and saved at once: a run that is ended keeps it.
+    let results = campaign.run(|index, examined| {
+        if !examined.findings.is_empty() {
+            found.fetch_add(1, Ordering::Relaxed);
+            keep(arguments, index, examined);
+        }
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(1000) {
+            let (seconds, found) = (begin.elapsed().as_secs_f64(), found.load(Ordering::Relaxed));
+            eprintln!("{done} of {} models, {found} with findings, {seconds:.0} s", campaign.count);
         }
     });
     let report = Report::of(&results);
     println!("seed {}, {:.0} s", campaign.seed, begin.elapsed().as_secs_f64());
     print!("{}", report.text());
-    if let Some(Err(error)) =
-        arguments.save.as_ref().map(|directory| save(directory, campaign.seed, &results))
-    {
-        eprintln!("fuzz: models cannot be saved: {error}");
-    }
     for (kind, first) in report.kinds() {
         show_shrunk(campaign, first, kind);
     }
     ExitCode::from(u8::from(!report.is_clean()))
 }
 
-/// Writes the models with findings, each with what was found.
-fn save(directory: &Path, seed: u64, results: &[(u64, Examined)]) -> std::io::Result<()> {
-    fs::create_dir_all(directory)?;
-    for (index, examined) in results.iter().filter(|(_, examined)| !examined.findings.is_empty()) {
-        fs::write(directory.join(format!("{seed}-{index}.toml")), shown(examined))?;
+/// Says what was found with a model, and writes the model if it is to be saved.
+fn keep(arguments: &Arguments, index: u64, examined: &Examined) {
+    for finding in &examined.findings {
+        eprintln!("model {index}: {}", finding.kind);
     }
-    Ok(())
+    let Some(directory) = &arguments.save else { return };
+    let path = directory.join(format!("{}-{index}.toml", arguments.campaign.seed));
+    if let Err(error) = fs::create_dir_all(directory).and_then(|()| fs::write(&path, shown(examined))) {
+        eprintln!("fuzz: `{}` cannot be written: {error}", path.display());
+    }
 }
 
 fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
