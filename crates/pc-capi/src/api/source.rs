@@ -4,7 +4,7 @@ use std::ffi::{c_char, c_int};
 
 use ::pc_model::Variables;
 use pc_mech::{EmitOptions, Language};
-use pc_print::{Form, Page};
+use pc_print::{Form, Layout, Page};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -63,7 +63,7 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
         Variables::QuasiVelocities => Form::Poincare,
         Variables::Momenta => Form::Canonical,
     };
-    Ok(pc_print::page(form, page, model.title(), &assembly)?)
+    Ok(pc_print::page(form, page, &Layout::default(), model.title(), &assembly)?)
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h

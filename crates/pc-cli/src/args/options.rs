@@ -91,6 +91,15 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
+    /// Columns of a line; what is longer goes on in the next, between two signs
+    #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
+    pub width: u16,
+    /// In text: the first line of each equation, without what the names of long parts stand for
+    #[arg(long)]
+    pub brief: bool,
+    /// Write out the definitions of the model instead of naming them
+    #[arg(long)]
+    pub inline: bool,
 }
 
 /// How events are looked for.

@@ -27,6 +27,9 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
     pub events: Vec<Event<'g>>,
+    /// What the definitions of the text stand for, ẋ = b η + b_0 put in: those that stand for one thing wherever they are
+    /// used.
+    pub definitions: Vec<(String, Expr<'g>)>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }
