@@ -55,6 +55,7 @@ mod term;
 mod tests;
 mod text;
 mod tolerance;
+mod unsteady;
 mod velocities;
 
 pub use agreement::Agreement;

@@ -155,7 +155,7 @@ impl Derivation {
     }
 
     /// What reactions are on bodies, where that is wanted or stands in what is observed.
-    fn needed_resultants(
+    pub(crate) fn needed_resultants(
         &self,
         derived: &Derived,
         wanted: &[Quantity],
