@@ -3,8 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use pc_expr::Events;
 use pc_mech::{Graph, VectorField};
-use pc_model::{Builtin, Document, Model, Source};
+use pc_model::{Builtin, Document, Flow, Model, Source, Variables};
 use pc_solve::{Method, Options, solve};
 use pc_tests::classical::SplitMix64;
 use pc_tests::closed_form::{appell_hamel, constant_speed};
@@ -131,5 +132,72 @@ fn the_accelerations_are_nearest_to_the_free_ones() {
         let share = dot(&across, &normal) / dot(&normal, &normal);
         let other: Vec<f64> = (0..3).map(|i| rates[3 + i] + across[i] - share * normal[i]).collect();
         assert!(square(&rates[3..]) <= square(&other) + 1e-12, "{velocity:?}");
+    }
+}
+
+/// A reset asks for (0.3, 0.1, 0) of a particle that keeps the speed 1 in the plane x, y and the height z.
+fn reset_onto_a_circle(velocities: &str, masses: [f64; 2], reset: &str) -> Vec<f64> {
+    let [a, b] = masses;
+    let text = format!(
+        r#"
+[coordinates]
+x = 0.0
+y = 0.0
+z = 0.0
+{velocities}
+[constraints]
+speed = {{ expr = "x'^2 + y'^2 - 1", kind = "nonlinear" }}
+level = "z"
+[lagrangian]
+kinetic = "({a}*x'^2 + {b}*y'^2 + z'^2 + x'*z'/2)/2"
+[events.e]
+when = "x - 0.5"
+reset = {{ {reset} }}
+[simulation]
+t_end = 2.0
+"#
+    );
+    let model = Model::new(Document::parse(Source::new("circle.toml", text)).unwrap());
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let mut flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap();
+    let mut state = flow.start.clone();
+    flow.events.reset(0, 0.0, &mut state).unwrap();
+    flow.row(0.0, &state)[3..6].to_vec()
+}
+
+const ORDINARY: [&str; 2] =
+    ["[quasi_velocities]\n\"x'\" = 0.6\n\"y'\" = 0.8", "\"x'\" = \"0.3\", \"y'\" = \"0.1\", \"z'\" = \"0\""];
+
+/// u = x' + y', v = 3 y' − x', w = z' + 2 u: the same velocities 0.3, 0.1, 0.
+const TURNED: [&str; 2] = [
+    "[quasi_velocities]\nu = { is = \"x' + y'\", start = 1.4 }\nv = { is = \"3*y' - x'\", start = 1.8 }\n\
+     w = { is = \"z' + 2*(x' + y')\", start = 2.8 }",
+    "u = \"0.4\", v = \"0.0\", w = \"0.8\"",
+];
+
+/// Where masses are alike in the plane the nearest point of a circle is on the ray from its centre. z' is 0 before and after,
+/// and its coupling with x' does no more than take up a reaction.
+#[test]
+fn a_reset_comes_to_the_nearest_velocities_in_every_frame() {
+    let to_ordinary = |eta: &[f64]| [(3.0 * eta[0] - eta[1]) / 4.0, (eta[0] + eta[1]) / 4.0];
+    for masses in [[1.0, 1.0], [1.0, 4.0], [5.0, 0.7]] {
+        let [a, b] = masses;
+        let plain = reset_onto_a_circle(ORDINARY[0], masses, ORDINARY[1]);
+        let turned = to_ordinary(&reset_onto_a_circle(TURNED[0], masses, TURNED[1]));
+        near(plain[0].hypot(plain[1]), 1.0, 1e-14);
+        // Of M (η − η₀) = Cᵀμ with C = 2 (x', y') along z' = 0: the way is across the circle in the metric.
+        let across = a * (plain[0] - 0.3) * plain[1] - b * (plain[1] - 0.1) * plain[0];
+        near(across, 0.0, 1e-12);
+        if a == b {
+            near(plain[0] / plain[1], 3.0, 1e-12);
+        }
+        near(turned[0], plain[0], 1e-12);
+        near(turned[1], plain[1], 1e-12);
+        // And no other such point is nearer.
+        let distance = |x: f64, y: f64| a * (x - 0.3).powi(2) + b * (y - 0.1).powi(2);
+        let angles = (0..360).map(|i| f64::from(i).to_radians());
+        let least = angles.map(|angle| distance(angle.cos(), angle.sin())).fold(f64::INFINITY, f64::min);
+        assert!(distance(plain[0], plain[1]) <= least, "{plain:?}");
     }
 }

@@ -262,12 +262,17 @@ impl Second {
             self.derivation.scatter(&mut seconds, scattered, &wanted, free.as_deref())?;
             if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
                 noise = self.scatter_first(first, scattered, &values, &mut seconds);
+                self.derivation.lead_reactions(&mut seconds, &wanted, &here.derived)?;
                 if self.has_other_velocities(first, &here.derived, &values, &seconds)? {
                     let why = "at some states the momenta are those of other velocities, too";
                     agreement.leave_out(&first.form, why);
                     return Ok(());
                 }
             }
+        }
+        if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
+            let unsteady = self.derivation.unsteadiness(first, here, &values, &seconds);
+            noise.iter_mut().zip(unsteady).for_each(|(noise, size)| *noise = noise.max(size));
         }
         let pairs = || first.wanted.iter().zip(values.iter().zip(&seconds));
         for (((label, _), (&one, &two)), noise) in pairs().zip(noise) {

@@ -118,7 +118,7 @@ impl Derivation {
         let velocity_sizes = (0..k).map(led).collect();
         let along_time = self.once(at, &in_time, rounding).lagrangian()?;
         let through_velocities: f64 = momenta.iter().zip(&accelerations).map(|(p, w)| p * w).sum();
-        Ok(Derived {
+        let mut derived = Derived {
             place: at.clone(),
             velocities: velocity,
             state_rates,
@@ -136,7 +136,10 @@ impl Derivation {
             lagrangian_rate: along_time.eps + through_velocities,
             accelerations,
             condition,
-        })
+        };
+        let least = self.least_reaction_sizes(&derived)?;
+        derived.reaction_sizes.iter_mut().zip(least).for_each(|(size, least)| *size = size.max(least));
+        Ok(derived)
     }
 
     /// p·δw_s for all s, each with the size of its terms.

@@ -5,11 +5,13 @@ use crate::equations::Derived;
 use crate::error::Irregular;
 use crate::here::Here;
 use crate::linear::{matrix, solve};
-use crate::place::Direction;
+use crate::natural::{SHARED, motion, natural_size};
+use crate::place::{Direction, Place};
 use crate::quantity::{Free, Quantity};
 use crate::resultant::Resultants;
 use crate::rounding::{Rounding, UNIT, within};
 use crate::sized::Sized;
+use crate::solved::Solved;
 
 /// Momenta of independent quasi-velocities, others following from the constraints.
 struct Momenta {
@@ -153,7 +155,7 @@ impl Derivation {
     }
 
     /// What reactions are on bodies, where that is wanted or stands in what is observed.
-    fn needed_resultants(
+    pub(crate) fn needed_resultants(
         &self,
         derived: &Derived,
         wanted: &[Quantity],
@@ -176,37 +178,35 @@ impl Derivation {
         resultants: Option<Resultants>,
         rounding: &Rounding,
     ) -> Result<Vec<Sized>, Irregular> {
-        let mut reactions = vec![0.0; self.on_positions.len()];
-        self.kept.iter().zip(&derived.reactions).for_each(|(&a, &value)| reactions[a] = value);
-        let point = self.still(&derived.place, rounding).on_motion(derived.accelerations.clone(), reactions);
-        let point = point.with_resultants(resultants);
-        let value = |wanted: &Quantity| match wanted {
+        let sizes = match rounding.is_none() {
+            true => self.led_to_observed(derived, wanted, resultants.as_ref())?,
+            false => vec![0.0; wanted.len()],
+        };
+        let point = self.on_motion(&Solved::of(derived, resultants), derived, rounding);
+        let value = |(wanted, led): (&Quantity, f64)| match wanted {
             Quantity::Observed(j) => {
                 let term = &self.text.observed[*j].1;
                 let size = rounding.suspended(|| point.largest_term(term))?;
-                Ok(Sized { value: point.value(term)?, size })
+                Ok(Sized { value: point.value(term)?, size: size.max(led) })
             }
             _ => Ok(Sized::default()),
         };
-        wanted.iter().map(value).collect()
+        wanted.iter().zip(sizes).map(value).collect()
     }
 
-    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
-    /// satisfy the constraints unless all are free.
-    fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
-        let at = &derived.place;
-        let k = at.w.len();
-        let binding: &[usize] = if free.len() == k { &[] } else { &self.kept };
-        let l = binding.len();
-        if l + free.len() != k {
-            return Err(Irregular::Singular);
-        }
-        let exact = Rounding::none();
-        let motion = motion(derived);
-        // The matrix whose rows are ∂φ_α/∂w and ∂η_f/∂w, and its rate.
+    /// The matrix whose rows are ∂φ_α/∂w and ∂η_f/∂w, and its rate.
+    pub(crate) fn adapted(
+        &self,
+        at: &Place,
+        binding: &[usize],
+        free: &[Free],
+        motion: &Direction,
+        rounding: &Rounding,
+    ) -> Result<[Vec<Vec<f64>>; 2], Irregular> {
+        let (k, l) = (at.w.len(), binding.len());
         let (mut rows, mut rates) = (vec![vec![0.0; k]; k], vec![vec![0.0; k]; k]);
         for s in 0..k {
-            let point = self.twice(at, &at.along_velocity(s), &motion, rounding);
+            let point = self.twice(at, &at.along_velocity(s), motion, rounding);
             let (columns, velocities) = (self.columns(&point)?, point.velocities()?);
             for (place, &a) in binding.iter().enumerate() {
                 let value = point.velocity_constraint(a, self.on_positions[a])?;
@@ -221,6 +221,22 @@ impl Derivation {
                 (rows[l + place][s], rates[l + place][s]) = (value.re.eps, value.eps.eps);
             }
         }
+        Ok([rows, rates])
+    }
+
+    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
+    /// satisfy the constraints unless all are free.
+    fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
+        let at = &derived.place;
+        let k = at.w.len();
+        let binding: &[usize] = if free.len() == k { &[] } else { &self.kept };
+        let l = binding.len();
+        if l + free.len() != k {
+            return Err(Irregular::Singular);
+        }
+        let exact = Rounding::none();
+        let motion = motion(derived);
+        let [rows, rates] = self.adapted(at, binding, free, &motion, rounding)?;
         let nothing = vec![0.0; k];
         let solution = solve(&matrix(&rows, k), &nothing, &nothing)?;
         let virtual_velocities = solution.inverse.columns(l, free.len()).into_owned();
@@ -276,33 +292,6 @@ impl Derivation {
     }
 }
 
-/// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
-/// known to roundings of this, as forces are that reactions take up to the last digit. Where η = a ẋ + a_0 the first derivation has ẋ as b η less the `drift` b a_0, and momenta
-/// likewise, however much of these cancels.
-fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity) -> f64 {
-    let largest =
-        |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
-    let moving = largest(&[&derived.place.w, &derived.velocities]);
-    let velocity = moving.max(largest(&[drift]));
-    let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
-    let momentum = if moving > 0.0 { momentum * (velocity / moving) } else { momentum };
-    match quantity {
-        Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
-        Quantity::ColumnRate(_) | Quantity::Acceleration(_) => {
-            (velocity * velocity).max(largest(&[&derived.accelerations, &derived.unconstrained_sizes]))
-        }
-        Quantity::Momentum(_) => momentum,
-        Quantity::MomentumRate(_)
-        | Quantity::Reaction(_)
-        | Quantity::Energy
-        | Quantity::FreeEnergy
-        | Quantity::FreeEnergyRate => {
-            (momentum * velocity).max(largest(&[&derived.momentum_rates, &derived.force_sizes]))
-        }
-        Quantity::StateRate(_) | Quantity::Observed(_) | Quantity::Resultant(_) => 0.0,
-    }
-}
-
 /// Quantities that one elimination gives are as uncertain as some roundings of the largest of them, or of their natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
@@ -318,15 +307,6 @@ fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Q
         let raised = quantities.iter_mut().zip(wanted).filter(|(_, other)| alike(other));
         raised.for_each(|(quantity, _)| quantity.size = quantity.size.max(SHARED * largest));
     }
-}
-
-/// Of 1e-12 of the size of the terms, what is some units in the last place of the largest.
-const SHARED: f64 = 1e-3;
-
-/// The direction of the motion: time, ẋ and ẇ.
-fn motion(derived: &Derived) -> Direction {
-    let w = derived.accelerations.clone();
-    Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }
 }
 
 /// A sum, with the largest of its terms.

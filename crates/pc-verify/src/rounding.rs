@@ -31,6 +31,11 @@ impl Rounding {
         Rounding { state: Cell::new(Some(seed)) }
     }
 
+    /// Whether nothing is moved.
+    pub(crate) fn is_none(&self) -> bool {
+        self.state.get().is_none()
+    }
+
     /// The number, moved.
     pub(crate) fn of(&self, value: f64) -> f64 {
         let Some(state) = self.state.get() else { return value };

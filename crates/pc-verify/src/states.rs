@@ -32,7 +32,13 @@ impl Derivation {
         outcome
     }
 
-    fn random_within(&self, near: &Place, scale: f64, random: &mut Random) -> Result<Place, Irregular> {
+    /// A state so far from a place.
+    pub(crate) fn random_within(
+        &self,
+        near: &Place,
+        scale: f64,
+        random: &mut Random,
+    ) -> Result<Place, Irregular> {
         let time = scale * random.signed();
         let along: Vec<f64> = near.w.iter().map(|_| scale * random.signed()).collect();
         let mut at = self.moved(near, time, &along)?;

@@ -1,7 +1,7 @@
 //! States brought back to where the motion stays.
 //!
 //! `constraint_manifold` is the surface on which constraints hold, with conditions that follow (`followers`) and states
-//! some components of which are prescribed (`holding`); `integrals` are first integrals that are kept, `keeping` gives
+//! some components of which are prescribed (`holding`), `nearest` the nearest velocities on it; `integrals` are first integrals that are kept, `keeping` gives
 //! them to a motion.
 
 pub(crate) mod constraint_manifold;
@@ -9,3 +9,4 @@ pub(crate) mod followers;
 pub(crate) mod holding;
 pub(crate) mod integrals;
 pub(crate) mod keeping;
+pub(crate) mod nearest;

@@ -58,7 +58,7 @@ pub(crate) struct Conditions<'a, 'g> {
 /// The states (x, η) with f(t, x) = 0 and g(t, x, η) = 0.
 ///
 /// A state is moved there by the shortest way in the kinetic metric: first x by δx = b δπ with δπ in the span of
-/// M⁻¹ ∂f/∂π, then η likewise.
+/// M⁻¹ ∂f/∂π, then η to the nearest that there is.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
     pub(super) coordinates: usize,
@@ -76,13 +76,15 @@ pub(crate) struct Surface {
     /// Where the diagonal of the mass matrix stands among the entries.
     diagonal: Vec<Option<usize>>,
     /// Masses by which steps of the quasi-velocities are measured, all positive.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     solver: Solver,
     /// A right-hand side, then a solution.
     pub(super) change: Vec<f64>,
     /// x, then δπ.
     pub(super) displaced: Vec<f64>,
     room: Room,
+    /// The velocities from which the nearest are looked for.
+    pub(super) given: Vec<f64>,
 }
 
 /// Room for a step of Newton's method: where it begins, what it changes, and the errors of f there.
@@ -134,6 +136,7 @@ impl Surface {
             displaced: vec![0.0; inputs.state.len()],
             places: conditions.places,
             room: Room::default(),
+            given: Vec::new(),
         })
     }
 
@@ -155,7 +158,7 @@ impl Surface {
         if !self.places.is_empty() {
             self.project_part(Part::Position, t, y, p)?;
         }
-        self.project_part(Part::Velocity, t, y, p)?;
+        self.project_to_nearest(t, y, p)?;
         self.followers.check(t, y, p)
     }
 
@@ -170,10 +173,10 @@ impl Surface {
         p: &[f64],
     ) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
-        self.project_part(Part::Velocity, t, y, p)
+        self.project_to_nearest(t, y, p)
     }
 
-    fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
+    pub(super) fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
         let masses =
@@ -191,7 +194,7 @@ impl Surface {
     /// Lengths of steps are those of δπ, with the diagonal of M for a metric, and so know no units of f. A state is on the
     /// surface where f is no larger than the bound of its rounding errors, where a step changes no digit, and where a step is
     /// no longer than such errors would call for: then one whole step more is all that can help.
-    fn project_part(
+    pub(super) fn project_part(
         &mut self,
         part: Part,
         t: f64,

@@ -8,10 +8,10 @@ use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface
 use crate::numeric::least_squares::LeastSquares;
 
 /// A combination of rows this small against them is rounding.
-const DEPENDENT: f64 = 1e-12;
+pub(super) const DEPENDENT: f64 = 1e-12;
 
 /// The same at places that are near those where constraints depend on others.
-const NEARLY_DEPENDENT: f64 = 1e-7;
+pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
 /// A step so short against the state is rounding.
 const SHORT: f64 = 1e-13;

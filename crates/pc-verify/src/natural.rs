@@ -1,0 +1,41 @@
+//! How large quantities are where nothing cancels.
+
+use crate::equations::Derived;
+use crate::place::Direction;
+use crate::quantity::Quantity;
+
+/// Of 1e-12 of the size of the terms, what is some units in the last place of the largest.
+pub(crate) const SHARED: f64 = 1e-3;
+
+/// The direction of the motion: time, ẋ and ẇ.
+pub(crate) fn motion(derived: &Derived) -> Direction {
+    let w = derived.accelerations.clone();
+    Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }
+}
+
+/// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
+/// known to roundings of this, as forces are that reactions take up to the last digit. Where η = a ẋ + a_0 the first derivation has ẋ as b η less the `drift` b a_0, and momenta
+/// likewise, however much of these cancels.
+pub(crate) fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity) -> f64 {
+    let largest =
+        |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+    let moving = largest(&[&derived.place.w, &derived.velocities]);
+    let velocity = moving.max(largest(&[drift]));
+    let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
+    let momentum = if moving > 0.0 { momentum * (velocity / moving) } else { momentum };
+    match quantity {
+        Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
+        Quantity::ColumnRate(_) | Quantity::Acceleration(_) => {
+            (velocity * velocity).max(largest(&[&derived.accelerations, &derived.unconstrained_sizes]))
+        }
+        Quantity::Momentum(_) => momentum,
+        Quantity::MomentumRate(_)
+        | Quantity::Reaction(_)
+        | Quantity::Energy
+        | Quantity::FreeEnergy
+        | Quantity::FreeEnergyRate => {
+            (momentum * velocity).max(largest(&[&derived.momentum_rates, &derived.force_sizes]))
+        }
+        Quantity::StateRate(_) | Quantity::Observed(_) | Quantity::Resultant(_) => 0.0,
+    }
+}

@@ -1,0 +1,122 @@
+//! Differences that jump from state to state: rounding, which no derivation makes.
+
+use crate::derivation::Derivation;
+use crate::error::Irregular;
+use crate::first::First;
+use crate::here::Here;
+use crate::rounding::{Random, Rounding};
+use crate::sized::Sized;
+use crate::tolerance::TOLERANCE;
+
+/// How far other states are, against this one: so far that what a large number has absorbed is rounded otherwise, which a change
+/// by single roundings does not show, and so near that the difference that a wrong term makes keeps as many digits.
+const ASIDE: f64 = 1e-9;
+
+/// Such states.
+const STATES: u64 = 4;
+
+/// A difference that is no larger than so many of its jumps is rounding.
+const JUMPS: f64 = 4.0;
+
+impl Derivation {
+    /// The sizes that terms would have for rounding to make what the differences of two derivations jump by near a state.
+    pub(crate) fn unsteadiness(
+        &self,
+        first: &mut First<'_>,
+        here: &Here,
+        values: &[f64],
+        seconds: &[Sized],
+    ) -> Vec<f64> {
+        let (wanted, exact, free) = (first.quantities(), Rounding::none(), first.free.clone());
+        let mut largest = vec![0.0f64; values.len()];
+        for seed in 0..STATES {
+            let mut differences = || -> Result<Vec<f64>, Irregular> {
+                let place = self.random_within(&here.derived.place, ASIDE, &mut Random::new(seed))?;
+                let near = Here::new(self, self.at(&place, &exact)?)?;
+                let seconds = self.quantities(&near.derived, &wanted, free.as_deref(), &exact)?;
+                let values = first.values(self, &near, &exact)?;
+                Ok(values.iter().zip(&seconds).map(|(one, two)| one - two.value).collect())
+            };
+            // Where there are no values near by they do not jump.
+            let Ok(near) = differences() else { continue };
+            for (i, near) in near.into_iter().enumerate() {
+                let jump = (near - (values[i] - seconds[i].value)).abs();
+                if jump.is_finite() {
+                    largest[i] = largest[i].max(jump);
+                }
+            }
+        }
+        largest.into_iter().map(|jump| JUMPS * jump / TOLERANCE).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pc_mech::Graph;
+    use pc_model::{Document, Flow, Model, Source, Variables};
+
+    use super::*;
+    use crate::compare::{Options, verify};
+    use crate::second::Second;
+
+    fn model(text: &str) -> Model {
+        Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+    }
+
+    /// A mass that is another one by a part in 1e10 makes a difference that does not jump.
+    #[test]
+    fn errors_of_derivation_are_steady() {
+        let text = "[coordinates]\nx = 1.0\ny = 0.3\n[parameters]\nm = 2.0\n[lagrangian]\n\
+                    kinetic = \"m*x'^2/2 + cos(x)*x'*y' + y'^2\"\npotential = \"1/x + x*y\"";
+        let (mut heavier, graph) = (model(text), Graph::new());
+        let light = model(text);
+        let assembly = light.assemble(&graph).unwrap();
+        let flow = Flow::new(&light, &assembly, Variables::QuasiVelocities).unwrap();
+        heavier.set("m", 2.0 * (1.0 + 1e-10)).unwrap();
+        let second = Second::new(&heavier, &assembly).unwrap();
+        let (derivation, exact) = (second.derivation(), Rounding::none());
+        let mut first = First::flow("poincare", flow, &second, &assembly, &mut second.nothing_yet());
+        let here = Here::new(derivation, derivation.at(second.start(), &exact).unwrap()).unwrap();
+        let seconds = derivation.quantities(&here.derived, &first.quantities(), None, &exact).unwrap();
+        let values = first.values(derivation, &here, &exact).unwrap();
+        let unsteady = derivation.unsteadiness(&mut first, &here, &values, &seconds);
+        let rate = first.wanted.iter().position(|(label, _)| label == "the rate of x'").unwrap();
+        let difference = (values[rate] - seconds[rate].value).abs();
+        assert!(difference > 1e-12, "{difference:e}");
+        assert!(TOLERANCE * unsteady[rate] < 1e-3 * difference, "{difference:e} of {:e}", unsteady[rate]);
+    }
+
+    /// As x goes to 0 the constraint says less and less of w: what is printed for the other velocity has terms in 1/x⁴ that cancel
+    /// and absorb what is left. Some states say nothing of it, others do.
+    #[test]
+    fn what_is_absorbed_is_passed_over() {
+        let agreement = verify(
+            &model(
+                r#"
+[coordinates]
+x = 0.94
+y = 0.9
+"φ" = 0.88
+[quasi_velocities]
+"ω" = -0.30129374675524623
+w1 = 1.1293421813528932
+w2 = 0.0
+[kinematics]
+x = "w1"
+y = "cos(φ/(4.0))*w2"
+"φ" = "sqrt(1.22*φ)*ω + 0.44*cos(2.0*t)"
+[constraints]
+k0 = "y + (-0.9)"
+k1 = "(-0.05)*cos(φ)*ω + (-0.19)*x^2*w1 + 0.18"
+[lagrangian]
+kinetic = "0.51*ω^2 + 0.2*w1 + 1.04*exp((-1.0))*w1 + 0.26*tanh(x)*ω"
+"#,
+            ),
+            &Options { states: 6, seed: 0 },
+        );
+        let agreement = agreement.unwrap();
+        assert_eq!(agreement.states, 6);
+        let partly = agreement.not_compared.iter().any(|line| line.contains("amplified too much"));
+        assert!(partly, "{:?}", agreement.not_compared);
+    }
+}
