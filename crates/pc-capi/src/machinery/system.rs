@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
-use pc_expr::{Event, Events, Pattern};
+use pc_expr::{Deadline, Event, Events, Pattern};
 use pc_mech::{LegendreTransform, VectorField};
 
 use crate::ffi::boundary::entry;
@@ -60,6 +60,11 @@ impl Inventory {
         let mut model = self.model.clone();
         model.limit(self.model.budget().limits().clone());
         model
+    }
+
+    /// When something that begins now has to end, by the limits of the first derivation.
+    pub(crate) fn deadline(&self) -> Deadline {
+        Deadline::new(self.model.budget().limits())
     }
 
     /// The time and state from which the model starts.

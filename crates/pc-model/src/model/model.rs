@@ -72,6 +72,11 @@ impl Model {
         self.budget = Budget::new(limits);
     }
 
+    /// Has all further derivations of this model and its clones take from a budget, which others may share.
+    pub fn within(&mut self, budget: Budget) {
+        self.budget = budget;
+    }
+
     /// What is left of the limits.
     pub fn budget(&self) -> &Budget {
         &self.budget

@@ -237,6 +237,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.statistics()
     }
 
+    /// Gives the integration as much time from now on as its [deadline](crate::Options::deadline) gave it at first, if it has one.
+    pub fn renew_deadline(&mut self) {
+        if let Some(deadline) = &mut self.engine.limits_mut().deadline {
+            deadline.renew();
+        }
+    }
+
     /// Sets a time beyond which the vector field is never evaluated, or removes it.
     ///
     /// # Errors
@@ -311,6 +318,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             if self.arrives(towards)? {
                 return Ok(());
             }
+            self.check_deadline()?;
             self.engine.step(towards)?;
             let to = self.engine.last_step().end;
             self.ahead.copy_from_slice(self.engine.end_state());
