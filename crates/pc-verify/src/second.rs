@@ -240,7 +240,7 @@ impl Second {
 
     /// At how many of so many states they are compared at all.
     pub(crate) fn affordable(&self, states: usize) -> usize {
-        let affordable = self.wholly(states) + ONE_STATE / self.projected_cost().max(1);
+        let affordable = self.wholly(states) + 4 * ONE_STATE / self.projected_cost().max(1);
         states.min(affordable.max(FEWEST))
     }
 

@@ -30,8 +30,8 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
 }
 
 /// Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
-/// at once. It takes no lock and allocates nothing, so that a handler of signals may call it, which is all
-/// that one may. NULL is allowed.
+/// at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
+/// which is all that one may. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_request(cancel: *const pc_cancel) {
     // SAFETY: null or a live handle, as the preamble demands.

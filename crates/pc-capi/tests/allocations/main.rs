@@ -114,6 +114,7 @@ fn evaluations_allocate_nothing() {
     let mut found = Vec::new();
     for case in cases() {
         let system = system(&case);
+        let on_nothing = case.1.is_empty();
         let (s, n) = (system.0, system.dim());
         let (t, mut y) = system.start();
         // A little off, so that there is something to project.
@@ -157,6 +158,11 @@ fn evaluations_allocate_nothing() {
             note("jvp", again(|e| pc_system_jvp(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));
             note("mass", again(|e| pc_system_mass_matrix(s, t, yp, n, mass.as_mut_ptr(), k * k, e)));
             note("right", again(|e| pc_system_right_hand_side(s, t, yp, n, mass.as_mut_ptr(), k, e)));
+            let w = product[..k].as_mut_ptr();
+            note("solve_mass", again(|e| pc_system_solve_mass_matrix(s, t, yp, n, v, k, w, k, e)));
+            if on_nothing {
+                note("time", again(|e| pc_system_time_derivative(s, t, yp, n, product.as_mut_ptr(), n, e)));
+            }
             note("residual", again(|e| pc_system_residual(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));
             note("energy", again(|e| pc_system_energy(s, t, yp, n, &raw mut energy, e)));
             note(
