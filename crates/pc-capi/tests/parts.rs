@@ -134,7 +134,7 @@ fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
     let (t, y) = top.start();
     assert_eq!(top.at(pc_system_time_derivative, t, &y, y.len()), Ok(vec![0.0; y.len()]));
     let forced = Model::text(DRIVEN).unwrap();
-    let on = c("x");
+    let on = common::c("x");
     // SAFETY: a live model and text.
     call(|error| unsafe { pc_model_add_external_force(forced.0, on.as_ptr(), error) }).unwrap();
     let forced = forced.system(pc_form::PC_POINCARE).unwrap();
