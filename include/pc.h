@@ -1092,8 +1092,8 @@ pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
  * Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
- * at once. It takes no lock and allocates nothing, so that a handler of signals may call it, which is all
- * that one may. NULL is allowed.
+ * at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
+ * which is all that one may. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
