@@ -210,8 +210,8 @@ fn an_ensemble_ends_with_the_members_that_were_finished() {
         0
     }
     let times = [100.0];
-    // SAFETY: a live system, numbers as said, a function of that type.
     let run = || {
+        // SAFETY: a live system, numbers as said, a function of that type.
         call(|error| unsafe {
             let (none, length) = (ptr::null(), times.len());
             let times = times.as_ptr();

@@ -1,6 +1,6 @@
 //! Dense matrices, with pivoting, block by block: n coordinates that have nothing to do with each other cost n small ones.
 
-use nalgebra::{DMatrix, DVector, Dyn, SVD};
+use nalgebra::{DMatrix, DVector};
 
 use crate::error::Irregular;
 use crate::rounding::within;
@@ -120,12 +120,17 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
         blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();
     let largest = parts.iter().flatten().map(|svd| svd.singular_values.max()).fold(0.0, f64::max);
     let threshold = RANK * largest;
-    let inverse = |((_, part), svd): (&(Block, DMatrix<f64>), Option<SVD<f64, Dyn, Dyn>>)| {
-        let Some(svd) = svd else { return Some((DMatrix::zeros(part.ncols(), part.nrows()), 0)) };
-        let rank = svd.singular_values.iter().filter(|&&value| value > threshold).count();
-        Some((svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?, rank))
-    };
-    blocks.iter().zip(parts).map(inverse).collect()
+    let mut inverses = Vec::with_capacity(blocks.len());
+    for ((_, part), svd) in blocks.iter().zip(parts) {
+        inverses.push(match svd {
+            None => (DMatrix::zeros(part.ncols(), part.nrows()), 0),
+            Some(svd) => {
+                let rank = svd.singular_values.iter().filter(|&&value| value > threshold).count();
+                (svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?, rank)
+            }
+        });
+    }
+    Some(inverses)
 }
 
 /// The numbers of rows none of which is a combination of those before, by the method of Gram and Schmidt.
@@ -228,7 +233,7 @@ mod tests {
 
     /// A matrix of such blocks, with rows and columns in another order.
     fn shuffled(parts: &[DMatrix<f64>]) -> DMatrix<f64> {
-        let (m, n) = (parts.iter().map(|b| b.nrows()).sum(), parts.iter().map(|b| b.ncols()).sum());
+        let (m, n) = (parts.iter().map(DMatrix::nrows).sum(), parts.iter().map(DMatrix::ncols).sum());
         let mut all = DMatrix::zeros(m, n);
         let (mut row, mut column) = (0, 0);
         for part in parts {

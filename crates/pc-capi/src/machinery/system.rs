@@ -234,11 +234,11 @@ impl Inner {
                 }
             });
         }
-        let motion = self.by_time.as_mut().and_then(Option::as_deref_mut);
-        Ok(motion.map(|motion| {
+        let mut motion = self.by_time.as_mut().and_then(Option::as_deref_mut);
+        if let Some(motion) = &mut motion {
             motion.parameters_mut().copy_from_slice(self.field.parameters());
-            motion
-        }))
+        }
+        Ok(motion)
     }
 
     /// What is kept by projection are then the values there.
