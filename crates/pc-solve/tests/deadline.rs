@@ -1,7 +1,5 @@
 //! Integrations that are ended from elsewhere, or after some time.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::time::{Duration, Instant};
 
 use pc_expr::{Cancel, Limits};
