@@ -256,8 +256,8 @@ mod tests {
     #[test]
     fn velocities_of_one_summand_are_coupled() {
         let couplings = couplings(
-            "[coordinates]\na = 0\nb = 0\nc = 0\nd = 0\n[definitions]\nboth = \"a' + sin(b)*b'\"\n\
-             [lagrangian]\nkinetic = \"(a'^2 + b'^2 + d'^2 + c'*both)/2 - (d' + 1)*cos(c)\"\npotential = \"a*b*c*d\"\n",
+            "[coordinates]\na = 0\nb = 0\nc = 0\ne = 0\n[definitions]\nboth = \"a' + sin(b)*b'\"\n\
+             [lagrangian]\nkinetic = \"(a'^2 + b'^2 + e'^2 + c'*both)/2 - (e' + 1)*cos(c)\"\npotential = \"a*b*c*e\"\n",
         );
         let pairs: Vec<(usize, usize)> =
             (0..4).flat_map(|r| (r..4).map(move |s| (r, s))).filter(|&(r, s)| couplings.has(r, s)).collect();
