@@ -7,7 +7,8 @@ use pc_expr::{Direction, Event, Events, Failure, VectorField};
 
 use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::events::events::{Accumulation, History, NoEvents};
-use crate::events::root_finding::{Look, Passage, Room, Sample, Sides};
+use crate::events::root_finding::{Passage, Sides};
+use crate::events::samples::{Look, Room, Sample};
 use crate::integration::checks::{check_inequalities, check_length, finite};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
