@@ -77,6 +77,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         samples_per_step: None,
         accumulation: None,
         method: Method::Adams,
+        deadline: model.budget().deadline().clone(),
     };
     let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;
     show_table(&table);

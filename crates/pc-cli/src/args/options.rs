@@ -27,7 +27,7 @@ pub struct ModelArguments {
     /// What the expressions of the equations, and again the rows of a motion, may take in memory, such as 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
     pub limit_memory: u64,
-    /// How many seconds the equations may take to be derived; no limit unless given
+    /// How many seconds all work on the model may take, from its derivation to the end of a motion; no limit unless given
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_time: Option<Duration>,
 }

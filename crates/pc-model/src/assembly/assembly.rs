@@ -58,6 +58,21 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
     }
 
+    /// Does some work on this system, unless the [limits](crate::Model::limit) are reached, before or by it: that is the error
+    /// then, and names this stage, whatever the work says.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and those of the work.
+    pub fn stage<T, E: From<ModelError>>(
+        &self,
+        name: &'static str,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.document
+            .stage(self.system.graph(), name, || Ok(work()))
+            .unwrap_or_else(|error| Err(error.into()))
+    }
+
     /// That something could not be derived from this system, for a reason that has no place in the file but that of the
     /// energy.
     pub fn not_derived(&self, message: String) -> ModelError {
