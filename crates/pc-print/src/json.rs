@@ -13,6 +13,11 @@ pub(crate) fn poincare(title: &str, derived: &Derived<'_>, operations: &Operatio
     let equations = &derived.equations;
     let mut object =
         description(title, equations.system(), &derived.vanishing, &rates_of_states(equations.system()));
+    if !derived.quasi_velocities.is_empty() {
+        let definition = |(eta, value): &(Expr<'_>, Expr<'_>)| (eta.to_string(), json!(value.to_string()));
+        let definitions = derived.quasi_velocities.iter().map(definition);
+        object.insert("quasi_velocity_definitions".to_owned(), Value::Object(definitions.collect()));
+    }
     if !derived.constraints.is_empty() {
         object.insert("constraints".to_owned(), constraint_objects(derived));
         let reactions =

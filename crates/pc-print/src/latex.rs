@@ -17,6 +17,7 @@ pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {
         heading,
         &[
             ("Constraints", constraints(derived)),
+            ("Quasi-velocities", set(&derived.quasi_velocities)),
             ("Kinematics", kinematics(equations.system(), equations.velocities())),
             ("Brackets", brackets(equations.system(), &derived.vanishing)),
             ("Equations", equations.balance(Style::Latex)),

@@ -26,11 +26,12 @@ pub enum Page {
 /// [`ModelError`] if they cannot be derived.
 pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, ModelError> {
     let shown = one_line(title);
-    if form == Form::Canonical {
-        let (_, derived) = Derived::new(form, assembly)?;
-        let equations = assembly.placed(assembly.free_system()?.canonical())?;
+    if let Some(variables) = form.variables().filter(|variables| variables.has_momenta()) {
+        let (name, derived) = Derived::new(form, assembly)?;
+        let equations = assembly.placed(assembly.free_form(variables)?.system.canonical())?;
         let operations = assembly.placed(Operations::of_canonical(&equations).map_err(MechError::from))?;
-        let heading = format!("{shown}: canonical equations");
+        let name = if form == Form::Canonical { "canonical equations" } else { name };
+        let heading = format!("{shown}: {name}");
         return Ok(match page {
             Page::Text => {
                 on_terminal(text::underlined(&heading) + &text::canonical(&derived, &equations, &operations))

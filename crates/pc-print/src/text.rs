@@ -18,8 +18,12 @@ pub(crate) fn poincare(derived: &Derived<'_>, operations: &Operations) -> String
         .iter()
         .map(|(reaction, value)| (reaction.display(Style::Book), value.display(Style::Book)))
         .collect();
+    let quasi_velocities: Vec<(String, String)> = (derived.quasi_velocities.iter())
+        .map(|(eta, value)| (eta.display(Style::Book), value.display(Style::Book)))
+        .collect();
     sections(&[
         ("Constraints", constraints(derived)),
+        ("Quasi-velocities", aligned(quasi_velocities.iter().map(|(left, right)| (left, right)))),
         ("Kinematics", kinematics(equations.system(), equations.velocities())),
         ("Brackets", brackets(equations.system(), &derived.vanishing)),
         ("Mass matrix", mass_matrix(equations)),

@@ -9,7 +9,7 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::first::First;
 use crate::here::Here;
 use crate::place::Place;
-use crate::printed::{FORMS, printed_name};
+use crate::printed::{FORMS, is_reduced, printed_name};
 use crate::projected::Layout;
 use crate::quantity::Quantity;
 use crate::rounding::{Rounding, UNIT, within};
@@ -66,6 +66,19 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     }
     let plain_graph = model.graph();
     let plain = model.assemble(&plain_graph)?;
+    let others = [Variables::Reduced, Variables::ReducedMomenta, Variables::Orthonormal, Variables::Given];
+    for variables in others {
+        if assembly.constraints.held().is_some()
+            || second.too_large_for(variables.into(), &plain).is_some()
+            || !has_form(variables, &assembly)
+        {
+            continue;
+        }
+        match Flow::new(&observed, &assembly, variables) {
+            Ok(flow) => firsts.push(First::flow(variables.name(), flow, &second, &assembly, &mut agreement)),
+            Err(error) => agreement.leave_out(variables.name(), &error.diagnostic().message),
+        }
+    }
     match First::emitted(&plain, &second, &mut agreement) {
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
@@ -97,6 +110,15 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         }
     }
     agreement.finished(&firsts, number)
+}
+
+/// Whether equations in these variables are others than those compared already.
+fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
+    match variables {
+        Variables::Reduced | Variables::ReducedMomenta => is_reduced(assembly) && assembly.events.is_empty(),
+        Variables::Given => !assembly.given.is_empty(),
+        _ => true,
+    }
 }
 
 /// A large model in quasi-velocities.
@@ -150,11 +172,10 @@ impl Second {
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
         let mut flow = flow.clone();
-        if self.cost() > LONG && !flow.has_momenta() {
+        if self.cost() > LONG && !self.is_long(&flow) {
             return self.agrees_projected(form, flow, t, state, agreement);
         }
-        let mut row = flow.row(t, state);
-        row.truncate(flow.names.len());
+        let row = self.row(&mut flow, t, state);
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
         let compared = self.place(t, &row).map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
@@ -173,8 +194,7 @@ impl Second {
         state: &[f64],
         mut agreement: Agreement,
     ) -> Result<Agreement, VerifyError> {
-        let mut row = flow.row(t, state);
-        row.truncate(flow.names.len());
+        let row = self.row(&mut flow, t, state);
         let layout = Layout::of(&flow, &self.columns);
         let mut large = Projection { flow, layout };
         let place = self.place(t, &row).map_err(Passed::from);

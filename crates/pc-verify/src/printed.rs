@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
 use pc_mech::{Canonical, Expr, Graph};
-use pc_model::Assembly;
+use pc_model::{Assembly, FreeForm, Variables};
 use pc_print::{Derived, Form};
 
 use crate::derivation::Derivation;
@@ -16,17 +16,20 @@ use crate::rounding::Rounding;
 use crate::second::Second;
 
 /// The forms that are printed.
-pub(crate) const FORMS: [Form; 4] = [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Voronets];
+pub(crate) const FORMS: [Form; 8] = [
+    Form::Poincare,
+    Form::Canonical,
+    Form::Lagrange,
+    Form::Voronets,
+    Form::Reduced,
+    Form::LiePoisson,
+    Form::Orthonormal,
+    Form::Hamel,
+];
 
 /// What a printed form is called.
 pub(crate) fn printed_name(form: Form) -> String {
-    let form = match form {
-        Form::Poincare => "poincare",
-        Form::Canonical => "canonical",
-        Form::Lagrange => "lagrange",
-        Form::Voronets => "voronets",
-    };
-    format!("{form} as printed")
+    format!("{} as printed", form.name())
 }
 
 /// What is compared, with its name.
@@ -49,6 +52,19 @@ pub(crate) struct Printed<'g> {
     momenta: Vec<String>,
     /// The symbols in both graphs, with what they stand for.
     inputs: Vec<(Expr<'g>, Expr<'g>, Input)>,
+    /// Where the quasi-velocities are not those of the model.
+    change: Option<Change<'g>>,
+}
+
+/// Quasi-velocities that are not those of the model.
+struct Change<'g> {
+    /// They and their rates, in both graphs for the former.
+    symbols: Vec<(Expr<'g>, Expr<'g>)>,
+    accelerations: Vec<Expr<'g>>,
+    /// What they are in terms of the independent ones of the model.
+    definitions: Vec<Expr<'g>>,
+    /// The rates of these in terms of them.
+    rates: Vec<Expr<'g>>,
 }
 
 /// A left side.
@@ -106,7 +122,11 @@ impl<'g> Printed<'g> {
         match form {
             // The same as Lagrange's.
             Form::Voronets if assembly.constraints.multipliers().is_none() => None,
-            Form::Canonical => Printed::canonical(assembly, page),
+            Form::Hamel if assembly.given.is_empty() => None,
+            Form::Reduced | Form::LiePoisson if !is_reduced(assembly) => None,
+            _ if form.variables().is_some_and(Variables::has_momenta) => {
+                Printed::canonical(form, assembly, page)
+            }
             _ => Printed::in_velocities(form, assembly, page),
         }
     }
@@ -114,6 +134,10 @@ impl<'g> Printed<'g> {
     fn in_velocities(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
         let (_, derived) = Derived::new(form, assembly).ok()?;
         let (equations, system) = (&derived.equations, derived.equations.system());
+        let change = match form {
+            Form::Orthonormal | Form::Hamel => Some(assembly.free_form(form.variables()?).ok()?),
+            _ => None,
+        };
         let coordinates = system.frame().coordinates().iter();
         let rate = |(x, &value): (&Expr<'g>, &Expr<'g>)| (Side::Rate(x.to_string()), value);
         let mut direct: Vec<_> = coordinates.zip(equations.velocities()).map(rate).collect();
@@ -125,7 +149,11 @@ impl<'g> Printed<'g> {
             form,
             graph: system.graph(),
             page,
-            quasi_velocities: system.quasi_velocities().iter().map(Expr::to_string).collect(),
+            quasi_velocities: match &change {
+                Some(change) => change.independent.iter().map(Expr::to_string).collect(),
+                None => system.quasi_velocities().iter().map(Expr::to_string).collect(),
+            },
+            change: change.map(|change| Change::of(&change, page)),
             direct,
             mass: equations.mass_matrix().entries().to_vec(),
             right: equations.right_hand_side().to_vec(),
@@ -135,8 +163,9 @@ impl<'g> Printed<'g> {
         })
     }
 
-    fn canonical(assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
-        let equations: Canonical<'g> = assembly.free_system().ok()?.canonical().ok()?;
+    fn canonical(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+        let equations: Canonical<'g> =
+            assembly.free_form(form.variables()?).ok()?.system.canonical().ok()?;
         let system = equations.system();
         let quasi_velocities: Vec<String> = system.quasi_velocities().iter().map(Expr::to_string).collect();
         let coordinates = system.frame().coordinates().iter();
@@ -149,7 +178,8 @@ impl<'g> Printed<'g> {
         let solved = quasi_velocities.iter().zip(equations.quasi_velocities());
         direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
         Some(Printed {
-            form: Form::Canonical,
+            form,
+            change: None,
             graph: system.graph(),
             page,
             direct,
@@ -161,6 +191,11 @@ impl<'g> Printed<'g> {
             quasi_velocities,
         })
     }
+
+    fn has_momenta(&self) -> bool {
+        self.form.variables().is_some_and(Variables::has_momenta)
+    }
+
     /// The name of the form.
     pub(crate) fn name(&self) -> String {
         printed_name(self.form)
@@ -178,10 +213,18 @@ impl<'g> Printed<'g> {
         if !second.are_free(&free) {
             return Err("its velocities are not the independent ones".to_owned());
         }
-        let expressions: Vec<Expr<'g>> =
-            self.direct.iter().map(|(_, value)| *value).chain(self.mass.iter().copied()).collect();
+        let definitions = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
+        let expressions: Vec<Expr<'g>> = self
+            .direct
+            .iter()
+            .map(|(_, value)| *value)
+            .chain(self.mass.iter().chain(definitions).copied())
+            .collect();
         for symbol in self.graph.symbols_of(&[expressions, self.right.clone()].concat()) {
             let name = symbol.symbol_name().unwrap_or_default();
+            if self.change.as_ref().is_some_and(|change| change.has(symbol)) {
+                continue; // it follows from the definitions
+            }
             let momentum = self.momenta.iter().position(|y| *y == name).map(Input::Momentum);
             let outside = || external.contains(&name).then_some(Input::External);
             let input = momentum.or_else(|| second.input(&name)).or_else(outside);
@@ -197,7 +240,7 @@ impl<'g> Printed<'g> {
         });
         let mut candidates: Candidates = direct.collect();
         for way in ["", ", multiplied out"] {
-            if self.form == Form::Canonical {
+            if self.has_momenta() {
                 let rates = (0..).zip(&self.momenta);
                 candidates.extend(
                     rates.map(|(s, y)| (format!("the rate of {y}{way}"), Some(Quantity::MomentumRate(s)))),
@@ -236,10 +279,15 @@ impl<'g> Printed<'g> {
             Input::External => 0.0,
         };
         let numbers: Vec<f64> = self.inputs.iter().map(|(.., input)| value(input)).collect();
-        let there: Vec<_> = self.inputs.iter().zip(&numbers).map(|((symbol, ..), &x)| (*symbol, x)).collect();
-        let on_page: Vec<_> =
+        let mut there: Vec<_> = self.inputs.iter().zip(&numbers).map(|((symbol, ..), &x)| (*symbol, x)).collect();
+        let mut on_page: Vec<_> =
             self.inputs.iter().zip(&numbers).map(|((_, symbol, _), &x)| (*symbol, x)).collect();
         let refused = |error: ExprError| Irregular::Refused { form: self.name(), message: error.to_string() };
+        if let Some(change) = &self.change {
+            let values = self.graph.evaluate(&change.definitions, &there).map_err(refused)?;
+            there.extend(change.symbols.iter().zip(&values).map(|(&(symbol, _), &value)| (symbol, value)));
+            on_page.extend(change.symbols.iter().zip(&values).map(|(&(_, symbol), &value)| (symbol, value)));
+        }
         let all =
             [&self.direct.iter().map(|(_, value)| *value).collect::<Vec<_>>()[..], &self.mass, &self.right];
         let mut values = self.graph.evaluate(&all.concat(), &there).map_err(refused)?;
@@ -251,12 +299,20 @@ impl<'g> Printed<'g> {
         let written: Vec<f64> =
             written.map(|((known, value), &as_is)| if known.is_some() { value } else { as_is }).collect();
         for right in [right, written] {
-            if self.form == Form::Canonical {
+            if self.has_momenta() {
                 values.extend(right);
             } else {
                 let k = right.len();
                 let mass = DMatrix::from_fn(k, k, |r, s| mass[r * k + s]);
-                values.extend(solve(&mass, &right, &right)?.values);
+                let solved = solve(&mass, &right, &right)?.values;
+                match &self.change {
+                    None => values.extend(solved),
+                    Some(change) => {
+                        let rates = change.accelerations.iter().copied().zip(solved);
+                        let moving: Vec<_> = there.iter().copied().chain(rates).collect();
+                        values.extend(self.graph.evaluate(&change.rates, &moving).map_err(refused)?);
+                    }
+                }
             }
         }
         match values.iter().all(|value| value.is_finite()) {
@@ -264,4 +320,34 @@ impl<'g> Printed<'g> {
             false => Err(Irregular::NotFinite { what: "what is printed" }),
         }
     }
+}
+
+impl<'g> Change<'g> {
+    fn of(form: &FreeForm<'g>, page: &'g Graph) -> Change<'g> {
+        let (system, graph) = (&form.system, form.system.graph());
+        let (eta, frame, accelerations) = (system.quasi_velocities(), system.frame(), system.accelerations());
+        let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
+            .chain(eta.iter().copied().zip(accelerations.iter().copied()))
+            .chain([(frame.time(), 1.into())])
+            .collect();
+        Change {
+            symbols: eta.iter().map(|&eta| (eta, page.symbol(&eta.to_string()))).collect(),
+            rates: graph.directional(&form.values, &along),
+            definitions: form.definitions.clone(),
+            accelerations,
+        }
+    }
+
+    /// Whether a symbol is one of them, and none of the model, or the rate of one.
+    fn has(&self, symbol: Expr<'g>) -> bool {
+        let place = self.symbols.iter().position(|(eta, _)| *eta == symbol);
+        place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)
+    }
+}
+
+/// Whether there are coordinates that nothing depends on.
+pub(crate) fn is_reduced(assembly: &Assembly<'_>) -> bool {
+    let left = assembly.free_form(Variables::Reduced);
+    let all = assembly.system.frame().coordinates().len();
+    left.is_ok_and(|left| left.system.frame().coordinates().len() < all)
 }

@@ -57,6 +57,10 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallErr
         let why = "a constraint is not affine in the velocities";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }
+    if !inventory.variables.are_own() {
+        let why = "the system is in other coordinates and quasi-velocities than those of the model";
+        return Err(CallError::Unsupported { what: "a bracket", why });
+    }
     let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
     assembly.placed(canonical.closed_quasi_velocities())?;
     let bracket = match assembly.placed(assembly.constraints.constrained(&assembly.at_start()))? {
@@ -73,7 +77,7 @@ fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallErr
     let value = placed(&assembly, bracket.of(in_momenta(f)?, in_momenta(g)?))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = assembly.equations_in()?;
+    let equations = assembly.equations_in(::pc_model::Variables::QuasiVelocities)?;
     Ok(assembly.placed(compile(&equations, &[value], &[]))?)
 }
 

@@ -59,10 +59,7 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
     let model = inventory.model_anew();
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    let form = match inventory.variables {
-        Variables::QuasiVelocities => Form::Poincare,
-        Variables::Momenta => Form::Canonical,
-    };
+    let form = Form::from(inventory.variables);
     Ok(pc_print::page(form, page, model.title(), &assembly)?)
 }
 
@@ -70,8 +67,8 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
 /// and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
 /// other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
 /// `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
-/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of
-/// the system, and says at its head how it is used. External forces are parameters of it, after
+/// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
+/// where the system has these, and says at its head how it is used. External forces are parameters of it, after
 /// the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
 /// set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
 /// integrates from the start of the model to that time. Free both texts with pc_string_free.
@@ -106,7 +103,13 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
     let model = inventory.model_anew();
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    let equations = assembly.equations()?;
+    // Source is in quasi-velocities.
+    let variables = match inventory.variables {
+        Variables::Momenta => Variables::QuasiVelocities,
+        Variables::ReducedMomenta => Variables::Reduced,
+        other => other,
+    };
+    let (equations, form) = assembly.equations_of(variables)?;
     let mut options = EmitOptions::new(Language::C, name);
     if let Some(title) = &model.document().model.name {
         options = options.title(title.value.clone());
@@ -119,8 +122,7 @@ fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2],
     }
     // A motion with the inputs of the start would be another.
     if t_end.is_finite() && !has_tables {
-        let state = equations.system().state();
-        options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
+        options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end);
     }
     let files = assembly.placed(equations.emit(&options))?;
     let mut texts = files.into_iter().map(|file| file.text);

@@ -32,6 +32,19 @@ pub struct ModelArguments {
     pub limit_time: Option<Duration>,
 }
 
+/// Which velocities the equations are written in.
+#[derive(Clone, Debug, Default, Args)]
+pub struct VelocityArguments {
+    /// With --form hamel: quasi-velocities by linear forms in the velocities x' or the quasi-velocities of the model; those of the
+    /// model complete them
+    #[arg(value_name = "NAME=EXPR", value_parser = definition)]
+    pub definitions: Vec<Setting>,
+    /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many quasi-velocities as the
+    /// constraints leave free, velocities x' with --form voronets; else those whose equations are shortest
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub independent: Vec<String>,
+}
+
 /// A number of bytes: `500M` are 500·2²⁰.
 fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
@@ -84,8 +97,13 @@ pub struct DeriveArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
     /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
-    /// are constraints) or voronets (constraints solved for velocities)
+    /// are constraints), voronets (constraints solved for velocities), reduced (without coordinates that nothing depends on:
+    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is so in the kinetic metric) or hamel (in
+    /// the quasi-velocities NAME=EXPR)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = form)]
     pub form: Form,
     /// How to print
@@ -112,6 +130,9 @@ pub struct RunArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
     /// End time; else that of the file
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     pub t_end: Option<f64>,
@@ -133,7 +154,9 @@ pub struct RunArguments {
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
-    /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
+    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
+    /// of the file, else poincare. Columns stay the same, but for coordinates that reduced and lie-poisson are without, and NAME of
+    /// hamel behind the outputs
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
     /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
@@ -171,6 +194,15 @@ pub struct EmitArguments {
     /// Language of the source
     #[arg(long)]
     pub lang: Lang,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
+    /// Form of the equations: poincare, reduced, orthonormal or hamel (see `pc derive --help`)
+    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
+    pub form: EmitForm,
+    /// Leave the Jacobian out
+    #[arg(long)]
+    pub no_jacobian: bool,
     /// Directory to write into; it is made if it is not there
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -227,6 +259,38 @@ pub enum Form {
     Lagrange,
     /// Equations for independent velocities.
     Voronets,
+    /// Equations for the quasi-velocities without coordinates that nothing depends on.
+    Reduced,
+    /// Those for the momenta.
+    LiePoisson,
+    /// Equations in a frame that is orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Equations for quasi-velocities given on the command line.
+    Hamel,
+}
+
+/// Form of the equations that are written as source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EmitForm {
+    /// Equations for the quasi-velocities.
+    Poincare,
+    /// The same without coordinates that nothing depends on.
+    Reduced,
+    /// Equations in a frame that is orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Equations for quasi-velocities given on the command line.
+    Hamel,
+}
+
+impl From<EmitForm> for Variables {
+    fn from(form: EmitForm) -> Variables {
+        match form {
+            EmitForm::Poincare => Variables::QuasiVelocities,
+            EmitForm::Reduced => Variables::Reduced,
+            EmitForm::Orthonormal => Variables::Orthonormal,
+            EmitForm::Hamel => Variables::Given,
+        }
+    }
 }
 
 impl From<Page> for pc_print::Page {
@@ -246,6 +310,10 @@ impl From<Form> for pc_print::Form {
             Form::Canonical => pc_print::Form::Canonical,
             Form::Lagrange => pc_print::Form::Lagrange,
             Form::Voronets => pc_print::Form::Voronets,
+            Form::Reduced => pc_print::Form::Reduced,
+            Form::LiePoisson => pc_print::Form::LiePoisson,
+            Form::Orthonormal => pc_print::Form::Orthonormal,
+            Form::Hamel => pc_print::Form::Hamel,
         }
     }
 }
@@ -264,6 +332,14 @@ pub enum RunForm {
     Poincare,
     /// Equations for the momenta.
     Canonical,
+    /// Equations for the quasi-velocities without coordinates that nothing depends on.
+    Reduced,
+    /// Those for the momenta.
+    LiePoisson,
+    /// Equations in a frame that is orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Equations for quasi-velocities given on the command line.
+    Hamel,
 }
 
 impl From<RunForm> for Variables {
@@ -271,6 +347,10 @@ impl From<RunForm> for Variables {
         match form {
             RunForm::Poincare => Variables::QuasiVelocities,
             RunForm::Canonical => Variables::Momenta,
+            RunForm::Reduced => Variables::Reduced,
+            RunForm::LiePoisson => Variables::ReducedMomenta,
+            RunForm::Orthonormal => Variables::Orthonormal,
+            RunForm::Hamel => Variables::Given,
         }
     }
 }
@@ -286,6 +366,10 @@ pub enum Method {
 
 fn form(text: &str) -> Result<Form, String> {
     choice(text, &[])
+}
+
+fn emit_form(text: &str) -> Result<EmitForm, String> {
+    choice(text, &["canonical", "lagrange", "voronets", "lie-poisson"])
 }
 
 pub(crate) fn run_form(text: &str) -> Result<RunForm, String> {
@@ -313,6 +397,10 @@ fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
             format!("use {names}")
         }
     })
+}
+
+fn definition(text: &str) -> Result<Setting, String> {
+    setting(text).map_err(|_| "write NAME=EXPR, as in `\"v=r*φ'\"`".to_owned())
 }
 
 fn setting(text: &str) -> Result<Setting, String> {

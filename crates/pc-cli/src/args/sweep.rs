@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::options;
-use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
+use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, RunForm, VelocityArguments};
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -79,6 +79,7 @@ impl SweepArguments {
     /// What `pc run` would be told for one member.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {
+            velocities: VelocityArguments::default(),
             sensitivities: Vec::new(),
             model: self.model.clone(),
             t_end: self.t_end,

@@ -3,7 +3,7 @@
 use pc_print::page;
 
 use crate::args::input;
-use crate::args::options::DeriveArguments;
+use crate::args::options::{DeriveArguments, Form};
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
@@ -13,7 +13,7 @@ use crate::report::notes::{say_dropped, say_moved};
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
-    let model = input::open(&arguments.model)?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Form::Hamel)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);

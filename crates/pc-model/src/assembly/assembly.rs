@@ -27,6 +27,8 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
     pub events: Vec<Event<'g>>,
+    /// The quasi-velocities given beside those of the text, as linear forms in those of the system.
+    pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }

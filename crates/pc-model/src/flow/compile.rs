@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use pc_mech::{
-    Canonical, CompileOptions, KeptIntegrals, MechError, Motion, Multipliers, Signals, VectorField,
+    Canonical, CompileOptions, Equations, KeptIntegrals, MechError, Motion, Multipliers, Signals, VectorField,
 };
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
@@ -26,20 +25,52 @@ impl Model {
     }
 
     fn compile_formulation(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
-        match assembly.constraints.formulation() {
-            ConstraintFormulation::Multipliers(held) => {
-                let (compiled, start) =
-                    (held.multipliers.compile_for(self.options()), assembly.start.clone());
-                self.started(compiled, || held.multipliers.kept(self.kept()), assembly.t_start, start)
-            }
-            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
+        match assembly.constraints.held() {
+            Some(held) => self.compile_multipliers(held, assembly),
+            None => {
                 let equations = assembly.equations()?;
-                let system = equations.system();
-                let state = system.state();
-                let (compiled, start) = (equations.compile_for(self.options()), assembly.start_of(&state));
-                self.started(compiled, || equations.kept(self.kept()), assembly.t_start, start)
+                let state = equations.system().state();
+                self.started_equations(&equations, assembly.t_start, assembly.start_of(&state))
             }
         }
+    }
+
+    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is returned with them.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub(crate) fn compile_multipliers(
+        &self,
+        multipliers: &Multipliers<'_>,
+        assembly: &Assembly<'_>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let (compiled, start) = (multipliers.compile_for(self.options()), assembly.start.clone());
+        self.started(compiled, || multipliers.kept(self.kept()), assembly.t_start, start)
+    }
+
+    fn started_equations(
+        &self,
+        equations: &Equations<'_>,
+        t_start: f64,
+        start: Vec<f64>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let compiled = equations.compile_for(self.options());
+        self.started(compiled, || equations.kept(self.kept()), t_start, start)
+    }
+
+    /// Compiles equations of motion of this model in independent quasi-velocities, whatever these are, and tries them at the start
+    /// (x, η, z), which is returned with them.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub fn compile_equations(
+        &self,
+        equations: &Equations<'_>,
+        t_start: f64,
+        start: Vec<f64>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let compile = || self.started_equations(equations, t_start, start);
+        self.document().stage(equations.system().graph(), PROGRAM, compile)
     }
 
     /// Compiles canonical equations of this model and tries them at the start (x, y).
