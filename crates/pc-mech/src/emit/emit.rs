@@ -207,6 +207,7 @@ impl<'a, 'g> Writer<'a, 'g> {
     ) -> Result<Routine, MechError> {
         let language = self.options.language;
         let mut program = Program::new(self.system.graph, &self.system.inputs(&[]), values)?;
+        if std::env::var("PC_DBG").is_ok() { eprintln!("{name}: {} ops, fused {}", program.code().len(), program.cost().total()); }
         if self.options.fused {
             program = program.fused();
         }
