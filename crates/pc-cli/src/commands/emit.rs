@@ -34,7 +34,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
         Lang::Rust => Language::Rust,
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
-    options = options.title(model.title());
+    options = options.title(model.title()).jacobian(!arguments.no_jacobian);
     say_dropped(&assembly);
     say_moved(&assembly);
     let mut remarks = Vec::new();

@@ -1,6 +1,6 @@
 //! What is written, before it is written in a language.
 
-use pc_expr::{Calls, FunctionBody, Language};
+use pc_expr::{Calls, Chain, FunctionBody, Language};
 
 /// What source to write.
 #[derive(Clone, Debug)]
@@ -11,6 +11,7 @@ pub struct EmitOptions {
     remark: String,
     pub(super) start: Option<Start>,
     pub(super) fused: bool,
+    pub(super) jacobian: bool,
 }
 
 /// A motion to be tried.
@@ -25,7 +26,7 @@ impl EmitOptions {
     /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
     pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
         let name = name.into();
-        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false }
+        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false, jacobian: true }
     }
 
     /// The title of the system, for the first line; without it the name.
@@ -47,6 +48,13 @@ impl EmitOptions {
     #[must_use]
     pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
         self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
+        self
+    }
+
+    /// Writes the Jacobian of the right-hand side, as is usual.
+    #[must_use]
+    pub fn jacobian(mut self, jacobian: bool) -> EmitOptions {
+        self.jacobian = jacobian;
         self
     }
 
@@ -110,12 +118,15 @@ pub(super) struct Source<'a> {
     /// The equations as text, unless they are long.
     pub(super) equations: Vec<String>,
     pub(super) routines: Vec<Routine>,
+    /// What these share: the table of operations of a long right-hand side.
+    pub(super) shared: Option<Chain>,
 }
 
 impl Source<'_> {
     /// What all routines call.
     pub(super) fn calls(&self) -> Calls {
-        self.routines.iter().fold(Calls::default(), |calls, routine| calls.and(&routine.body.calls))
+        let shared = self.shared.iter().fold(Calls::default(), |calls, chain| calls.and(&chain.calls));
+        self.routines.iter().fold(shared, |calls, routine| calls.and(&routine.body.calls))
     }
 
     /// The comment at the head: title, equations, state and parameters, line by line.
