@@ -47,7 +47,7 @@ pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     };
     Some(format!(
         "The equations are in {}; {} {follow} from the constraints.\n\
-         {choice} Where it fails the equations are singular,\n\
+         {choice} Where this choice fails the equations are singular,\n\
          and nothing takes errors of the integration back to the constraints.",
         free.join(", "),
         others.join(", ")

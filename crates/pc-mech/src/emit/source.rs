@@ -2,6 +2,9 @@
 
 use pc_expr::{Calls, Chain, FunctionBody, Language};
 
+/// Lists are broken there.
+const WIDTH: usize = 106;
+
 /// What source to write.
 #[derive(Clone, Debug)]
 pub struct EmitOptions {
@@ -178,10 +181,25 @@ impl Source<'_> {
     }
 
     pub(super) fn constants(&self, values: impl Iterator<Item = f64>) -> String {
-        values.map(|value| self.options.language.constant(value)).collect::<Vec<_>>().join(", ")
+        listed(values.map(|value| self.options.language.constant(value)))
     }
 
     pub(super) fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
-        texts.map(|text| self.options.language.string(text)).collect::<Vec<_>>().join(", ")
+        listed(texts.map(|text| self.options.language.string(text)))
     }
+}
+
+/// A list of entries, on lines of bounded length.
+fn listed(entries: impl Iterator<Item = String>) -> String {
+    let (mut text, mut width) = (String::new(), 0);
+    for entry in entries {
+        let length = entry.chars().count() + 2;
+        if !text.is_empty() {
+            text += if width + length > WIDTH { ",\n    " } else { ", " };
+            width = if width + length > WIDTH { 0 } else { width };
+        }
+        width += length;
+        text += &entry;
+    }
+    text
 }

@@ -106,7 +106,13 @@ impl<'g> Assembly<'g> {
             name
         };
         let names = (1..=free.quasi_velocities().len()).map(name);
-        let change = self.placed(free.orthonormal_change(names))?;
+        let change = free.orthonormal_change(names).map_err(|error| match error.is_not_quadratic() {
+            true => {
+                let message = "there is no frame that is orthonormal in the kinetic metric: L is not quadratic in the velocities";
+                self.no_form(message.to_owned(), "take another form: poincare, canonical, or hamel")
+            }
+            false => self.document.derivation_error(error),
+        })?;
         let form = FreeForm::changed(free.quasi_velocities(), &change);
         let entries: Vec<Expr<'g>> = change.matrix().entries().to_vec();
         if self.numbers_at_start(free, &entries)?.iter().all(|entry| entry.is_finite()) {
