@@ -396,9 +396,8 @@ fn bicycle() -> Case {
     let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
     let equations = assembly.equations().unwrap();
     let start = assembly.start_of(&equations.system().state());
-    let options = |language| {
-        EmitOptions::new(language, "bicycle").title("Whipple bicycle").start(0.0, &start, 1.0)
-    };
+    let options =
+        |language| EmitOptions::new(language, "bicycle").title("Whipple bicycle").start(0.0, &start, 1.0);
     let mut random = SplitMix64::new(5);
     let start = start.clone();
     let states = (0..STATES / 4).map(|_| {
@@ -473,13 +472,16 @@ fn long() -> Case {
         })
         .forces(|_, x, v| {
             let of = |i: usize, j: usize| (x[(i + j) % MASSES] + k * v[(i + 2 * j) % MASSES]) / 9.0;
-            (0..MASSES).map(|i| {
-                let smooth = [of(i, 1).sin(), of(i, 2).cos(), of(i, 3).asin(), of(i, 4).acos(), of(i, 5).atan()];
-                let hyperbolic = [of(i, 6).sinh(), of(i, 7).cosh(), of(i, 8).tanh(), of(i, 9).exp()];
-                let others = [(of(i, 10).square() + 1.0).log(), (of(i, 11).square() + 2.0).sqrt(), -of(i, 12)];
-                graph.sum(smooth.into_iter().chain(hyperbolic).chain(others).collect::<Vec<_>>())
-            })
-            .collect::<Vec<_>>()
+            (0..MASSES)
+                .map(|i| {
+                    let smooth =
+                        [of(i, 1).sin(), of(i, 2).cos(), of(i, 3).asin(), of(i, 4).acos(), of(i, 5).atan()];
+                    let hyperbolic = [of(i, 6).sinh(), of(i, 7).cosh(), of(i, 8).tanh(), of(i, 9).exp()];
+                    let others =
+                        [(of(i, 10).square() + 1.0).log(), (of(i, 11).square() + 2.0).sqrt(), -of(i, 12)];
+                    graph.sum(smooth.into_iter().chain(hyperbolic).chain(others).collect::<Vec<_>>())
+                })
+                .collect::<Vec<_>>()
         })
         .build()
         .unwrap();
@@ -487,7 +489,12 @@ fn long() -> Case {
     let states: Vec<_> = (0..STATES / 4)
         .map(|_| (0.0, (0..2 * MASSES).map(|_| random.uniform(-2.0, 2.0)).collect(), vec![0.7]))
         .collect();
-    Case::new(&system.poincare().unwrap(), |language| EmitOptions::new(language, "masses"), false, states.into_iter())
+    Case::new(
+        &system.poincare().unwrap(),
+        |language| EmitOptions::new(language, "masses"),
+        false,
+        states.into_iter(),
+    )
 }
 
 #[test]

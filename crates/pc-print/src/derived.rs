@@ -62,13 +62,16 @@ impl<'g> Derived<'g> {
             let x = assembly.system.frame().coordinates().iter().filter(|x| !left.contains(x));
             x.clone().any(|&x| c.expression().depends_on(x))
         };
-        Ok((name, Derived {
-            equations: assembly.placed(free.system.poincare())?,
-            quasi_velocities: free.defined(),
-            reactions: Vec::new(),
-            constraints: plain.constraints.into_iter().filter(|(c, _)| !gone(c)).collect(),
-            ..plain
-        }))
+        Ok((
+            name,
+            Derived {
+                equations: assembly.placed(free.system.poincare())?,
+                quasi_velocities: free.defined(),
+                reactions: Vec::new(),
+                constraints: plain.constraints.into_iter().filter(|(c, _)| !gone(c)).collect(),
+                ..plain
+            },
+        ))
     }
 
     fn of(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {

@@ -164,8 +164,7 @@ impl<'g> Printed<'g> {
     }
 
     fn canonical(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
-        let equations: Canonical<'g> =
-            assembly.free_form(form.variables()?).ok()?.system.canonical().ok()?;
+        let equations: Canonical<'g> = assembly.free_form(form.variables()?).ok()?.system.canonical().ok()?;
         let system = equations.system();
         let quasi_velocities: Vec<String> = system.quasi_velocities().iter().map(Expr::to_string).collect();
         let coordinates = system.frame().coordinates().iter();
@@ -213,7 +212,8 @@ impl<'g> Printed<'g> {
         if !second.are_free(&free) {
             return Err("its velocities are not the independent ones".to_owned());
         }
-        let definitions = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
+        let definitions =
+            self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
         let expressions: Vec<Expr<'g>> = self
             .direct
             .iter()
@@ -279,7 +279,8 @@ impl<'g> Printed<'g> {
             Input::External => 0.0,
         };
         let numbers: Vec<f64> = self.inputs.iter().map(|(.., input)| value(input)).collect();
-        let mut there: Vec<_> = self.inputs.iter().zip(&numbers).map(|((symbol, ..), &x)| (*symbol, x)).collect();
+        let mut there: Vec<_> =
+            self.inputs.iter().zip(&numbers).map(|((symbol, ..), &x)| (*symbol, x)).collect();
         let mut on_page: Vec<_> =
             self.inputs.iter().zip(&numbers).map(|((_, symbol, _), &x)| (*symbol, x)).collect();
         let refused = |error: ExprError| Irregular::Refused { form: self.name(), message: error.to_string() };

@@ -7,7 +7,9 @@ use clap::{ArgGroup, Args};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::options;
-use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, RunForm, VelocityArguments};
+use crate::args::options::{
+    EventArguments, Method, ModelArguments, RunArguments, RunForm, VelocityArguments,
+};
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]

@@ -37,7 +37,8 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         entry("text of the model", format!("{}\n", model.document().source.text())),
     ]);
     let given = model.given_quasi_velocities().iter();
-    identity.extend(given.map(|given| entry(&format!("{} =", given.name()), given.expression().text.clone())));
+    identity
+        .extend(given.map(|given| entry(&format!("{} =", given.name()), given.expression().text.clone())));
     let independent = model.independent();
     identity.extend((!independent.is_empty()).then(|| entry("--independent", independent.join(","))));
     let held = model.held_start_names();

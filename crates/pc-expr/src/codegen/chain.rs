@@ -163,7 +163,13 @@ impl Chain {
 
     /// The derivatives of each kind by a and b.
     fn slopes(&self, functions: &[Function]) -> Vec<[String; 2]> {
-        let own = [["1.0", "1.0"], ["1.0", "-1.0"], ["v[b]", "v[a]"], ["1.0 / v[b]", "-v[i] / v[b]"], ["-1.0", "0.0"]];
+        let own = [
+            ["1.0", "1.0"],
+            ["1.0", "-1.0"],
+            ["v[b]", "v[a]"],
+            ["1.0 / v[b]", "-v[i] / v[b]"],
+            ["-1.0", "0.0"],
+        ];
         let own = own.map(|pair| pair.map(str::to_owned));
         let of = |&f: &Function| {
             let slope = derivative(f, self.language, ["v[a]", "v[i]"]).unwrap_or_default();
@@ -174,8 +180,7 @@ impl Chain {
 
     fn support(&self, program: &Program, functions: &[Function]) -> String {
         let first = program.first_result();
-        let constants: Vec<String> =
-            program.constants.iter().map(|&c| self.language.constant(c)).collect();
+        let constants: Vec<String> = program.constants.iter().map(|&c| self.language.constant(c)).collect();
         let code = program.code.iter().enumerate().flat_map(|(i, instruction)| {
             let (kind, a, b) = entry(instruction, functions);
             [kind, first + i - a.index(), first + i - b.index()].map(|number| number.to_string())
@@ -205,7 +210,11 @@ impl Chain {
                      static const unsigned short {outputs}[] = {{\n{places}}};\n"
                 );
                 if c > 0 {
-                    let _ = write!(text, "\nstatic const double {numbers}[] = {{\n{}}};\n", lines(constants.into_iter()));
+                    let _ = write!(
+                        text,
+                        "\nstatic const double {numbers}[] = {{\n{}}};\n",
+                        lines(constants.into_iter())
+                    );
                 }
                 let _ = write!(
                     text,

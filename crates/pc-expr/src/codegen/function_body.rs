@@ -364,7 +364,8 @@ impl<'a> Printer<'a> {
             arguments[array].1 = true;
             let from = format!("{}[{index}]", arguments[array].0);
             let symbol = &self.program.input_names()[i + 1];
-            let comment = if symbol == name { String::new() } else { shortened(self.language.comment(symbol)) };
+            let comment =
+                if symbol == name { String::new() } else { shortened(self.language.comment(symbol)) };
             match self.language {
                 Language::C => lines.push(format!("const double {name} = {from};"), comment),
                 Language::Rust => lines.push(format!("let {name} = {from};"), comment),

@@ -93,7 +93,10 @@ impl Program {
             .filter(|&(register, _)| needed[register])
             .collect();
         let (mut constants, mut places) = (Vec::new(), FxHashMap::default());
-        let read = code.iter().flat_map(|(_, instruction)| instruction.operands()).chain(self.outputs.iter().copied());
+        let read = code
+            .iter()
+            .flat_map(|(_, instruction)| instruction.operands())
+            .chain(self.outputs.iter().copied());
         for register in read {
             if let Value::Number(c) = values[register.index()] {
                 places.entry(c.to_bits()).or_insert_with(|| {

@@ -149,7 +149,10 @@ impl Weighed {
             let (done, below) = rows.split_at_mut(step + 1);
             for row in below {
                 let factor = row[step] / done[step][step];
-                row.iter_mut().zip(&done[step]).skip(step).for_each(|(entry, pivot)| *entry -= factor * pivot);
+                row.iter_mut()
+                    .zip(&done[step])
+                    .skip(step)
+                    .for_each(|(entry, pivot)| *entry -= factor * pivot);
             }
         }
         determinant
@@ -160,7 +163,8 @@ impl Weighed {
         let mut rows: Vec<(usize, Vec<f64>)> = self.rows.into_iter().enumerate().collect();
         let mut dependent = Vec::new();
         while !rows.is_empty() {
-            let largest = rows.iter().flat_map(|(_, row)| row).fold(0.0f64, |largest, c| largest.max(c.abs()));
+            let largest =
+                rows.iter().flat_map(|(_, row)| row).fold(0.0f64, |largest, c| largest.max(c.abs()));
             if largest == 0.0 || !largest.is_finite() {
                 return None;
             }

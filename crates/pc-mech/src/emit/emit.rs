@@ -112,7 +112,10 @@ impl<'g> Equations<'g> {
     ) -> Result<Option<(Chain, Program)>, MechError> {
         let (graph, inputs) = (self.system.graph(), writer.system.inputs(&[]));
         let operations = Program::new(graph, &inputs, &solved.motion)?.code().len();
-        if !writer.options.jacobian || writer.options.fused || operations * inputs.state.len() <= LONG_JACOBIAN {
+        if !writer.options.jacobian
+            || writer.options.fused
+            || operations * inputs.state.len() <= LONG_JACOBIAN
+        {
             return Ok(None);
         }
         let columns = (0..self.mass.rows()).flat_map(|s| self.mass.column(s));
@@ -165,7 +168,14 @@ impl<'g> Equations<'g> {
             routines.push(match shared {
                 Some((chain, program)) => {
                     let body = of_chain(chain.jacobian(program, "jac"));
-                    Routine { name: "jacobian", purpose, array: "jac", extent: Extent::StateSquared, sparse: false, body }
+                    Routine {
+                        name: "jacobian",
+                        purpose,
+                        array: "jac",
+                        extent: Extent::StateSquared,
+                        sparse: false,
+                        body,
+                    }
                 }
                 None => {
                     let linearised = Linearised::new(&writer.system, factors, accelerations);
@@ -181,8 +191,9 @@ impl<'g> Equations<'g> {
                 }
             });
         }
-        let purpose =
-            format!("the symmetric mass matrix of the quasi-velocities, row r of column s in `mass[r + {k}*s]`");
+        let purpose = format!(
+            "the symmetric mass matrix of the quasi-velocities, row r of column s in `mass[r + {k}*s]`"
+        );
         let energy = "the energy, sum of quasi-velocities times momenta less the Lagrangian".to_owned();
         if let Some((chain, _)) = shared {
             let (array, extent, sparse) = ("mass", Extent::QuasiVelocitiesSquared, false);

@@ -29,7 +29,15 @@ impl EmitOptions {
     /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
     pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
         let name = name.into();
-        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false, jacobian: true }
+        EmitOptions {
+            language,
+            title: name.clone(),
+            name,
+            remark: String::new(),
+            start: None,
+            fused: false,
+            jacobian: true,
+        }
     }
 
     /// The title of the system, for the first line; without it the name.

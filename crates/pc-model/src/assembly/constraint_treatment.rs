@@ -116,7 +116,9 @@ impl<'g> ConstraintTreatment<'g> {
     /// The multipliers that hold constraints in what is integrated; none where independent velocities are asked for.
     pub fn held(&self) -> Option<&Multipliers<'g>> {
         match &self.formulation {
-            ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => Some(&held.multipliers),
+            ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
+                Some(&held.multipliers)
+            }
             _ => None,
         }
     }

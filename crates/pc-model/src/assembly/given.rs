@@ -31,7 +31,11 @@ impl<'g> Assembler<'g, '_> {
             };
             if let Some(stray) = self.graph.symbols_of(&[value]).into_iter().find(of_motion) {
                 let (name, allowed) = (stray.to_string(), "parameters, coordinates, velocities and t");
-                return refuse(MeaningError::NotHere { name, place: "the definition of a quasi-velocity", allowed });
+                return refuse(MeaningError::NotHere {
+                    name,
+                    place: "the definition of a quasi-velocity",
+                    allowed,
+                });
             }
             match affine(self.graph, value, eta) {
                 Some((c, rest)) if rest.is_zero() => match c.iter().all(|c| c.is_zero()) {

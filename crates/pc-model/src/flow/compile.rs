@@ -110,7 +110,8 @@ impl Model {
 
     /// The names of what is to be kept, but for integrals of the text that a system without some of its coordinates does not have.
     fn kept_of(&self, system: &System<'_>) -> Vec<String> {
-        let is_written = |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
+        let is_written =
+            |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
         let is_there = |name: &String| system.integrals().iter().any(|(known, _)| known == name);
         self.kept().iter().filter(|name| is_there(name) || !is_written(name)).cloned().collect()
     }

@@ -47,14 +47,16 @@ impl Flow {
                 Flow::of(model, assembly, &form, (motion, start), Some(transform))
             }
             (_, Some(_)) => {
-                let message = "its constraints are held by multipliers, and this form is of independent velocities";
+                let message =
+                    "its constraints are held by multipliers, and this form is of independent velocities";
                 let help = "choose these by --independent, or take the form poincare or canonical";
                 Err(assembly.no_form(message.to_owned(), help))
             }
             (Variables::Momenta | Variables::ReducedMomenta, None) => {
                 let form = assembly.free_form(variables)?;
                 let mut transform = assembly.legendre_transform(variables)?;
-                let start = transform.to_momenta(assembly.t_start, &assembly.start_in(&form)?).map_err(refused)?;
+                let start =
+                    transform.to_momenta(assembly.t_start, &assembly.start_in(&form)?).map_err(refused)?;
                 let canonical = assembly.canonical_in(variables)?;
                 let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
                 Flow::of(model, assembly, &form, (motion, start), Some(transform))

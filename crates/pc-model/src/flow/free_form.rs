@@ -133,29 +133,33 @@ impl<'g> Assembly<'g> {
         let follow: Vec<_> = self.system.quasi_velocities().iter().copied().zip(all).collect();
         let definitions: Vec<Expr<'g>> = self.given.iter().map(|&(_, definition)| definition).collect();
         let definitions = graph.substitute(&definitions, &follow);
-        let candidates: Vec<(Expr<'g>, Expr<'g>)> = (self.given.iter().map(|&(name, _)| name).zip(definitions))
-            .chain(eta.iter().map(|&eta| (eta, eta)))
-            .collect();
-        let rows: Vec<Expr<'g>> =
-            candidates.iter().flat_map(|&(_, definition)| graph.gradient(definition, eta)).collect();
-        let rows = self.numbers_at_start(free, &rows)?;
+        let rows = |functions: &[Expr<'g>]| -> Result<Vec<Vec<f64>>, ModelError> {
+            let slopes: Vec<Expr<'g>> = functions.iter().flat_map(|&f| graph.gradient(f, eta)).collect();
+            let slopes = self.numbers_at_start(free, &slopes)?;
+            Ok(slopes.chunks(eta.len().max(1)).map(<[f64]>::to_vec).collect())
+        };
         let mut known: Vec<Vec<f64>> = Vec::new();
-        let mut chosen = Vec::new();
-        for (place, (&candidate, row)) in candidates.iter().zip(rows.chunks(eta.len().max(1))).enumerate() {
-            match rest(&known, row) {
-                Some(rest) => {
-                    known.push(rest);
-                    chosen.push(candidate);
-                }
-                None if place < self.given.len() => {
-                    let message = match chosen.len() == eta.len() {
-                        true => format!("`{}` is one quasi-velocity too many: {} are independent", candidate.0, eta.len()),
-                        false => format!("at the start `{}` says no more than those before it", candidate.0),
-                    };
-                    return Err(self.no_form(message, help));
-                }
-                None => {}
+        let mut chosen: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+        for ((&(name, _), &definition), row) in self.given.iter().zip(&definitions).zip(rows(&definitions)?) {
+            let (rest, left) = rest(&known, &row);
+            if left.is_nan() || left <= DEPENDENT {
+                let message = match chosen.len() == eta.len() {
+                    true => format!("`{name}` is one quasi-velocity too many: {} are independent", eta.len()),
+                    false => format!("at the start `{name}` says no more than those before it"),
+                };
+                return Err(self.no_form(message, help));
             }
+            known.push(rest);
+            chosen.push((name, definition));
+        }
+        // Each time the one that those there are determine least; the first of those alike.
+        let units = rows(eta)?;
+        while chosen.len() < eta.len() {
+            let left = |s: usize| rest(&known, &units[s]).1;
+            let least =
+                (0..eta.len()).fold(0, |least, s| if left(s) > left(least) + DEPENDENT { s } else { least });
+            known.push(rest(&known, &units[least]).0);
+            chosen.push((eta[least], eta[least]));
         }
         let (names, definitions): (Vec<String>, Vec<Expr<'g>>) =
             chosen.into_iter().map(|(name, definition)| (name.to_string(), definition)).unzip();
@@ -201,16 +205,19 @@ impl<'g> Assembly<'g> {
             None => motion.within_chart(&self.system),
             Some(matrix) => {
                 let place = |eta: &Expr<'g>| form.independent.iter().position(|known| known == eta);
-                let whole = Matrix::from_fn(all.len(), all.len(), |i, j| match (place(&all[i]), place(&all[j])) {
-                    (Some(u), Some(s)) => matrix[(u, s)],
-                    _ if i == j => Expr::ONE,
-                    _ => Expr::ZERO,
-                });
+                let whole =
+                    Matrix::from_fn(all.len(), all.len(), |i, j| match (place(&all[i]), place(&all[j])) {
+                        (Some(u), Some(s)) => matrix[(u, s)],
+                        _ if i == j => Expr::ONE,
+                        _ => Expr::ZERO,
+                    });
                 motion.within_chart_of_change(&self.system, &whole)
             }
         };
         let motion = self.placed(motion)?;
-        let ConstraintFormulation::Multipliers(held) = self.constraints.formulation() else { return Ok(motion) };
+        let ConstraintFormulation::Multipliers(held) = self.constraints.formulation() else {
+            return Ok(motion);
+        };
         if held.multipliers.is_nonlinear() || self.constraints.held().is_some() {
             return Ok(motion);
         }
@@ -221,8 +228,8 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// What a row says beside those known, of length one each; none if that is nothing.
-fn rest(known: &[Vec<f64>], row: &[f64]) -> Option<Vec<f64>> {
+/// What a row says beside those known, all of length one, and how large a part of the row that is.
+fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
     let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
     let mut rest = row.to_vec();
     // Twice is enough.
@@ -231,5 +238,5 @@ fn rest(known: &[Vec<f64>], row: &[f64]) -> Option<Vec<f64>> {
         rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
     }
     let left = size(&rest);
-    (left > DEPENDENT * size(row)).then(|| rest.iter().map(|entry| entry / left).collect())
+    (rest.iter().map(|entry| entry / left).collect(), left / size(row))
 }

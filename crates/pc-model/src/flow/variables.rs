@@ -55,13 +55,9 @@ impl<'g> Assembly<'g> {
     /// [`ModelError`] at the constraint that there are no independent velocities under.
     pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
         Ok(match variables {
-            Variables::QuasiVelocities if self.constraints.held().is_some() => {
-                self.system.without_observed()
-            }
+            Variables::QuasiVelocities if self.constraints.held().is_some() => self.system.without_observed(),
             // What is observed may contain velocities that are not among the free ones.
-            Variables::Momenta if self.constraints.held().is_some() => {
-                self.free_system()?.without_observed()
-            }
+            Variables::Momenta if self.constraints.held().is_some() => self.free_system()?.without_observed(),
             _ => self.free_form(variables)?.system,
         })
     }

@@ -7,7 +7,7 @@ use crate::model::model::Model;
 impl Model {
     /// Gives a quasi-velocity beside those of the text, by a linear form in the velocities x' and quasi-velocities of the model, for
     /// equations in [such ones](crate::Variables::Given). Where these are fewer than the independent ones, quasi-velocities of the
-    /// model complete them, the first ones that are independent of them at the start. Each is an output too.
+    /// model complete them, each time the one that those there are determine least at the start. Each is an output too.
     ///
     /// ```
     /// use pc_mech::Graph;

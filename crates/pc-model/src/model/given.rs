@@ -21,9 +21,15 @@ impl GivenQuasiVelocity {
     ///
     /// # Errors
     /// [`ModelError`] if the name is none or is taken, or the text is no expression.
-    pub(crate) fn new(document: &Document, taken: &[&str], name: &str, text: &str) -> Result<Self, ModelError> {
+    pub(crate) fn new(
+        document: &Document,
+        taken: &[&str],
+        name: &str,
+        text: &str,
+    ) -> Result<Self, ModelError> {
         let source = Source::new(name, text);
-        let refuse = |kind: ErrorKind| Err(source.error(&Place { entry: String::new(), span: 0..text.len() }, kind));
+        let refuse =
+            |kind: ErrorKind| Err(source.error(&Place { entry: String::new(), span: 0..text.len() }, kind));
         if !is_name(name) {
             return refuse(ErrorKind::NotAName { key: name.to_owned() });
         }
@@ -34,7 +40,9 @@ impl GivenQuasiVelocity {
         if taken.contains(&name) {
             return refuse(ErrorKind::Meaning(MeaningError::GivenTwice { name: name.to_owned() }));
         }
-        if let Some((known, first)) = document.declared_names().into_iter().find(|(known, _)| known.text == name) {
+        if let Some((known, first)) =
+            document.declared_names().into_iter().find(|(known, _)| known.text == name)
+        {
             let line = document.source.position(known.place.span.start).line;
             return refuse(ErrorKind::NameTaken { name: name.to_owned(), first, line });
         }
