@@ -110,13 +110,10 @@ impl<'g> Derived<'g> {
                 let lagrange = held.equations().system();
                 let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
                 at.push((lagrange.frame().time(), assembly.t_start));
-                let held = match bound.asked_for() {
-                    [] => held.shortest(&at, |held| {
-                        Ok::<_, NonholoError>(Voronets::new(held, &at)?.system()?.poincare()?)
-                    })?,
-                    independent => held.with_independent(independent, &at)?,
+                let voronets = match bound.asked_for() {
+                    [] => Voronets::shortest(&held, &at)?,
+                    independent => Voronets::new(&held.with_independent(independent, &at)?, &at)?,
                 };
-                let voronets = Voronets::new(&held, &at)?;
                 let name =
                     if voronets.is_chaplygin() { "Chaplygin's equations" } else { "Voronets' equations" };
                 (name, with(voronets.system()?.poincare()?, &held))

@@ -206,6 +206,9 @@ impl Second {
             return None; // the same as Lagrange's, and not derived
         }
         let quasi_velocities = assembly.system.quasi_velocities().len();
+        if form == Form::Hamel && assembly.given.is_empty() {
+            return None; // not derived
+        }
         let inverted = matches!(form, Form::Canonical | Form::LiePoisson | Form::Hamel);
         if inverted && quasi_velocities > MOST_INVERTED {
             return Some("a matrix would be inverted in symbols");
