@@ -64,6 +64,7 @@ const FILES: [&str; 31] = [
     "api/system.rs",
     "api/names.rs",
     "api/force.rs",
+    "api/velocities.rs",
     "api/rates.rs",
     "api/observe.rs",
     "api/events.rs",

@@ -20,8 +20,9 @@ pub enum pc_form {
     /// Chetaev's canonical equations, of momenta.
     PC_CANONICAL = 1,
     /// Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
-    /// left; the state has fewer coordinates. Where multipliers hold constraints, PC_INCONSISTENT_MODEL, as
-    /// with all that follow, unless pc_model_add_independent says which are independent.
+    /// left; the state has fewer coordinates. Where multipliers hold constraints,
+    /// PC_INCONSISTENT_MODEL, as with all that follow, unless pc_model_add_independent says which
+    /// velocities are independent.
     PC_REDUCED = 2,
     /// The same in momenta: Lie–Poisson equations.
     PC_LIE_POISSON = 3,

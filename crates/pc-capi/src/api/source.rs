@@ -68,10 +68,11 @@ fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
 /// other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
 /// `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
 /// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
-/// where the system has these, and says at its head how it is used. External forces are parameters of it, after
-/// the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
-/// set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
-/// integrates from the start of the model to that time. Free both texts with pc_string_free.
+/// where the system has these, and says at its head how it is used. External forces are
+/// parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and stay
+/// zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+/// capitals) to a program that integrates from the start of the model to that time. Free both
+/// texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use pc_model::Variables;
 use pc_model::document::MOST_SAMPLES;
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_form};
 
 /// The model and the values of its parameters.
 #[derive(Clone, Debug, Args)]
@@ -248,72 +248,12 @@ pub enum Page {
     Json,
 }
 
-/// Form of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Form {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-    /// Equations for the velocities.
-    Lagrange,
-    /// Equations for independent velocities.
-    Voronets,
-    /// Equations for the quasi-velocities without coordinates that nothing depends on.
-    Reduced,
-    /// Those for the momenta.
-    LiePoisson,
-    /// Equations in a frame that is orthonormal in the kinetic metric.
-    Orthonormal,
-    /// Equations for quasi-velocities given on the command line.
-    Hamel,
-}
-
-/// Form of the equations that are written as source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum EmitForm {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// The same without coordinates that nothing depends on.
-    Reduced,
-    /// Equations in a frame that is orthonormal in the kinetic metric.
-    Orthonormal,
-    /// Equations for quasi-velocities given on the command line.
-    Hamel,
-}
-
-impl From<EmitForm> for Variables {
-    fn from(form: EmitForm) -> Variables {
-        match form {
-            EmitForm::Poincare => Variables::QuasiVelocities,
-            EmitForm::Reduced => Variables::Reduced,
-            EmitForm::Orthonormal => Variables::Orthonormal,
-            EmitForm::Hamel => Variables::Given,
-        }
-    }
-}
-
 impl From<Page> for pc_print::Page {
     fn from(page: Page) -> Self {
         match page {
             Page::Text => pc_print::Page::Text,
             Page::Latex => pc_print::Page::Latex,
             Page::Json => pc_print::Page::Json,
-        }
-    }
-}
-
-impl From<Form> for pc_print::Form {
-    fn from(form: Form) -> Self {
-        match form {
-            Form::Poincare => pc_print::Form::Poincare,
-            Form::Canonical => pc_print::Form::Canonical,
-            Form::Lagrange => pc_print::Form::Lagrange,
-            Form::Voronets => pc_print::Form::Voronets,
-            Form::Reduced => pc_print::Form::Reduced,
-            Form::LiePoisson => pc_print::Form::LiePoisson,
-            Form::Orthonormal => pc_print::Form::Orthonormal,
-            Form::Hamel => pc_print::Form::Hamel,
         }
     }
 }
@@ -325,36 +265,6 @@ pub enum Outputs {
     Reactions,
 }
 
-/// Form of the equations that are integrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RunForm {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-    /// Equations for the quasi-velocities without coordinates that nothing depends on.
-    Reduced,
-    /// Those for the momenta.
-    LiePoisson,
-    /// Equations in a frame that is orthonormal in the kinetic metric.
-    Orthonormal,
-    /// Equations for quasi-velocities given on the command line.
-    Hamel,
-}
-
-impl From<RunForm> for Variables {
-    fn from(form: RunForm) -> Variables {
-        match form {
-            RunForm::Poincare => Variables::QuasiVelocities,
-            RunForm::Canonical => Variables::Momenta,
-            RunForm::Reduced => Variables::Reduced,
-            RunForm::LiePoisson => Variables::ReducedMomenta,
-            RunForm::Orthonormal => Variables::Orthonormal,
-            RunForm::Hamel => Variables::Given,
-        }
-    }
-}
-
 /// Integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
@@ -364,39 +274,8 @@ pub enum Method {
     Bdf,
 }
 
-fn form(text: &str) -> Result<Form, String> {
-    choice(text, &[])
-}
-
-fn emit_form(text: &str) -> Result<EmitForm, String> {
-    choice(text, &["canonical", "lagrange", "voronets", "lie-poisson"])
-}
-
-pub(crate) fn run_form(text: &str) -> Result<RunForm, String> {
-    choice(text, &["lagrange", "voronets"])
-}
-
 pub(crate) fn method(text: &str) -> Result<Method, String> {
     choice(text, &["auto", "taylor", "dop853"])
-}
-
-/// One of the values of `T`; those of `later` are known and cannot be had yet.
-fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
-    T::from_str(text, false).map_err(|_| {
-        let names: Vec<String> = T::value_variants()
-            .iter()
-            .filter_map(|variant| variant.to_possible_value().map(|value| value.get_name().to_owned()))
-            .collect();
-        let names = match names.split_last() {
-            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-            _ => names.concat(),
-        };
-        if later.contains(&text) {
-            format!("`{text}` is not supported yet; use {names}")
-        } else {
-            format!("use {names}")
-        }
-    })
 }
 
 fn definition(text: &str) -> Result<Setting, String> {

@@ -2,8 +2,9 @@
 
 use pc_print::page;
 
+use crate::args::forms::Form;
 use crate::args::input;
-use crate::args::options::{DeriveArguments, Form};
+use crate::args::options::DeriveArguments;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};

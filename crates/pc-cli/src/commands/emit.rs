@@ -7,8 +7,9 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Language};
 use pc_print::energy_remark;
 
+use crate::args::forms::EmitForm;
 use crate::args::input;
-use crate::args::options::{EmitArguments, EmitForm, Lang};
+use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
 use crate::output::place::Place;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};

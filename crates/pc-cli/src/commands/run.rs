@@ -9,8 +9,9 @@ use pc_print::energy_remark;
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::RunForm;
 use crate::args::input;
-use crate::args::options::{Outputs, RunArguments, RunForm};
+use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;

@@ -4,7 +4,7 @@
 use pc_model::Model;
 use pc_solve::Accumulation;
 
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::motion::plan::Plan;
 
 /// Names and values in the order of their importance.

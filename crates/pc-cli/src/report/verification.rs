@@ -5,7 +5,7 @@ use pc_print::columns;
 use pc_verify::{Agreement, Second, VerifyError};
 use serde_json::{Value, json};
 
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::error::CliError;
 
 /// The comparison of a motion with a second derivation, at some of its states.

@@ -191,8 +191,10 @@ impl Chain {
             self.kinds(functions).iter().enumerate().map(|(kind, text)| format!("{kind} {text}")).collect();
         let about = format!(
             "The operations that the right-hand side, the mass matrix and the energy are computed by: the kind of each\n\
-             ({}),\nand how many values before it a and b stand. The first values are constants, t, y and p.",
-            kinds.join(", ").replace(" * ", "*").replace(" / ", "/")
+             ({}),\nand how many values before it a and b stand. The first values are constants, t, y and p.\n\
+             The Jacobian takes {} kB of the stack.",
+            kinds.join(", ").replace(" * ", "*").replace(" / ", "/"),
+            (self.values * (1 + LANES) * size_of::<f64>()).div_ceil(1000)
         );
         let (dim, parameters) = (&self.layout.dim, &self.layout.parameters);
         let (c, values) = (program.constants.len(), self.values);
@@ -246,7 +248,7 @@ impl Chain {
                      switch (c[0]) {{\n"
                 );
                 for (kind, value) in self.kinds(functions).iter().enumerate() {
-                    let _ = write!(text, "        case {kind}: v[i] = {value}; break;\n");
+                    let _ = writeln!(text, "        case {kind}: v[i] = {value}; break;");
                 }
                 text += "        default: break;\n        }\n    }\n}\n";
             }
@@ -273,7 +275,7 @@ impl Chain {
                 let kinds = self.kinds(functions);
                 for (kind, value) in kinds.iter().enumerate() {
                     let pattern = if kind + 1 == kinds.len() { "_".to_owned() } else { kind.to_string() };
-                    let _ = write!(text, "            {pattern} => {value},\n");
+                    let _ = writeln!(text, "            {pattern} => {value},");
                 }
                 text += "        };\n    }\n}\n";
             }
@@ -338,7 +340,7 @@ impl Chain {
                 );
                 for (kind, [by_a, by_b]) in slopes.iter().enumerate() {
                     let by_b = if by_b == "0.0" { String::new() } else { format!(" by_b = {by_b};") };
-                    let _ = write!(text, "            case {kind}: by_a = {by_a};{by_b} break;\n");
+                    let _ = writeln!(text, "            case {kind}: by_a = {by_a};{by_b} break;");
                 }
                 let _ = write!(
                     text,
@@ -360,7 +362,7 @@ impl Chain {
                 );
                 for (kind, [by_a, by_b]) in slopes.iter().enumerate() {
                     let pattern = if kind + 1 == slopes.len() { "_".to_owned() } else { kind.to_string() };
-                    let _ = write!(text, "                {pattern} => ({by_a}, {by_b}),\n");
+                    let _ = writeln!(text, "                {pattern} => ({by_a}, {by_b}),");
                 }
                 let _ = write!(
                     text,

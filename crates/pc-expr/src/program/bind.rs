@@ -15,7 +15,7 @@ enum Value {
 impl Program {
     /// The same program with these values of the parameters, which it reads no more: what they alone determine is computed here, and
     /// what a 0 or a 1 among them makes superfluous is left out. It takes no more operations, and its results are the same to the
-    /// last bit where they are finite.
+    /// last bit where they are finite, but for the sign of zero.
     ///
     /// Numbers put into expressions before these become a program may lead to a shorter one or a longer one: the normal form of
     /// sums multiplies numbers out, and a sum that stands in several places with a parameter before it, computed once in the free
