@@ -304,6 +304,32 @@ fn any_choice_of_independent_velocities_tells_the_same_motion() {
     }
 }
 
+/// Of the velocities of a spherical pendulum those of y and z have shorter equations than those of x and y, though z' is determined
+/// better by these; y' is not determined at all by the others.
+#[test]
+fn independent_velocities_are_those_of_the_shortest_equations() {
+    let text = PENDULUM
+        .replace("y = -0.8", "y = 0.0\nz = -0.8")
+        .replace("x^2 + y^2 - 1", "x^2 + y^2 + z^2 - 1")
+        .replace("(x'^2 + y'^2)", "(x'^2 + y'^2 + z'^2)")
+        .replace("g*y", "g*z");
+    let derived = |choice: &[&str]| {
+        let mut model = parsed(&text);
+        model.choose_independent(choice.iter().copied());
+        let graph = Graph::new();
+        let equations = assembled(&model, &graph).equations().unwrap();
+        let mass = equations.mass_matrix().entries().iter();
+        let sides = mass.chain(equations.right_hand_side()).chain(equations.velocities());
+        let length: u32 = sides.map(|side| side.tree_cost()).sum();
+        let free = equations.system().quasi_velocities().iter().map(ToString::to_string).collect::<Vec<_>>();
+        (free, length)
+    };
+    let (free, shortest) = derived(&[]);
+    assert_eq!(free, ["y'", "z'"]);
+    assert_eq!(derived(&["y'", "z'"]), (free, shortest));
+    assert!(shortest < derived(&["x'", "y'"]).1);
+}
+
 /// Past the place where x' does not determine y' the equations of x' say nothing: an error, no number.
 #[test]
 fn a_choice_ends_where_it_does_not_determine_the_motion() {
