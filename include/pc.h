@@ -1335,15 +1335,13 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        pc_error **error);
 
 /**
- * Asks for a velocity as one of the independent ones, as many as the constraints leave free: where
- * multipliers would hold these, systems then have the equations in which they are eliminated. The
- * name is that of a quasi-velocity; x' where there are none. Without any, equations in print and in
- * source are those of the velocities that make them shortest. A wrong choice is found by
- * pc_system_new.
+ * Asks for a velocity as one of the independent ones, as many as the constraints leave free:
+ * where multipliers would hold these, systems then have the equations in which they are
+ * eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
+ * equations in print and in source are those of the velocities that make them shortest. A wrong
+ * choice is found by pc_system_new.
  */
-pc_status pc_model_add_independent(pc_model *model,
-                                   const char *name,
-                                   pc_error **error);
+pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Writes the rate f(t, y) of the state to ydot.

@@ -28,11 +28,11 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     unsafe { change(model, error, give) }
 }
 
-/// Asks for a velocity as one of the independent ones, as many as the constraints leave free: where
-/// multipliers would hold these, systems then have the equations in which they are eliminated. The
-/// name is that of a quasi-velocity; x' where there are none. Without any, equations in print and in
-/// source are those of the velocities that make them shortest. A wrong choice is found by
-/// pc_system_new.
+/// Asks for a velocity as one of the independent ones, as many as the constraints leave free:
+/// where multipliers would hold these, systems then have the equations in which they are
+/// eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
+/// equations in print and in source are those of the velocities that make them shortest. A wrong
+/// choice is found by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_independent(
     model: *mut pc_model,
