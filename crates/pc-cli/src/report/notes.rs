@@ -43,7 +43,7 @@ pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let choice = match declared.iter().all(|eta| free.contains(&eta.to_string())) {
         _ if !assembly.constraints.asked_for().is_empty() => "These are the ones that are asked for.",
         true => "These are the quasi-velocities of the model.",
-        false => "Of the choices that are regular at the start theirs are the shortest equations.",
+        false => "This choice is regular at the start, and makes them short.",
     };
     Some(format!(
         "The equations are in {}; {} {follow} from the constraints.\n\

@@ -12,9 +12,12 @@ const MOST_TRIED: usize = 20;
 /// Equations are derived to be compared only where as many constraints are solved, and L is written with so many operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest, and a pivot likewise: a motion goes
-/// on for a while before the equations are singular.
+/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: a motion goes on for a while before
+/// the equations are singular.
 const REGULAR: f64 = 0.5;
+/// What part of the largest pivot the shortest may be: equations lose a digit by it. (That more choices are not derived has a second
+/// reason: what is derived in a graph before leaves its forms there.)
+const PIVOT: f64 = 0.1;
 
 /// C at a state, its rows of length one and its columns divided by the roots of the masses: units do not matter.
 struct Weighed {
@@ -76,7 +79,7 @@ impl<'g> Multipliers<'g> {
     /// that are regular at the values `at`; the ones that the constraints determine best where others are no shorter.
     ///
     /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: then C is eliminated
-    /// with the pivot that is shortest in print among those that are no less than half of the largest.
+    /// with the pivot that is shortest in print among those that are no less than a tenth of the largest.
     ///
     /// # Errors
     /// Those of [`dependent_at`](Multipliers::dependent_at).
@@ -169,7 +172,7 @@ impl Weighed {
                 return None;
             }
             let places = (0..rows.len()).flat_map(|a| (0..c.columns()).map(move |s| (a, s)));
-            let regular = places.filter(|&(a, s)| rows[a].1[s].abs() >= REGULAR * largest);
+            let regular = places.filter(|&(a, s)| rows[a].1[s].abs() >= PIVOT * largest);
             let (a, s) = regular.min_by_key(|&(a, s)| c[(rows[a].0, s)].tree_cost())?;
             let (_, pivot) = rows.remove(a);
             for (_, row) in &mut rows {
