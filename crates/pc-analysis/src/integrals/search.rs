@@ -4,6 +4,7 @@ use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number, System};
 
 use crate::brackets::poisson_bracket::PoissonBracket;
 use crate::integrals::cyclic_displacements::CyclicDisplacement;
+use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
 /// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
@@ -22,6 +23,8 @@ pub struct Integral<'g> {
     pub verdict: ConservationVerdict<'g>,
     /// Whether an event may change it.
     pub jumps: bool,
+    /// Whether it is known to be a function of those before it in the list.
+    pub dependent: bool,
 }
 
 /// Where an integral comes from.
@@ -92,18 +95,33 @@ impl<'g> Integrals<'g> {
     /// # Ok::<(), pc_mech::MechError>(())
     /// ```
     pub fn find(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
+        let mut integrals = Integrals::known(equations, near);
+        Search::new(equations, near).add_found(&mut integrals.list);
+        integrals
+    }
+
+    /// The same without an ansatz.
+    pub fn known(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
         let search = Search::new(equations, near);
         let mut list = search.declared();
         list.push(search.energy());
         list.extend(search.cyclic_momenta());
         search.add_casimirs(&mut list);
-        search.add_found(&mut list);
         Integrals { list }
     }
 
     /// All of them, the declared ones first.
     pub fn list(&self) -> &[Integral<'g>] {
         &self.list
+    }
+
+    /// Those that are proved to be conserved, if only for the values that the parameters have.
+    pub fn conserved(&self) -> impl Iterator<Item = &Integral<'g>> {
+        self.list.iter().filter(|integral| integral.is_conserved())
+    }
+
+    pub(super) fn push(&mut self, integral: Integral<'g>) {
+        self.list.push(integral);
     }
 
     /// Gives each the name that `name` has for it, if it has one.
@@ -165,17 +183,24 @@ impl<'g> Integrals<'g> {
         }
         let verdict = Search::new(equations, near).verdict(value);
         let origin = Origin::EnergyOfAll;
-        self.list.push(Integral { name: "energy".to_owned(), value, origin, verdict, jumps: false });
+        self.list.push(Integral {
+            name: "energy".to_owned(),
+            value,
+            origin,
+            verdict,
+            jumps: false,
+            dependent: false,
+        });
     }
 }
 
 /// Where integrals are looked for.
-struct Search<'a, 'g> {
-    graph: &'g Graph,
+pub(super) struct Search<'a, 'g> {
+    pub(super) graph: &'g Graph,
     equations: &'a Equations<'g>,
     /// With the parameters as numbers.
     bound: System<'g>,
-    rates: Rates<'g>,
+    pub(super) rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
@@ -184,7 +209,7 @@ struct Search<'a, 'g> {
 }
 
 impl<'a, 'g> Search<'a, 'g> {
-    fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
+    pub(super) fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
         let system = equations.system();
         let (frame, k) = (system.frame(), system.quasi_velocities().len());
         Search {
@@ -198,7 +223,7 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    fn system(&self) -> &'a System<'g> {
+    pub(super) fn system(&self) -> &'a System<'g> {
         self.equations.system()
     }
 
@@ -218,7 +243,7 @@ impl<'a, 'g> Search<'a, 'g> {
         ConservationVerdict::Rate { rate, at_start }
     }
 
-    fn bind(&self, function: Expr<'g>) -> Expr<'g> {
+    pub(super) fn bind(&self, function: Expr<'g>) -> Expr<'g> {
         bind(self.system(), function)
     }
 
@@ -230,6 +255,7 @@ impl<'a, 'g> Search<'a, 'g> {
             origin: Origin::Declared,
             verdict: self.verdict(value),
             jumps: false,
+            dependent: false,
         };
         integrals.map(with_verdict).collect()
     }
@@ -253,7 +279,14 @@ impl<'a, 'g> Search<'a, 'g> {
             }
             verdict => verdict,
         };
-        Integral { name: "energy".to_owned(), value, origin: Origin::Energy, verdict, jumps: false }
+        Integral {
+            name: "energy".to_owned(),
+            value,
+            origin: Origin::Energy,
+            verdict,
+            jumps: false,
+            dependent: false,
+        }
     }
 
     /// The momenta of cyclic displacements that are not declared, for the values of the parameters.
@@ -267,20 +300,23 @@ impl<'a, 'g> Search<'a, 'g> {
         };
         let new =
             CyclicDisplacement::all(&self.bound).into_iter().filter(|cyclic| !is_declared(cyclic.momentum));
-        (1..)
-            .zip(new)
-            .map(|(number, cyclic)| Integral {
+        let momenta = self.system().momenta();
+        let with_parameters = |(number, cyclic): (usize, CyclicDisplacement<'g>)| {
+            let value = combination(self.graph, &cyclic.coefficients, &momenta);
+            Integral {
                 name: format!("momentum {number}"),
-                value: cyclic.momentum,
-                verdict: self.proved(cyclic.momentum),
+                value,
+                verdict: self.proved(value),
                 origin: Origin::CyclicDisplacement { coefficients: cyclic.coefficients },
                 jumps: false,
-            })
-            .collect()
+                dependent: false,
+            }
+        };
+        (1..).zip(new).map(with_parameters).collect()
     }
 
     /// The verdict on what is proved to be conserved at least for these parameters.
-    fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
+    pub(super) fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
             known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
             _ if self.rates.has_jumps(function) => ConservationVerdict::BetweenJumps,
@@ -335,7 +371,14 @@ impl<'a, 'g> Search<'a, 'g> {
             if self.is_new(&known, bound) {
                 number += 1;
                 let name = format!("Casimir {number}");
-                list.push(Integral { name, value, origin: Origin::Casimir, verdict, jumps: false });
+                list.push(Integral {
+                    name,
+                    value,
+                    origin: Origin::Casimir,
+                    verdict,
+                    jumps: false,
+                    dependent: false,
+                });
                 known.push(bound);
             }
         }
@@ -356,12 +399,19 @@ impl<'a, 'g> Search<'a, 'g> {
             let verdict = self.proved(value);
             let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
             let name = format!("found {number}");
-            list.push(Integral { name, value, origin: Origin::Found, verdict, jumps: false });
+            list.push(Integral {
+                name,
+                value,
+                origin: Origin::Found,
+                verdict,
+                jumps: false,
+                dependent: false,
+            });
         }
     }
 
     /// Whether f is no function of the known ones.
-    fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
+    pub(super) fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
         self.rank(&[known, &[f]].concat()) > self.rank(known)
     }
 

@@ -153,6 +153,7 @@ impl<'g> Assembler<'g, '_> {
             self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
         let events =
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
+        let action = self.action()?;
         self.scope.look_at_unused()?;
         Ok(Assembly {
             system,
@@ -162,6 +163,7 @@ impl<'g> Assembler<'g, '_> {
             written_start,
             declared,
             events,
+            action,
             document: self.model.shared_document(),
         })
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pc_mech::{Equations, Expr, System};
 use pc_nonholo::NonholoError;
 
+use crate::assembly::action::Action;
 use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
@@ -27,6 +28,8 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
     pub events: Vec<Event<'g>>,
+    /// The solution of Hamilton–Jacobi's equation that the text has, if it has one.
+    pub action: Option<Action<'g>>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }

@@ -48,7 +48,9 @@ pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
     let quasi = document.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
     let inputs = document.inputs.iter().map(|input| (&input.name, Role::Input));
     let states = document.states.iter().map(|state| (&state.name, Role::State));
-    let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).collect();
+    let action = document.hamilton_jacobi.iter().flat_map(|action| &action.constants);
+    let constants = action.map(|(name, _)| (name, Role::Constant));
+    let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).chain(constants).collect();
     for (entries, role) in [
         (&document.parameters, Role::Parameter),
         (&document.definitions, Role::Definition),

@@ -1,0 +1,292 @@
+//! Integrals that are polynomials in η over a span of functions of the place.
+
+use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number};
+
+use crate::error::AnalysisError;
+use crate::integrals::polynomials::{Generator, combination, monomials};
+use crate::integrals::rates::Rates;
+use crate::integrals::search::{Integral, Integrals, Origin, Search};
+
+/// The most functions with unknown coefficients: some seconds.
+const MOST_FUNCTIONS: usize = 600;
+
+/// The longest accelerations along which they are differentiated, in operations written out.
+const LONGEST: u32 = 4_000;
+
+/// The most products of known integrals that are left out of what is found.
+const MOST_PRODUCTS: usize = 400;
+
+/// The most parameters by which coefficients are multiplied.
+const MOST_PARAMETERS: usize = 6;
+
+/// What integrals are looked for among: Σ a_jlm m_j p_l f_m with rational a_jlm, m_j being the monomials in η, p_l those in the
+/// coordinates, or in their sines and cosines, and f_m functions of (t, x), 1 among them.
+#[derive(Clone, Debug)]
+pub struct PolynomialAnsatz<'g> {
+    /// The largest degree in η.
+    pub degree: u32,
+    /// The f_m but for 1.
+    pub functions: Vec<Expr<'g>>,
+}
+
+/// What an ansatz was tried with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AnsatzSearch {
+    /// With so many functions.
+    Made {
+        /// The largest degree in the coordinates.
+        coefficients: u32,
+        /// How many functions have had an unknown coefficient.
+        functions: usize,
+    },
+    /// With none: there are more of them than can be tried.
+    TooMany {
+        /// How many there are with coefficients that are constant but for the f_m.
+        functions: usize,
+    },
+    /// With none: the accelerations are too long.
+    TooLong,
+}
+
+impl<'g> Integrals<'g> {
+    /// Adds the integrals of an ansatz to what is known already: those that are no polynomials of known ones with rational
+    /// coefficients, of low degree first. Functions of those before them are said to be such, as the third component of the
+    /// Runge–Lenz vector is.
+    ///
+    /// They are sought for the values that the parameters have. Where the coefficients are sums of products of powers of the
+    /// parameters, these stand in them and the integral is proved for all their values.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
+    ///
+    /// ```
+    /// use pc_analysis::{Integrals, PolynomialAnsatz};
+    /// use pc_mech::{Graph, Neighbourhood, System};
+    ///
+    /// // Kepler's problem in the plane.
+    /// let graph = Graph::new();
+    /// let mu = graph.symbol("μ");
+    /// let planet = System::builder(&graph)
+    ///     .parameter(mu, 2.0)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| {
+    ///         (v[0].square() + v[1].square()) / 2.0 + mu / (x[0].square() + x[1].square()).sqrt()
+    ///     })
+    ///     .build()?;
+    /// let equations = planet.poincare()?;
+    /// let at: Vec<_> = ["t", "x", "y", "x'", "y'"].map(|name| (graph.symbol(name), 0.5)).into();
+    /// let near = Neighbourhood { centre: at };
+    /// let mut found = Integrals::find(&equations, &near);
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// let functions = vec![1.0 / (x.square() + y.square()).sqrt()];
+    /// found.add_polynomials(&equations, &near, &PolynomialAnsatz { degree: 2, functions })?;
+    /// assert_eq!(found.list().len(), 4); // energy, area, and the vector of Runge and Lenz
+    /// assert!(found.list().iter().all(|integral| integral.is_conserved()));
+    /// # Ok::<(), pc_analysis::AnalysisError>(())
+    /// ```
+    pub fn add_polynomials(
+        &mut self,
+        equations: &Equations<'g>,
+        near: &Neighbourhood<'g>,
+        ansatz: &PolynomialAnsatz<'g>,
+    ) -> Result<AnsatzSearch, AnalysisError> {
+        let search = Search::new(equations, near);
+        let graph = search.graph;
+        let rates = search.rates.with_parameters_bound();
+        rates.of_all(&ansatz.functions)?;
+        let costs = equations.accelerations().into_iter().map(Expr::tree_cost);
+        if costs.fold(0, u32::saturating_add) > LONGEST {
+            return Ok(AnsatzSearch::TooLong);
+        }
+        let span = match Span::new(graph, &rates, ansatz) {
+            Ok(span) => span,
+            Err(functions) => return Ok(AnsatzSearch::TooMany { functions }),
+        };
+        let columns: Vec<Vec<Expr<'g>>> =
+            rates.of_all(&span.functions)?.into_iter().map(|rate| vec![rate]).collect();
+        let relations = graph.linear_relations(&columns);
+        for degree in 0..=ansatz.degree {
+            let of_degree = relations.iter().filter(|a| span.degree(a) == degree);
+            let candidates: Vec<&Vec<Number>> = of_degree.collect();
+            self.add_new(&search, &span, &candidates, degree);
+        }
+        Ok(AnsatzSearch::Made { coefficients: span.coefficients, functions: span.functions.len() })
+    }
+
+    /// Adds those of the relations, all of one degree, that are no polynomials of what is known.
+    fn add_new(&mut self, search: &Search<'_, 'g>, span: &Span<'g>, relations: &[&Vec<Number>], degree: u32) {
+        let graph = search.graph;
+        let known: Vec<Expr<'g>> = self.conserved().map(|integral| search.bind(integral.value)).collect();
+        let eta = search.system().quasi_velocities();
+        let products = products(graph, &known, eta, degree);
+        let all = [known.as_slice(), &products].concat();
+        let candidate = |a: &&Vec<Number>| combination(graph, a, &span.functions);
+        let new = relations.iter().filter(|a| !is_combination(graph, &all, candidate(a)));
+        let new: Vec<(&Vec<Number>, Expr<'g>)> = new.map(|a| (*a, candidate(a))).collect();
+        // Energies of parts are combinations of each other and of the whole, and each is worth its line.
+        let values = products.iter().copied().chain(new.iter().map(|&(_, value)| value));
+        let columns: Vec<Vec<Expr<'g>>> = values.map(|value| vec![value]).collect();
+        let dependent: Vec<usize> =
+            graph.dependent_columns(&columns, &[]).into_iter().map(|(j, _)| j).collect();
+        let mut known = known;
+        for (place, &(relation, bound)) in (products.len()..).zip(&new) {
+            if dependent.contains(&place) {
+                continue;
+            }
+            let lifted = with_parameters(search, &span.functions, relation);
+            let value = graph.shorten(&[lifted.unwrap_or(bound)], eta)[0];
+            let number = 1 + self.list().iter().filter(|integral| integral.origin == Origin::Found).count();
+            let integral = Integral {
+                name: format!("found {number}"),
+                value,
+                origin: Origin::Found,
+                verdict: search.proved(value),
+                jumps: false,
+                dependent: !search.is_new(&known, bound),
+            };
+            self.push(integral);
+            known.push(bound);
+        }
+    }
+}
+
+/// The functions that have unknown coefficients.
+struct Span<'g> {
+    /// Of low degree in η first.
+    functions: Vec<Expr<'g>>,
+    /// How many of them are of degree ≤ 0, 1, ….
+    up_to_degree: Vec<usize>,
+    /// The largest degree in the coordinates.
+    coefficients: u32,
+}
+
+impl<'g> Span<'g> {
+    /// With coefficients of the largest degree up to 2 with which they can be tried; else their number with that of degree 0.
+    fn new(graph: &'g Graph, rates: &Rates<'g>, ansatz: &PolynomialAnsatz<'g>) -> Result<Span<'g>, usize> {
+        let moving: Vec<Generator<'g>> = rates.moving.iter().map(|&z| (z, ansatz.degree)).collect();
+        let up_to: Vec<usize> = (0..=ansatz.degree).map(|d| monomials(&moving, d).len()).collect();
+        let count = |places: &[Expr<'g>]| up_to.last().map_or(0, |monomials| monomials * places.len());
+        let mut places = Vec::new();
+        for coefficients in (0..=2).rev() {
+            places = place_functions(graph, rates, ansatz, coefficients);
+            if count(&places) > MOST_FUNCTIONS {
+                continue;
+            }
+            let products = monomials(&moving, ansatz.degree).into_iter();
+            let products = products.flat_map(|m| places.iter().map(move |&f| m * f));
+            // The first is the constant 1.
+            let functions = products.skip(1).collect();
+            let up_to_degree = up_to.iter().map(|monomials| monomials * places.len() - 1).collect();
+            return Ok(Span { functions, up_to_degree, coefficients });
+        }
+        Err(count(&places))
+    }
+
+    /// The degree in η of a combination.
+    fn degree(&self, a: &[Number]) -> u32 {
+        let last = a.iter().rposition(|a| !a.is_zero()).unwrap_or(0);
+        self.up_to_degree.iter().filter(|&&count| count <= last).count() as u32
+    }
+}
+
+/// The products of monomials in the coordinates and functions of the ansatz, independent of each other, 1 the first.
+fn place_functions<'g>(
+    graph: &'g Graph,
+    rates: &Rates<'g>,
+    ansatz: &PolynomialAnsatz<'g>,
+    coefficients: u32,
+) -> Vec<Expr<'g>> {
+    let simple = rates.ansatz(ansatz.degree, coefficients).functions;
+    let given = [Expr::ONE].into_iter().chain(ansatz.functions.iter().copied());
+    let mut all: Vec<Expr<'g>> = Vec::new();
+    for product in given.flat_map(|f| simple.iter().map(move |&p| p * f)) {
+        if !all.contains(&product) {
+            all.push(product);
+        }
+    }
+    // x²/r³ + y²/r³ is 1/r: a relation of functions is no integral.
+    let columns: Vec<Vec<Expr<'g>>> = all.iter().map(|&f| vec![f]).collect();
+    let dependent: Vec<usize> = graph.dependent_columns(&columns, &[]).into_iter().map(|(j, _)| j).collect();
+    (0..all.len()).filter(|j| !dependent.contains(j)).map(|j| all[j]).collect()
+}
+
+/// 1 and the products of at least two of the known integrals of degree ≤ `degree` in η.
+fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: u32) -> Vec<Expr<'g>> {
+    let with_degree = |&f: &Expr<'g>| {
+        let terms = graph.polynomial(f, eta)?.terms;
+        Some((f, terms.iter().map(|(exponents, _)| exponents.iter().sum::<u32>()).max().unwrap_or(0)))
+    };
+    let known: Vec<(Expr<'g>, u32)> = known.iter().filter_map(with_degree).collect();
+    let (mut all, mut last) = (vec![Expr::ONE], vec![(Expr::ONE, 0, 0)]);
+    // Of functions of the place alone no more factors than of others.
+    for factors in 1..=degree.max(2) {
+        let longer = last.iter().flat_map(|&(product, power, first)| {
+            let rest = known.iter().enumerate().skip(first);
+            rest.map(move |(i, &(f, d))| (product * f, power + d, i))
+        });
+        last = longer.filter(|&(_, power, _)| power <= degree).take(MOST_PRODUCTS).collect();
+        if factors > 1 {
+            all.extend(last.iter().map(|&(product, ..)| product));
+        }
+    }
+    all.truncate(MOST_PRODUCTS);
+    all
+}
+
+/// Whether f is a linear combination of functions with constant coefficients, as far as fingerprints tell.
+fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
+    let columns: Vec<Vec<Expr<'g>>> = of.iter().chain([&f]).map(|&f| vec![f]).collect();
+    graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
+}
+
+/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, if its coefficients are
+/// sums of products of powers of p: those of p that its rates contain. The last coefficient is a number.
+///
+/// There is one at most: relations of an echelon form are independent without their last function, for these values and so
+/// for almost all.
+fn with_parameters<'g>(
+    search: &Search<'_, 'g>,
+    functions: &[Expr<'g>],
+    relation: &[Number],
+) -> Option<Expr<'g>> {
+    let graph = search.graph;
+    let mut support: Vec<usize> = (0..relation.len()).filter(|&j| !relation[j].is_zero()).collect();
+    let last = functions[support.pop()?];
+    let rest: Vec<Expr<'g>> = support.into_iter().map(|j| functions[j]).collect();
+    let rates = search.rates.of_all(&rest).ok()?;
+    let rate_of_last = search.rates.of(last).ok()?;
+    let of_rates = [rates.as_slice(), &[rate_of_last]].concat();
+    let parameters: Vec<Expr<'g>> = search.system().parameters().iter().map(|&(p, _)| p).collect();
+    let present = graph.symbols_of(&of_rates);
+    let present: Vec<Expr<'g>> = parameters.into_iter().filter(|p| present.contains(p)).collect();
+    if present.len() > MOST_PARAMETERS {
+        return None;
+    }
+    let powers = powers(&present);
+    if powers.len() * rest.len() > MOST_FUNCTIONS {
+        return None;
+    }
+    let scaled = |functions: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        functions.iter().flat_map(|&f| powers.iter().map(move |&power| power * f)).collect()
+    };
+    let columns: Vec<Vec<Expr<'g>>> =
+        scaled(&rates).into_iter().chain([rate_of_last]).map(|rate| vec![rate]).collect();
+    let all = [scaled(&rest), vec![last]].concat();
+    let relations = graph.linear_relations(&columns);
+    let found = relations.iter().find(|a| a.last().is_some_and(|a| !a.is_zero()))?;
+    Some(combination(graph, found, &all))
+}
+
+/// The products of powers −2..2 of the parameters, of at most three factors, or two where there are many parameters.
+fn powers<'g>(parameters: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let most = if parameters.len() > 3 { 2 } else { 3 };
+    let mut all: Vec<(Expr<'g>, i32)> = vec![(Expr::ONE, 0)];
+    for &p in parameters {
+        let with = |&(product, size): &(Expr<'g>, i32)| {
+            let exponents = [0, 1, -1, 2, -2].into_iter().filter(move |e: &i32| size + e.abs() <= most);
+            exponents.map(move |e| (product * p.powi(e), size + e.abs()))
+        };
+        all = all.iter().flat_map(with).collect();
+    }
+    all.into_iter().map(|(product, _)| product).collect()
+}
