@@ -24,8 +24,21 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
+/// Whether it is a sum outside of brackets.
 fn is_sum(text: &str) -> bool {
-    text.contains(" + ") || text.contains(" - ")
+    let mut depth = 0usize;
+    let outside = text.split(' ').map(|word| {
+        let at = depth;
+        for c in word.chars() {
+            match c {
+                '(' | '{' => depth += 1,
+                ')' | '}' => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+        }
+        at == 0 && matches!(word, "+" | "-")
+    });
+    outside.fold(false, |any, sign| any || sign)
 }
 
 /// Whether it is a quotient of more than numbers.
@@ -49,6 +62,7 @@ mod tests {
         assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
         assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
         assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
+        assert_eq!(sum(&[("1", "X1"), ("-2 (a - b)", "X2")]), "X1 - 2 (a - b) X2");
         let quotient = [("-cos(θ)/sin(θ)", "X1"), ("a/b", "X2")].map(|(c, x)| (c.to_owned(), x.to_owned()));
         assert_eq!(combination(quotient), "-(cos(θ)/sin(θ)) X1 + (a/b) X2");
     }

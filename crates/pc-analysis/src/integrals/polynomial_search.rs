@@ -16,6 +16,9 @@ const LONGEST: u32 = 4_000;
 /// The most products of known integrals that are left out of what is found.
 const MOST_PRODUCTS: usize = 400;
 
+/// The most factors without velocities in such a product.
+const MOST_OF_PLACE: u32 = 2;
+
 /// The most parameters by which coefficients are multiplied.
 const MOST_PARAMETERS: usize = 6;
 
@@ -218,8 +221,8 @@ fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: 
     };
     let known: Vec<(Expr<'g>, u32)> = known.iter().filter_map(with_degree).collect();
     let (mut all, mut last) = (vec![Expr::ONE], vec![(Expr::ONE, 0, 0)]);
-    // Of functions of the place alone no more factors than of others.
-    for factors in 1..=degree.max(2) {
+    // Beside those of degree in η there may be some of the place alone.
+    for factors in 1..=degree + MOST_OF_PLACE {
         let longer = last.iter().flat_map(|&(product, power, first)| {
             let rest = known.iter().enumerate().skip(first);
             rest.map(move |(i, &(f, d))| (product * f, power + d, i))

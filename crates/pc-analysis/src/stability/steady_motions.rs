@@ -5,14 +5,21 @@ use std::f64::consts::TAU;
 use pc_mech::{Equations, Expr, Matrix, Motion, SingularValues};
 
 use crate::integrals::search::Integral;
+use crate::numeric::newton;
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions};
 use crate::stability::steady_search::{Known, NearbySteadyMotion, Seeker, Surface, is_autonomous};
 
 /// How many starts there are of each kind, for systems of few components.
-const STARTS: usize = 32;
+const STARTS: usize = 64;
 
 /// That many starts times the square of the number of components are enough work.
 const MOST_WORK: usize = 20_000;
+
+/// Steps of Newton's method to the integrals of the start.
+const MOST_STEPS: usize = 50;
+
+/// The residual that counts as having them: what follows is exact.
+const ON_SURFACE: f64 = 1e-6;
 
 /// Steady motions that agree so well are one.
 const SAME: f64 = 1e-6;
@@ -95,8 +102,13 @@ impl SteadyMotions {
         for same in &choices {
             let Some(surface) = Surface::new(equations, same, start) else { continue };
             let before = found.list.len();
+            let options = SteadyOptions::default();
             for guess in &guesses {
-                found.look(&seeker, motion, start, (guess, &SteadyOptions::default()), (&surface, same));
+                found.look(&seeker, motion, start, (guess, &options), (&surface, same));
+                // From far away the way to the integrals and the way to rest are better gone one after the other.
+                if let Some(guess) = onto(&surface, guess) {
+                    found.look(&seeker, motion, start, (&guess, &options), (&surface, same));
+                }
             }
             if found.list.len() > before {
                 break;
@@ -166,6 +178,12 @@ impl Found {
         }
         list
     }
+}
+
+/// A state near the guess that has the integrals of the start.
+fn onto(surface: &Surface<'_>, guess: &[f64]) -> Option<Vec<f64>> {
+    let end = newton::solve(guess.to_vec(), MOST_STEPS, |y| Ok(surface.at(y)?)).ok()?;
+    (end.iterations > 0 && end.is_solution(ON_SURFACE)).then_some(end.point)
 }
 
 /// The dimension of the kernel of the first approximation on the surface: so many directions lead to other steady motions, as far

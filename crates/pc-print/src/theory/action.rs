@@ -5,10 +5,7 @@ use pc_mech::{Expr, Identity};
 
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
-use crate::words::{short, small, wrapped};
-
-/// The most columns of a line of values.
-const WIDTH: usize = 90;
+use crate::words::{short, small};
 
 /// X_0 S + H(t, x, X_s S) = 0, and the action of the model.
 pub(crate) fn section(ground: &Ground<'_, '_>) -> Section {
@@ -25,6 +22,11 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Section {
         Ok(canonical) => canonical,
         Err(why) => return refused(why.clone()),
     };
+    let frame = ground.free.frame();
+    let is_square = !frame.coordinates().is_empty() && frame.rank() == frame.operators();
+    if !is_square {
+        return refused("as many coordinates are needed as quasi-velocities".to_owned());
+    }
     let mut entries = equation(ground);
     let Some(action) = action else { return section(entries) };
     let constants: Vec<Expr<'_>> = action.constants.iter().map(|&(constant, _)| constant).collect();
@@ -64,9 +66,8 @@ fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
         (Identity::Disproved { .. }, None) => vec!["refuted by numbers".to_owned()],
         (Identity::Disproved { .. }, Some(residual)) => {
             let at = residual.at.iter().map(|(name, value)| format!("{name} = {}", short(*value, 6)));
-            let mut lines = wrapped(at, WIDTH);
-            lines.insert(0, format!("refuted: X_0 S + H is {} at", short(residual.value, 6)));
-            lines
+            let at: Vec<String> = at.collect();
+            vec![format!("refuted: X_0 S + H is {} at {}", short(residual.value, 6), at.join(", "))]
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Momenta, their brackets, and Casimirs.
 
-use pc_analysis::{AnalysisError, PoissonBracket};
-use pc_mech::{Expr, Identity, System};
+use pc_analysis::{AnalysisError, Ansatz, PoissonBracket, Rates};
+use pc_mech::{Canonical, Expr, Identity, System};
 
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
@@ -15,19 +15,25 @@ const MOST_VARIABLES: usize = 16;
 /// y_s = ∂L/∂η_s, and H.
 pub(crate) fn momenta(ground: &Ground<'_, '_>) -> Section {
     let section = |entries| Section { key: "momenta", title: "Momenta", entries };
-    let canonical = match &ground.canonical {
-        Ok(canonical) => canonical,
-        Err(why) => return section(vec![Entry::words(why.clone())]),
-    };
-    let pairs = canonical.momenta().iter().zip(canonical.momenta_of_velocities());
-    let momenta = pairs.map(|(&y, &value)| Entry::formula(Side::of(y), Side::of(value)));
-    let hamiltonian = Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian()));
-    section(momenta.chain([hamiltonian]).collect())
+    if ground.assembly.constraints.nonlinear().is_some() {
+        return section(Vec::new()); // the velocities are not independent
+    }
+    let (system, graph) = (&ground.free, ground.free.graph());
+    let values = graph.shorten(&system.momenta(), system.quasi_velocities());
+    let pairs = system.momentum_symbols().into_iter().zip(values);
+    let mut entries: Vec<Entry> =
+        pairs.map(|(y, value)| Entry::formula(Side::of(y), Side::of(value))).collect();
+    entries.push(match &ground.canonical {
+        Ok(canonical) => Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian())),
+        Err(why) => Entry::words(format!("H is not written: {why}")),
+    });
+    section(entries)
 }
 
 /// The bracket of the variables (x, y): Poisson's, or the almost-Poisson one that nonholonomic constraints leave.
 pub(crate) fn bracket<'g>(ground: &Ground<'_, 'g>) -> Result<Option<PoissonBracket<'g>>, AnalysisError> {
-    if ground.canonical.is_err() {
+    let nonlinear = ground.assembly.constraints.nonlinear().is_some();
+    if nonlinear || ground.constrained.is_some() && ground.canonical.is_err() {
         return Ok(None);
     }
     Ok(Some(match &ground.constrained {
@@ -102,26 +108,49 @@ fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry {
 /// Which motion is that of H.
 fn generated(ground: &Ground<'_, '_>, bracket: &PoissonBracket<'_>) -> String {
     let hamiltonian = if bracket.time_momentum().is_some() { "K" } else { "H" };
-    let forced = ground.free.forces().iter().any(|q| !q.is_zero());
+    // Those of the free system contain what the bracket says of the reactions.
+    let system = ground.constrained.as_ref().map_or(&ground.free, |constrained| constrained.system());
+    let forced = system.forces().iter().any(|q| !q.is_zero());
     let forces = if forced { " + Q" } else { "" };
     let of_time = bracket.time_momentum().map_or_else(String::new, |y0| format!(", K = H + {y0}"));
     format!("x' = (x, {hamiltonian}), y' = (y, {hamiltonian}){forces}{of_time}")
 }
 
-/// The Casimirs of the bracket that are polynomials up to a degree.
-pub(crate) fn casimirs(bracket: Option<&PoissonBracket<'_>>, degree: u32) -> Section {
+/// The Casimirs of the bracket.
+pub(crate) fn casimirs<'g>(
+    ground: &Ground<'_, 'g>,
+    bracket: Option<&PoissonBracket<'g>>,
+    degree: u32,
+) -> Section {
     let section = |entries| Section { key: "casimirs", title: "Casimirs", entries };
-    bracket.map_or_else(|| section(Vec::new()), |bracket| section(casimir_entries(bracket, degree)))
+    let canonical = ground.canonical.as_ref().ok();
+    section(bracket.map_or_else(Vec::new, |bracket| casimir_entries(bracket, canonical, degree)))
 }
 
-fn casimir_entries(bracket: &PoissonBracket<'_>, degree: u32) -> Vec<Entry> {
+/// Those that are polynomials up to a degree, or have sines and cosines of coordinates as coefficients of momenta.
+fn casimir_entries<'g>(
+    bracket: &PoissonBracket<'g>,
+    canonical: Option<&Canonical<'g>>,
+    degree: u32,
+) -> Vec<Entry> {
     let (size, rank) = (bracket.variables().len(), bracket.rank());
     let corank = size - rank;
     if corank == 0 {
         return vec![Entry::words(format!("none: the bracket has full rank {rank}"))];
     }
     let tried = (1..=degree.max(2) as usize).rev().find(|&d| binomial(size + d, d) <= MOST_MONOMIALS);
-    let found: Vec<Expr<'_>> = tried.map_or_else(Vec::new, |d| bracket.casimirs(d as u32));
+    let mut found: Vec<Expr<'_>> = tried.map_or_else(Vec::new, |d| bracket.casimirs(d as u32));
+    if found.len() < corank
+        && let Some(canonical) = canonical
+    {
+        let moving = canonical.momenta();
+        let ansatz =
+            Ansatz { known: found.clone(), ..Rates::canonical(canonical).ansatz(degree, degree.min(2)) };
+        let few = binomial(moving.len() + degree as usize, degree as usize) * ansatz.functions.len();
+        if few <= MOST_MONOMIALS {
+            found.extend(bracket.casimirs_by(&ansatz, moving).unwrap_or_default());
+        }
+    }
     let known = |(number, &casimir): (usize, &Expr<'_>)| {
         let left = Side::symbol(&format!("C{number}"), &format!("C_{{{number}}}"));
         Entry::formula(left, Side::of(casimir)).with(Verdict::Proved)
@@ -132,11 +161,10 @@ fn casimir_entries(bracket: &PoissonBracket<'_>, degree: u32) -> Vec<Entry> {
     entries.push(match (missing, tried) {
         (0, _) => Entry::words(all),
         (_, Some(d)) => Entry::words(format!(
-            "{all}; {missing} of them no polynomials of degree up to {d} with rational coefficients, or not found"
+            "{all}; {missing} not found among polynomials of degree up to {d} with rational coefficients"
         ))
-        .with_on("the others", Verdict::Open),
-        (_, None) => Entry::words(format!("{all}; not looked for: too many variables"))
-            .with_on("the others", Verdict::Open),
+        .with(Verdict::Open),
+        (_, None) => Entry::words(format!("{all}; not looked for: too many variables")).with(Verdict::Open),
     });
     entries
 }
@@ -173,6 +201,6 @@ pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Secti
     entries.extend(nonzero(&bracket));
     entries.push(hamiltonian);
     entries.extend(rates.map(rate));
-    entries.extend(casimir_entries(&bracket, degree));
+    entries.extend(casimir_entries(&bracket, Some(&canonical), degree));
     section(entries)
 }

@@ -2,7 +2,7 @@
 
 use pc_mech::{Expr, Identity, Style};
 
-use crate::words::small;
+use crate::words::short;
 
 /// What can be said of a model, part by part.
 #[derive(Clone, Debug)]
@@ -83,7 +83,7 @@ impl Verdict {
     pub(crate) fn in_words(self) -> String {
         match self {
             Verdict::ProvedHere => "proved for these parameters".to_owned(),
-            Verdict::Disproved { margin } => format!("disproved, by {}", small(margin)),
+            Verdict::Disproved { margin } => format!("disproved, by {}", short(margin, 3)),
             Verdict::Proved | Verdict::Open => self.word().to_owned(),
         }
     }

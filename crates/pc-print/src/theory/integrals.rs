@@ -91,7 +91,10 @@ pub(crate) fn section(
     let entry = |integral: &Integral<'_>| {
         let (verdict, words) = verdict(ground, &rates, integral);
         let of_rate = match integral.verdict {
-            ConservationVerdict::Rate { rate, .. } => Some((Side::rate_of(&integral.name), Side::of(rate))),
+            ConservationVerdict::Rate { rate, .. } => {
+                let rate = ground.free.graph().shorten(&[rate], ground.free.quasi_velocities())[0];
+                Some((Side::rate_of(&integral.name), Side::of(rate)))
+            }
             _ => None,
         };
         let constant = Side::symbol("const", "\\text{const}");
@@ -115,11 +118,22 @@ fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) 
         ConservationVerdict::NoFunction => {
             (Verdict::Open, Some("it is no function of time and state alone".to_owned()))
         }
-        ConservationVerdict::Rate { at_start, .. } => {
+        ConservationVerdict::Rate { at_start, rate } => {
             let left = rates.part_left(integral.value, &ground.near.centre).ok().flatten();
             let verdict = left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
             let at_start = at_start.map(|rate| format!("its rate at the start is {}", short(rate, 4)));
-            (verdict, at_start)
+            let frame = ground.free.frame();
+            // Beside the start only where all states are possible.
+            let is_free = ground.is_unbound() && frame.coordinates().len() == frame.rank();
+            match verdict {
+                Verdict::Disproved { .. } => (verdict, at_start),
+                _ if is_free => {
+                    let residual = ground.near.residual(ground.free.graph(), &[vec![rate]]);
+                    (Verdict::of(Identity::of(residual)), at_start)
+                }
+                // That numbers leave nothing at one state is no proof.
+                _ => (Verdict::Open, at_start),
+            }
         }
     }
 }
@@ -150,12 +164,7 @@ pub(crate) fn displacements(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) 
     if ground.constrained.is_some() {
         return section(Vec::new()); // constraints let through no displacement that is a symmetry of L alone
     }
-    let bound = ground.free.with_parameters_bound().canonical().ok();
     let entry = |integral: &Integral<'_>| {
-        let canonical = match integral.verdict {
-            ConservationVerdict::ConservedHere => bound.as_ref()?,
-            _ => canonical,
-        };
         let field = NoetherField::of(canonical, integral.value)?;
         let right = Side::written(|style| written(&ground.free, &field, style));
         let gauge = (!field.gauge.is_zero()).then(|| {

@@ -22,25 +22,20 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
         MeasureSearch::TooLong => return section(vec![open("not looked for: the equations are too long")]),
         MeasureSearch::Found(measure) => measure,
     };
-    let volume = |latex: &str, plain: &str, density: Option<Expr<'_>>| {
-        density.map(|density| Entry::formula(Side::symbol(plain, latex), Side::of(density)))
+    let density = |plain: &str, latex: &str, density: Option<Expr<'_>>| {
+        let formula = |density| Entry::formula(Side::symbol(plain, latex), Side::of(density));
+        density.map(|density| formula(density).with(Verdict::Proved))
     };
-    let whose = if measure.liouville { "Liouville's" } else { "" };
-    let mut entries: Vec<Entry> = [
-        volume("N,\\quad N\\,dx\\,dy", "N, N dx dy", measure.density),
-        volume("N_{\\eta},\\quad N_{\\eta}\\,dx\\,d\\eta", "Nη, Nη dx dη", measure.in_velocities),
-    ]
-    .into_iter()
-    .flatten()
-    .map(|entry| entry.with(Verdict::Proved))
-    .collect();
+    let densities = [density("N", "N", measure.density), density("Nη", "N_{\\eta}", measure.in_velocities)];
+    let mut entries: Vec<Entry> = densities.into_iter().flatten().collect();
+    let whose = if measure.liouville { ", Liouville's" } else { "" };
+    entries.push(Entry::words(format!("the motion keeps N dx dy = Nη dx dη{whose}")));
     if measure.density.is_none() {
         entries.push(Entry::words("its density is no short expression").with(Verdict::Proved));
     }
     let singular: Vec<String> = measure.singular.iter().map(|p| format!("{p} = 0")).collect();
     let resets = ground.assembly.events.iter().any(|event| !event.resets.is_empty());
     let words = [
-        (!whose.is_empty()).then(|| whose.to_owned()),
         (!singular.is_empty()).then(|| format!("singular where {}", singular.join(" or "))),
         measure.jumps.then(|| "where nothing jumps".to_owned()),
         resets.then(|| "between events".to_owned()),

@@ -55,7 +55,7 @@ fn described<'g>(
     let sections: Vec<Section> = vec![
         brackets::momenta(&ground),
         brackets::brackets(&ground, bracket.as_ref()),
-        brackets::casimirs(bracket.as_ref(), options.degree),
+        brackets::casimirs(&ground, bracket.as_ref(), options.degree),
         brackets::group_reduction(&ground, options.degree),
         integrals::section(&ground, &found, options),
         integrals::displacements(&ground, &found.0),

@@ -20,37 +20,59 @@ pub(crate) fn written(theory: &Theory) -> String {
     underlined(&format!("{}: theory", theory.title)) + &sections.join("\n")
 }
 
-/// Name, formulas and verdict, then what else is said, further in.
+/// Name, formulas with the verdict on them, then what else is said, further in.
 fn lines(entry: &Entry) -> Vec<String> {
-    let verdict = entry.verdict.map(|(subject, verdict)| match subject {
+    let mut verdict = entry.verdict.map(|(subject, verdict)| match subject {
         None => verdict.in_words(),
         Some(subject) => format!("{subject} {}", verdict.in_words()),
     });
     let name = entry.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
     let mut heads: Vec<String> =
         entry.formulas.iter().map(|(left, right)| format!("{} = {}", left.book, right.book)).collect();
-    if !entry.values.is_empty() {
-        let values = entry.values.iter().map(|(name, value)| format!("{name} = {}", short(*value, 6)));
-        heads.extend(wrapped(values, WIDTH - 20));
+    if let Some(first) = heads.first_mut()
+        && let Some(verdict) = verdict.take()
+    {
+        *first += &format!("   ({verdict})");
     }
+    let values = entry.values.iter().map(|(name, value)| format!("{name} = {}", short(*value, 6)));
+    heads.extend(wrapped(values, WIDTH - 10));
     if let Some(first) = heads.first_mut() {
         *first = name + first;
-        if let Some(verdict) = &verdict {
-            // Behind the formula it is on.
-            *first += &format!("   ({verdict})");
+    }
+    let mut all: Vec<String> = heads.iter().enumerate().flat_map(|(i, line)| indented(line, i > 0)).collect();
+    let margin = if heads.is_empty() { "" } else { "    " };
+    let mut words = entry.words.clone();
+    if let Some(verdict) = verdict {
+        match words.first_mut() {
+            Some(first) => *first = format!("{verdict}: {first}"),
+            None => words.push(verdict),
         }
     }
-    let mut words = entry.words.iter();
-    let mut all: Vec<String> = heads.iter().enumerate().flat_map(|(i, line)| indented(line, i > 0)).collect();
-    if heads.is_empty() {
-        let first = words.next().cloned();
-        all.extend(match (first, verdict) {
-            (Some(words), Some(verdict)) => Some(format!("{verdict}: {words}")),
-            (words, verdict) => words.or(verdict),
-        });
+    for words in words {
+        let parts = in_lines(&words, WIDTH - margin.len());
+        all.extend(
+            parts
+                .into_iter()
+                .enumerate()
+                .map(|(i, line)| format!("{margin}{}{line}", if i == 0 { "" } else { "  " })),
+        );
     }
-    all.extend(words.map(|words| format!("    {words}")));
     all
+}
+
+/// Words in lines of at most `width` characters.
+fn in_lines(words: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in words.split(' ') {
+        let line = lines.len() - 1;
+        if !lines[line].is_empty() && columns(&lines[line]) + 1 + columns(word) > width {
+            lines.push(word.to_owned());
+        } else {
+            let space = if lines[line].is_empty() { "" } else { " " };
+            lines[line] += &format!("{space}{word}");
+        }
+    }
+    lines
 }
 
 /// The line, broken where it is long, all of it further in if it is not the first.
