@@ -182,6 +182,14 @@ fn a_wrong_action_is_refused() {
 
 #[test]
 fn limits_hold() {
-    let (code, text) = said_of(KEPLER, &["--limit-memory", "200K"]);
+    // Its equations need some hundred, its theory some thousand.
+    for limit in ["100K", "500K", "2M"] {
+        let output = run(&["heavy-top-euler", "--limit-memory", limit], Path::new("."));
+        assert_eq!(output.status.code(), Some(4), "{limit}");
+        assert!(
+            output.stdout.is_empty() && String::from_utf8_lossy(&output.stderr).contains("--limit-memory")
+        );
+    }
+    let (code, text) = said_of(KEPLER, &["--limit-memory", "50K"]);
     assert!(code == 4 && text.contains("--limit-memory"), "{text}");
 }

@@ -24,26 +24,28 @@ pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String 
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
-/// Whether it is a sum outside of brackets.
 fn is_sum(text: &str) -> bool {
+    let outside = outside_of_brackets(text);
+    outside.contains(" + ") || outside.contains(" - ")
+}
+
+/// The text without what stands in brackets.
+fn outside_of_brackets(text: &str) -> String {
     let mut depth = 0usize;
-    let outside = text.split(' ').map(|word| {
-        let at = depth;
-        for c in word.chars() {
-            match c {
-                '(' | '{' => depth += 1,
-                ')' | '}' => depth = depth.saturating_sub(1),
-                _ => {}
-            }
+    let is_outside = |c: &char| {
+        match c {
+            '(' | '{' => depth += 1,
+            ')' | '}' => depth = depth.saturating_sub(1),
+            _ => return depth == 0,
         }
-        at == 0 && matches!(word, "+" | "-")
-    });
-    outside.fold(false, |any, sign| any || sign)
+        false
+    };
+    text.chars().filter(is_outside).collect()
 }
 
 /// Whether it is a quotient of more than numbers.
 fn is_quotient(text: &str) -> bool {
-    text.contains('/') && text.chars().any(char::is_alphabetic)
+    outside_of_brackets(text).contains('/') && text.chars().any(char::is_alphabetic)
 }
 
 /// Number of characters, each one column wide.
@@ -62,7 +64,7 @@ mod tests {
         assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
         assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
         assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
-        assert_eq!(sum(&[("1", "X1"), ("-2 (a - b)", "X2")]), "X1 - 2 (a - b) X2");
+        assert_eq!(sum(&[("1", "X1"), ("-2 (a/c - b)", "X2")]), "X1 - 2 (a/c - b) X2");
         let quotient = [("-cos(θ)/sin(θ)", "X1"), ("a/b", "X2")].map(|(c, x)| (c.to_owned(), x.to_owned()));
         assert_eq!(combination(quotient), "-(cos(θ)/sin(θ)) X1 + (a/b) X2");
     }
