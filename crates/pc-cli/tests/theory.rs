@@ -128,7 +128,33 @@ fn section<'a>(text: &'a str, title: &str) -> &'a str {
     text.split("\n\n").next().unwrap_or_default()
 }
 
-/// So that `1/(ρ²)` need not be in the span where it is a definition of the model.
+/// Numbers at the start, or beside it where all states are possible, disprove what changes.
+#[test]
+fn what_changes_is_disproved_with_a_margin() {
+    for (model, margin) in [("damped-oscillator", "0.0769"), ("rotating-oscillator", "0.739")] {
+        let text = said(&[model]);
+        let integrals = section(&text, "Integrals");
+        assert!(
+            integrals.contains(&format!("(disproved, by {margin})\n      d/dt energy = ")),
+            "{integrals}"
+        );
+    }
+    let object: Value =
+        serde_json::from_str(&said(&["damped-oscillator", "--format", "json"])).expect("JSON");
+    let energy = object["integrals"].as_array().into_iter().flatten().find(|entry| entry["name"] == "energy");
+    let margin = energy.expect("the energy")["margin"].as_f64().expect("a margin");
+    assert!(margin > 1e-6 && margin < 1.0, "{margin}");
+}
+
+/// In the coefficients of what is found stand parameters, no numbers in their place.
+#[test]
+fn parameters_stand_in_integrals() {
+    let text = said(&["rotating-oscillator"]);
+    let integrals = section(&text, "Integrals");
+    assert!(integrals.contains("η1² (k1 - k2)") && !integrals.contains("for these"), "{integrals}");
+}
+
+/// In them definitions of the model may stand.
 #[test]
 fn functions_are_those_of_the_model() {
     let model = "[parameters]\nk = 3.0\n[coordinates]\nx = 1.0\ny = 0.2\nz = 0.3\n[definitions]\nr = \"sqrt(x^2 + y^2 + z^2)\"\n\

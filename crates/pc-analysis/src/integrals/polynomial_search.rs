@@ -19,8 +19,11 @@ const MOST_PRODUCTS: usize = 400;
 /// The most factors without velocities in such a product.
 const MOST_OF_PLACE: u32 = 2;
 
-/// The most parameters by which coefficients are multiplied.
-const MOST_PARAMETERS: usize = 6;
+/// The largest degree in the parameters that coefficients may have.
+const MOST_PARAMETER_DEGREE: u32 = 4;
+
+/// The most products of parameters and functions that have unknown coefficients for that.
+const MOST_WITH_PARAMETERS: usize = 300;
 
 /// What integrals are looked for among: Σ a_jlm m_j p_l f_m with rational a_jlm, m_j being the monomials in η, p_l those in the
 /// coordinates, or in their sines and cosines, and f_m functions of (t, x), 1 among them.
@@ -56,8 +59,8 @@ impl<'g> Integrals<'g> {
     /// coefficients, of low degree first. Functions of those before them are said to be such, as the third component of the
     /// Runge–Lenz vector is.
     ///
-    /// They are sought for the values that the parameters have. Where the coefficients are sums of products of powers of the
-    /// parameters, these stand in them and the integral is proved for all their values.
+    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the parameters, up to a
+    /// common factor, these stand in them and the integral is proved for all their values.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
@@ -242,54 +245,39 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
 }
 
-/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, if its coefficients are
-/// sums of products of powers of p: those of p that its rates contain. The last coefficient is a number.
+/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, up to a factor, if there is
+/// one whose coefficients are polynomials in p of low degree, of those p that its rates contain; that of the lowest degree.
 ///
-/// There is one at most: relations of an echelon form are independent without their last function, for these values and so
-/// for almost all.
+/// There is one at most but for its factor: relations of an echelon form are independent without their last function, for these
+/// values and so for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,
     functions: &[Expr<'g>],
     relation: &[Number],
 ) -> Option<Expr<'g>> {
     let graph = search.graph;
-    let mut support: Vec<usize> = (0..relation.len()).filter(|&j| !relation[j].is_zero()).collect();
-    let last = functions[support.pop()?];
-    let rest: Vec<Expr<'g>> = support.into_iter().map(|j| functions[j]).collect();
-    let rates = search.rates.of_all(&rest).ok()?;
-    let rate_of_last = search.rates.of(last).ok()?;
-    let of_rates = [rates.as_slice(), &[rate_of_last]].concat();
-    let parameters: Vec<Expr<'g>> = search.system().parameters().iter().map(|&(p, _)| p).collect();
-    let present = graph.symbols_of(&of_rates);
-    let present: Vec<Expr<'g>> = parameters.into_iter().filter(|p| present.contains(p)).collect();
-    if present.len() > MOST_PARAMETERS {
-        return None;
-    }
-    let powers = powers(&present);
-    if powers.len() * rest.len() > MOST_FUNCTIONS {
-        return None;
-    }
-    let scaled = |functions: &[Expr<'g>]| -> Vec<Expr<'g>> {
-        functions.iter().flat_map(|&f| powers.iter().map(move |&power| power * f)).collect()
-    };
-    let columns: Vec<Vec<Expr<'g>>> =
-        scaled(&rates).into_iter().chain([rate_of_last]).map(|rate| vec![rate]).collect();
-    let all = [scaled(&rest), vec![last]].concat();
-    let relations = graph.linear_relations(&columns);
-    let found = relations.iter().find(|a| a.last().is_some_and(|a| !a.is_zero()))?;
-    Some(combination(graph, found, &all))
-}
-
-/// The products of powers −2..2 of the parameters, of at most three factors, or two where there are many parameters.
-fn powers<'g>(parameters: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let most = if parameters.len() > 3 { 2 } else { 3 };
-    let mut all: Vec<(Expr<'g>, i32)> = vec![(Expr::ONE, 0)];
-    for &p in parameters {
-        let with = |&(product, size): &(Expr<'g>, i32)| {
-            let exponents = [0, 1, -1, 2, -2].into_iter().filter(move |e: &i32| size + e.abs() <= most);
-            exponents.map(move |e| (product * p.powi(e), size + e.abs()))
+    let support = (0..relation.len()).filter(|&j| !relation[j].is_zero());
+    let support: Vec<Expr<'g>> = support.map(|j| functions[j]).collect();
+    let rates = search.rates.of_all(&support).ok()?;
+    let present = graph.symbols_of(&rates);
+    let parameters = search.system().parameters().iter().map(|&(p, _)| p).filter(|p| present.contains(p));
+    let generators: Vec<Generator<'g>> = parameters.map(|p| (p, MOST_PARAMETER_DEGREE)).collect();
+    for degree in 0..=MOST_PARAMETER_DEGREE {
+        let factors = monomials(&generators, degree);
+        if factors.len() * support.len() > MOST_WITH_PARAMETERS {
+            return None;
+        }
+        let scaled = |list: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            factors.iter().flat_map(|&factor| list.iter().map(move |&f| factor * f)).collect()
         };
-        all = all.iter().flat_map(with).collect();
+        let columns: Vec<Vec<Expr<'g>>> = scaled(&rates).into_iter().map(|rate| vec![rate]).collect();
+        let all = scaled(&support);
+        let relations = graph.linear_relations(&columns).into_iter();
+        let mut found = relations.map(|a| combination(graph, &a, &all));
+        // One that vanishes for these values is another one.
+        if let Some(found) = found.find(|&f| !search.bind(f).is_zero()) {
+            return Some(found);
+        }
     }
-    all.into_iter().map(|(product, _)| product).collect()
+    None
 }

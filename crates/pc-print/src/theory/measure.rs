@@ -29,7 +29,7 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
     let densities = [density("N", "N", measure.density), density("Nη", "N_{\\eta}", measure.in_velocities)];
     let mut entries: Vec<Entry> = densities.into_iter().flatten().collect();
     let whose = if measure.liouville { ", Liouville's" } else { "" };
-    entries.push(Entry::words(format!("the motion keeps N dx dy = Nη dx dη{whose}")));
+    entries.push(Entry::words(format!("the motion keeps N dx dy and Nη dx dη{whose}")));
     if measure.density.is_none() {
         entries.push(Entry::words("its density is no short expression").with(Verdict::Proved));
     }
