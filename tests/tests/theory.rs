@@ -1,7 +1,5 @@
 //! What is said to be kept is kept: integrals, proved in expressions, along compiled motions at random states.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use pc_analysis::{Integral, Integrals, PolynomialAnsatz, Routhian};
 use pc_mech::{Expr, Graph, Neighbourhood, Number, VectorField};
 use pc_model::{BUILTIN, Model};

@@ -1,7 +1,5 @@
 //! Verdicts on actions that are said to solve Hamilton–Jacobi's equation.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_analysis::ProposedAction;
 use pc_mech::{Expr, Graph, Identity, Neighbourhood, System};
 
