@@ -166,6 +166,7 @@ fn functions_are_those_of_the_model() {
     };
     // Energy, area and the vector of Runge and Lenz.
     assert_eq!((count(&[]), count(&["--functions", "1/r"]), count(&["--degree", "1"])), (4, 7, 4));
+    assert_eq!(count(&["--functions", "1/r", "x*y", "--degree", "2"]), 7, "options after functions are none");
     let (code, text) = said_of(model, &["--functions", "1/q"]);
     assert!(code == 3 && text.contains("`q`"), "{text}");
     let (code, text) = said_of(model, &["--degree", "9"]);

@@ -1,7 +1,9 @@
 //! The field of displacements to which an integral linear in the momenta belongs (Noether).
 
+use std::collections::BTreeMap;
+
 use pc_algebra::affine;
-use pc_mech::{Canonical, Expr};
+use pc_mech::{Canonical, Expr, System};
 
 /// A field X = a_s X_s, a_s functions of (t, x), with whose momentum a_s y_s the motion keeps a_s y_s + f(t, x).
 ///
@@ -47,14 +49,27 @@ impl<'g> NoetherField<'g> {
         if coefficients.iter().all(|a| a.is_zero()) {
             return None;
         }
-        let (frame, structure, k) = (system.frame(), system.structure(), coefficients.len());
-        let commutes = structure.operators() == k
-            && (0..=k).all(|r| {
-                let slopes = frame.apply(r, &coefficients);
-                let brackets = |m: usize| (1..=k).map(move |s| structure.get(r, s, m));
-                (1..=k)
-                    .all(|m| (slopes[m - 1] + graph.dot(coefficients.iter().copied(), brackets(m))).is_zero())
-            });
+        let commutes = commutes(system, &coefficients);
         Some(NoetherField { coefficients, gauge, commutes })
     }
+}
+
+/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph tells.
+fn commutes<'g>(system: &System<'g>, a: &[Expr<'g>]) -> bool {
+    let (frame, structure, k) = (system.frame(), system.structure(), a.len());
+    if structure.operators() != k {
+        return false;
+    }
+    let mut along: BTreeMap<(usize, usize), Vec<Expr<'g>>> = BTreeMap::new();
+    for r in 0..=k {
+        let slopes = (1..).zip(frame.apply(r, a)).filter(|(_, slope)| !slope.is_zero());
+        slopes.for_each(|(m, slope)| along.entry((r, m)).or_default().push(slope));
+    }
+    for (r, s, m, c) in structure.nonzero() {
+        along.entry((r, m)).or_default().push(a[s - 1] * c);
+        if r > 0 {
+            along.entry((s, m)).or_default().push(-(a[r - 1] * c));
+        }
+    }
+    along.into_values().all(|terms| system.graph().sum(terms).is_zero())
 }

@@ -5,7 +5,7 @@ use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number};
 use crate::error::AnalysisError;
 use crate::integrals::polynomials::{Generator, combination, monomials};
 use crate::integrals::rates::Rates;
-use crate::integrals::search::{Integral, Integrals, Origin, Search};
+use crate::integrals::search::{Integral, Integrals, Origin, Search, binomial};
 
 /// The most functions with unknown coefficients: some seconds.
 const MOST_FUNCTIONS: usize = 600;
@@ -169,23 +169,27 @@ struct Span<'g> {
 impl<'g> Span<'g> {
     /// With coefficients of the largest degree up to 2 with which they can be tried; else their number with that of degree 0.
     fn new(graph: &'g Graph, rates: &Rates<'g>, ansatz: &PolynomialAnsatz<'g>) -> Result<Span<'g>, usize> {
-        let moving: Vec<Generator<'g>> = rates.moving.iter().map(|&z| (z, ansatz.degree)).collect();
-        let up_to: Vec<usize> = (0..=ansatz.degree).map(|d| monomials(&moving, d).len()).collect();
-        let count = |places: &[Expr<'g>]| up_to.last().map_or(0, |monomials| monomials * places.len());
-        let mut places = Vec::new();
-        for coefficients in (0..=2).rev() {
-            places = place_functions(graph, rates, ansatz, coefficients);
-            if count(&places) > MOST_FUNCTIONS {
+        let (n, k, degree) = (rates.coordinates.len(), rates.moving.len(), ansatz.degree as usize);
+        let of_velocities = binomial(k + degree, degree);
+        let times = 1 + ansatz.functions.len();
+        for coefficients in (0..=2u32).rev() {
+            // Of an angle there are a sine and a cosine, and of these no fewer.
+            let least = binomial(n + coefficients as usize, coefficients as usize);
+            if of_velocities.saturating_mul(least).saturating_mul(times) > MOST_FUNCTIONS {
                 continue;
             }
+            let places = place_functions(graph, rates, ansatz, coefficients);
+            if of_velocities * places.len() > MOST_FUNCTIONS {
+                continue;
+            }
+            let moving: Vec<Generator<'g>> = rates.moving.iter().map(|&z| (z, ansatz.degree)).collect();
+            let up_to_degree = (0..=degree).map(|d| binomial(k + d, d) * places.len() - 1).collect();
             let products = monomials(&moving, ansatz.degree).into_iter();
             let products = products.flat_map(|m| places.iter().map(move |&f| m * f));
             // The first is the constant 1.
-            let functions = products.skip(1).collect();
-            let up_to_degree = up_to.iter().map(|monomials| monomials * places.len() - 1).collect();
-            return Ok(Span { functions, up_to_degree, coefficients });
+            return Ok(Span { functions: products.skip(1).collect(), up_to_degree, coefficients });
         }
-        Err(count(&places))
+        Err(of_velocities.saturating_mul(times))
     }
 
     /// The degree in η of a combination.

@@ -437,8 +437,8 @@ pub(crate) fn rank_of_gradients<'g>(
 }
 
 /// n over d
-fn binomial(n: usize, d: usize) -> usize {
-    (1..=d).fold(1, |product, i| product * (n + 1 - i) / i)
+pub(super) fn binomial(n: usize, d: usize) -> usize {
+    (1..=d).fold(1, |product: usize, i| product.saturating_mul(n + 1 - i) / i)
 }
 
 impl ConservationVerdict<'_> {

@@ -21,6 +21,9 @@ const MOST_STEPS: usize = 50;
 /// The residual that counts as having them: what follows is exact.
 const ON_SURFACE: f64 = 1e-6;
 
+/// The most components of a state: of more each step of Newton's method takes some tenths of a second.
+const MOST_COMPONENTS: usize = 150;
+
 /// Steady motions that agree so well are one.
 const SAME: f64 = 1e-6;
 
@@ -55,6 +58,11 @@ pub enum NoSteadyMotions {
     SurfaceUnknown,
     /// The motion has no derivatives at its start.
     NoApproximation,
+    /// The state has so many components that the search would take long.
+    TooLarge {
+        /// Their number.
+        components: usize,
+    },
 }
 
 impl SteadyMotions {
@@ -75,6 +83,9 @@ impl SteadyMotions {
         integrals: &[Integral<'g>],
         positions: &[(String, Expr<'g>)],
     ) -> Result<SteadyMotions, NoSteadyMotions> {
+        if start.len() > MOST_COMPONENTS {
+            return Err(NoSteadyMotions::TooLarge { components: start.len() });
+        }
         if !is_autonomous(equations) {
             return Err(NoSteadyMotions::NotAutonomous);
         }

@@ -130,7 +130,7 @@ pub(super) fn is_autonomous(equations: &Equations<'_>) -> bool {
         .chain(equations.right_hand_side())
         .chain(system.states().iter().map(|(_, rate)| rate));
     let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
-    !all.any(|&x| moves(bind(system, x)))
+    !all.any(|&x| moves(x) && moves(bind(system, x)))
 }
 
 /// What a search has in hand at each of its starts.

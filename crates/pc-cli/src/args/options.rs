@@ -104,7 +104,7 @@ pub struct TheoryArguments {
     pub degree: u32,
     /// Functions of the place by which their coefficients may be multiplied, such as "1/r" (repeatable); polynomials of the
     /// coordinates, or of their sines and cosines, are tried without
-    #[arg(long, value_name = "EXPRESSIONS", num_args = 1.., allow_hyphen_values = true)]
+    #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
     pub functions: Vec<String>,
     /// How to print
     #[arg(long, default_value = "text")]

@@ -9,6 +9,9 @@ use crate::theory::ground::Ground;
 /// The most monomials among which Casimirs are looked for: some tenths of a second.
 const MOST_MONOMIALS: usize = 300;
 
+/// The most variables of a bracket whose rank is asked for.
+const MOST_RANKED: usize = 400;
+
 /// The most variables of which the identity of Jacobi is looked at, three by three.
 const MOST_VARIABLES: usize = 16;
 
@@ -133,7 +136,11 @@ fn casimir_entries<'g>(
     canonical: Option<&Canonical<'g>>,
     degree: u32,
 ) -> Vec<Entry> {
-    let (size, rank) = (bracket.variables().len(), bracket.rank());
+    let size = bracket.variables().len();
+    if size > MOST_RANKED {
+        return vec![Entry::words(format!("not looked for: there are {size} variables")).with(Verdict::Open)];
+    }
+    let rank = bracket.rank();
     let corank = size - rank;
     if corank == 0 {
         return vec![Entry::words(format!("none: the bracket has full rank {rank}"))];

@@ -40,6 +40,9 @@ pub(crate) fn section(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Res
             let words = "not looked for: the functions of the coordinates that the frame keeps are unknown";
             vec![Entry::words(words)]
         }
+        Err(NoSteadyMotions::TooLarge { components }) => {
+            vec![Entry::words(format!("not looked for: the state has {components} components"))]
+        }
         Err(NoSteadyMotions::NoApproximation) => {
             vec![Entry::words("not looked for: the equations have no derivatives at the start")]
         }
