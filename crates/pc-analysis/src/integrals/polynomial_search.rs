@@ -3,9 +3,10 @@
 use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number};
 
 use crate::error::AnalysisError;
+use crate::integrals::integral::{Integral, Integrals, Origin};
 use crate::integrals::polynomials::{Generator, combination, monomials};
 use crate::integrals::rates::Rates;
-use crate::integrals::search::{Integral, Integrals, Origin, Search, binomial};
+use crate::integrals::search::{Search, binomial};
 
 /// The most functions with unknown coefficients: some seconds.
 const MOST_FUNCTIONS: usize = 600;

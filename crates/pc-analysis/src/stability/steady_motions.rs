@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pc_mech::{Equations, Expr, Matrix, Motion, SingularValues};
 
-use crate::integrals::search::Integral;
+use crate::integrals::integral::Integral;
 use crate::numeric::newton;
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions};
 use crate::stability::steady_search::{Known, NearbySteadyMotion, Seeker, Surface, is_autonomous};

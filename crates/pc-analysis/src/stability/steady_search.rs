@@ -2,7 +2,8 @@
 
 use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion};
 
-use crate::integrals::search::{Integral, bind, rank_of_gradients};
+use crate::integrals::integral::{Integral, bind};
+use crate::integrals::search::rank_of_gradients;
 use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
