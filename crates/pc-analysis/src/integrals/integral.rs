@@ -32,7 +32,7 @@ pub enum Origin {
     Energy,
     /// It is the energy of all velocities, where the equations are those of independent ones.
     EnergyOfAll,
-    /// It is the momentum a_s y_s of a [`CyclicDisplacement`].
+    /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
     CyclicDisplacement {
         /// a_1..a_k
         coefficients: Vec<Number>,
