@@ -154,6 +154,31 @@ fn parameters_stand_in_integrals() {
     assert!(integrals.contains("η1² (k1 - k2)") && !integrals.contains("for these"), "{integrals}");
 }
 
+/// A body of moments A, B, C without forces: of its nine or four or three coordinates nothing depends on any.
+#[test]
+fn a_free_body_has_the_bracket_of_lie_and_poisson() {
+    let body = "[parameters]\nA = 1.0\nB = 2.0\nC = 3.0\n[coordinates]\n\"ψ\" = 0.1\n\"θ\" = 1.0\n\"φ\" = 0.2\n\
+                [quasi_velocities]\nw1.is = \"ψ'*sin(θ)*sin(φ) + θ'*cos(φ)\"\nw2.is = \"ψ'*sin(θ)*cos(φ) - θ'*sin(φ)\"\n\
+                w3 = { is = \"ψ'*cos(θ) + φ'\", start = 1.0 }\n[lagrangian]\nkinetic = \"(A*w1^2 + B*w2^2 + C*w3^2)/2\"\n";
+    let (code, text) = said_of(body, &[]);
+    assert_eq!(code, 0, "{text}");
+    let expected =
+        "  nothing depends on other variables than p_w1, p_w2, p_w3, by the bracket of Lie and Poisson
+  (p_w1, p_w2) = -p_w3
+  (p_w1, p_w3) = p_w2
+  (p_w2, p_w3) = -p_w1
+  H = ½ (p_w1²/A + p_w2²/B + p_w3²/C)
+  p_w1' = -p_w2 p_w3 (1/B - 1/C)
+  p_w2' = p_w1 p_w3 (1/A - 1/C)
+  p_w3' = -p_w1 p_w2 (1/A - 1/B)
+  C1 = p_w1² + p_w2² + p_w3²   (proved)
+  rank 2 of 3: 1 independent near almost every point";
+    assert_eq!(section(&text, "Reduction by symmetry"), expected);
+    // The three components of its momentum in space belong to rotations that commute with those of the body.
+    let displacements = section(&text, "Cyclic displacements");
+    assert_eq!(displacements.matches("commutes with all operators").count(), 3, "{displacements}");
+}
+
 /// In them definitions of the model may stand.
 #[test]
 fn functions_are_those_of_the_model() {

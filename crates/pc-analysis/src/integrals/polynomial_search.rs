@@ -105,19 +105,41 @@ impl<'g> Integrals<'g> {
         if costs.fold(0, u32::saturating_add) > LONGEST {
             return Ok(AnsatzSearch::TooLong);
         }
-        let span = match Span::new(graph, &rates, ansatz) {
-            Ok(span) => span,
-            Err(functions) => return Ok(AnsatzSearch::TooMany { functions }),
-        };
+        // Components in space of what is said in axes of a body are of the third degree in sines and cosines, those of angles
+        // among them on which the equations do not depend.
+        let cyclic =
+            rates.coordinates.iter().filter(|&&x| !rates.flow.iter().any(|(_, rate)| rate.depends_on(x)));
+        let circular = cyclic.flat_map(|x| [x.cos(), x.sin()]);
+        let functions = ansatz.functions.iter().copied().chain(circular).collect();
+        let linear = PolynomialAnsatz { degree: ansatz.degree.min(1), functions };
+        let (of_linear, of_all) = (Span::new(graph, &rates, &linear, 3), Span::new(graph, &rates, ansatz, 2));
+        if let Ok(span) = &of_linear {
+            self.add_span(&search, &rates, span)?;
+        }
+        match of_all {
+            Ok(span) => {
+                self.add_span(&search, &rates, &span)?;
+                Ok(AnsatzSearch::Made { coefficients: span.coefficients, functions: span.functions.len() })
+            }
+            Err(functions) => Ok(AnsatzSearch::TooMany { functions }),
+        }
+    }
+
+    /// Adds the integrals in a span of functions, of low degree first.
+    fn add_span(
+        &mut self,
+        search: &Search<'_, 'g>,
+        rates: &Rates<'g>,
+        span: &Span<'g>,
+    ) -> Result<(), AnalysisError> {
         let columns: Vec<Vec<Expr<'g>>> =
             rates.of_all(&span.functions)?.into_iter().map(|rate| vec![rate]).collect();
-        let relations = graph.linear_relations(&columns);
-        for degree in 0..=ansatz.degree {
+        let relations = search.graph.linear_relations(&columns);
+        for degree in 0..span.up_to_degree.len() as u32 {
             let of_degree = relations.iter().filter(|a| span.degree(a) == degree);
-            let candidates: Vec<&Vec<Number>> = of_degree.collect();
-            self.add_new(&search, &span, &candidates, degree);
+            self.add_new(search, span, &of_degree.collect::<Vec<_>>(), degree);
         }
-        Ok(AnsatzSearch::Made { coefficients: span.coefficients, functions: span.functions.len() })
+        Ok(())
     }
 
     /// Adds those of the relations, all of one degree, that are no polynomials of what is known.
@@ -168,12 +190,17 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// With coefficients of the largest degree up to 2 with which they can be tried; else their number with that of degree 0.
-    fn new(graph: &'g Graph, rates: &Rates<'g>, ansatz: &PolynomialAnsatz<'g>) -> Result<Span<'g>, usize> {
+    /// With coefficients of the largest degree up to `most` with which they can be tried; else their number with that of degree 0.
+    fn new(
+        graph: &'g Graph,
+        rates: &Rates<'g>,
+        ansatz: &PolynomialAnsatz<'g>,
+        most: u32,
+    ) -> Result<Span<'g>, usize> {
         let (n, k, degree) = (rates.coordinates.len(), rates.moving.len(), ansatz.degree as usize);
         let of_velocities = binomial(k + degree, degree);
         let times = 1 + ansatz.functions.len();
-        for coefficients in (0..=2u32).rev() {
+        for coefficients in (0..=most).rev() {
             // Of an angle there are a sine and a cosine, and of these no fewer.
             let least = binomial(n + coefficients as usize, coefficients as usize);
             if of_velocities.saturating_mul(least).saturating_mul(times) > MOST_FUNCTIONS {

@@ -198,7 +198,7 @@ pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Secti
     let bracket = PoissonBracket::new(&reduced);
     let left: Vec<String> = bracket.variables().iter().map(ToString::to_string).collect();
     let what = if after == 0 { ", by the bracket of Lie and Poisson" } else { "" };
-    let head = Entry::words(format!("nothing depends on the other variables than {}{what}", left.join(", ")));
+    let head = Entry::words(format!("nothing depends on other variables than {}{what}", left.join(", ")));
     let rates = canonical.momenta().iter().zip(canonical.right_hand_side());
     let rate = |(&y, &rate): (&Expr<'_>, &Expr<'_>)| {
         Entry::formula(Side::of(reduced.graph().symbol(&format!("{y}'"))), Side::of(rate))
