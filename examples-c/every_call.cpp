@@ -18,6 +18,7 @@ pc::model everything()
     model.body_angular_velocity("bob", {"v", "w", "0"}).body_inertia("bob", {"1", "1", "m"});
     model.body_rotation("bob", {"1", "2", "3", "4", "5", "6", "7", "8", "9"});
     model.integral("half", "v/2").output("place", "x");
+    model.action("a*x").action_constant("a", 2.0);
     model.event("hit", "x", PC_FALLING, true).event_reset("hit", "v", "-v").event("pass", "x - 2");
     model.start("x", 3.0).start("v", "m/3").start_time(1.0).end_time(2.0).samples(11).tolerances(1e-6, 1e-8);
     return model.method("bdf").form("canonical").clone();
@@ -78,6 +79,10 @@ const std::string text = R"([model]
 
 [outputs]
 "place" = "x"
+
+[hamilton_jacobi]
+"action" = "a*x"
+"constants"."a" = 2.0
 
 [events]
 "hit"."when" = "x"

@@ -1023,6 +1023,21 @@ pc_status pc_model_set_body_rotation(pc_model *model,
                                      pc_error **error);
 
 /**
+ * Sets a function S of time, coordinates and constants that is said to solve Hamilton–Jacobi's
+ * equation, which pc_system_theory looks at. No motion needs it.
+ */
+pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
+
+/**
+ * Adds a constant of the action, with a value near which the action is defined: where it is not
+ * proved to solve the equation, numbers are tried there.
+ */
+pc_status pc_model_add_action_constant(pc_model *model,
+                                       const char *name,
+                                       double value,
+                                       pc_error **error);
+
+/**
  * Says what the model is.
  */
 pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
@@ -1736,6 +1751,24 @@ pc_status pc_system_emit_c(const pc_system *system,
                            double t_end,
                            char **header,
                            char **source,
+                           pc_error **error);
+
+/**
+ * Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
+ * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
+ * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. What is claimed is
+ * said to be proved, disproved or open. Integrals are looked for that are polynomials of a
+ * `degree` from 1 to 6 in the velocities, whose coefficients are polynomials of the coordinates
+ * times 1 or one of the `functions`, expressions of the model; there may be none of these.
+ * `format` is a pc_format. Parameters have the values of the model. Everything is derived anew,
+ * which takes longer than pc_system_print. Free the text with pc_string_free.
+ */
+pc_status pc_system_theory(const pc_system *system,
+                           int format,
+                           size_t degree,
+                           const char *const *functions,
+                           size_t function_count,
+                           char **text,
                            pc_error **error);
 
 /**

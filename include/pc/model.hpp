@@ -173,6 +173,11 @@ public:
     {
         return say(pc_model_add_output, name.c_str(), expression.c_str());
     }
+    model &action(const std::string &expression) { return say(pc_model_set_action, expression.c_str()); }
+    model &action_constant(const std::string &name, double value)
+    {
+        return say(pc_model_add_action_constant, name.c_str(), value);
+    }
     model &event(const std::string &name, const std::string &when, pc_direction direction = PC_BOTH,
                  bool terminal = false)
     {

@@ -279,6 +279,15 @@ public:
     }
 
     std::string print(pc_format format = PC_TEXT) const { return detail::text(pc_system_print, get(), format); }
+    /// What can be said of the motions: integrals up to that degree in the velocities, with these functions in coefficients.
+    std::string theory(pc_format format = PC_TEXT, std::size_t degree = 2,
+                       const std::vector<std::string> &functions = {}) const
+    {
+        std::vector<const char *> texts;
+        for (const std::string &function : functions)
+            texts.push_back(function.c_str());
+        return detail::text(pc_system_theory, get(), format, degree, texts.data(), texts.size());
+    }
     /// How closely the equations agree with a second derivation, at so many random states; an error where they do not.
     std::string verify(std::size_t states = 100) const { return detail::text(pc_system_verify, get(), states); }
     /// The equations as C source, which with -DNAME_MAIN is a program that integrates to t_end, if that is finite.

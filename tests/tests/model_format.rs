@@ -124,7 +124,9 @@ fn the_page_names_every_section_key_function_and_algebra() {
         let suffix = if matches!(section, "bodies" | "events") { ".NAME" } else { "" };
         look_for(format!("### `[{section}{suffix}]`\n"));
     }
-    for place in ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a"] {
+    for place in
+        ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a", "hamilton_jacobi"]
+    {
         allowed(&format!("[{place}]\nwrong = 1\n")).iter().for_each(|key| look_for(format!("`{key}`")));
     }
     for place in ["inputs", "quasi_velocities", "states", "constraints"] {

@@ -1,5 +1,6 @@
 //! Hamilton–Jacobi's equation in quasi-velocities, and Jacobi's theorem.
 
+pub(crate) mod proposed_action;
 mod roots;
 
 use pc_expr::{Evaluator, Inputs, Program};

@@ -2,10 +2,15 @@
 //!
 //! In go equations, out come rates of functions with verdicts, and integrals that are proved. `rates` differentiates along
 //! the motion, `cyclic_displacements` finds integrals that are momenta, `ansatz` those of a given form, made of the products
-//! of `polynomials`; `search` asks all of them, and Casimirs, for what a system keeps.
+//! of `polynomials`; `integral` is what is known of a function, `search` asks all of them, and Casimirs, for what a system
+//! keeps, and `polynomial_search` for more, by an ansatz of the user's. `noether` has the field to which an integral linear in η
+//! belongs.
 
 pub(crate) mod ansatz;
 pub(crate) mod cyclic_displacements;
+pub(crate) mod integral;
+pub(crate) mod noether;
+pub(crate) mod polynomial_search;
 pub(crate) mod polynomials;
 pub(crate) mod rates;
 pub(crate) mod search;

@@ -65,7 +65,8 @@
 //! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
 //! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
 //! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
-//! [`Integrals::find`] asks all of these, and Casimirs, for what a system keeps.
+//! [`Integrals::find`] asks all of these, and Casimirs, for what a system keeps; [`Integrals::add_polynomials`] adds those of a
+//! [`PolynomialAnsatz`], with parameters in their coefficients. To one that is linear in the momenta belongs a [`NoetherField`].
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -100,7 +101,7 @@
 //! # Hamilton–Jacobi
 //!
 //! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] puts S in and
-//! proves it; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//! proves it, [`ProposedAction::check`] says what is known where it does not; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -124,7 +125,8 @@
 //! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
 //! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
 //! nothing.
-//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and asks both.
+//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and asks both;
+//! [`SteadyMotions::search`] those from many starts, and the equilibria.
 //! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
@@ -151,6 +153,10 @@
 //! # Ok::<(), pc_analysis::AnalysisError>(())
 //! ```
 //!
+//! # Reduction
+//!
+//! A [`Routhian`] is the Lagrangian of what is left when coordinates that are cyclic have gone, with their momenta as constants.
+//!
 //! # Invariant measures
 //!
 //! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N dx dy kept, as it
@@ -166,22 +172,28 @@ mod hamilton_jacobi;
 mod integrals;
 mod measures;
 mod numeric;
+mod reduction;
 mod stability;
 mod variation;
 
 pub use brackets::poisson_bracket::PoissonBracket;
 pub use error::AnalysisError;
 pub use frame_facts::{FrameConstraints, FrameFacts, QuasiVelocityKind};
+pub use hamilton_jacobi::proposed_action::{ProposedAction, Residual};
 pub use hamilton_jacobi::{CompleteIntegral, hamilton_jacobi};
 pub use integrals::ansatz::Ansatz;
 pub use integrals::cyclic_displacements::CyclicDisplacement;
+pub use integrals::integral::{ConservationVerdict, Integral, Integrals, Origin};
+pub use integrals::noether::NoetherField;
+pub use integrals::polynomial_search::{AnsatzSearch, PolynomialAnsatz};
 pub use integrals::rates::{Conservation, Rates};
-pub use integrals::search::{ConservationVerdict, Integral, Integrals, Origin};
 pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
 pub use measures::phase_measure::{MeasureSearch, PhaseMeasure};
 pub use measures::reducing_multiplier::ReducingMultiplier;
+pub use reduction::routhian::Routhian;
 pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
+pub use stability::steady_motions::{FoundSteadyMotion, NoSteadyMotions, SteadyMotions};
 pub use stability::steady_search::{EnergyCriterion, NearbySteadyMotion, Stability, SteadySearch};
 pub use variation::Variation;

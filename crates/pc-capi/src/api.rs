@@ -1,10 +1,11 @@
 //! The functions of pc.h, a file for each group of them.
 //!
 //! In go numbers and pointers, which `ffi` checks, out come those of the crates below; what is remembered between two calls
-//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
-//! `kernel`, `legendre`, `bracket`, `source`, `verify`. Motions: `options`, `cancel`, `solver`, `observe`, `events`, `occurrences`,
+//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`, `solver`, `observe`, `events`, `occurrences`,
 //! `force`, `dense`, `checkpoint`, `statistics`, `ensemble`. The library: `version`.
 
+pub(crate) mod action;
 pub(crate) mod bodies;
 pub(crate) mod bracket;
 pub(crate) mod builder;
@@ -29,6 +30,7 @@ pub(crate) mod solver;
 pub(crate) mod source;
 pub(crate) mod statistics;
 pub(crate) mod system;
+pub(crate) mod theory;
 pub(crate) mod velocities;
 pub(crate) mod verify;
 pub(crate) mod version;

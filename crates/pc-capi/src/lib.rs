@@ -16,6 +16,7 @@ mod api;
 mod ffi;
 mod machinery;
 
+pub use api::action::*;
 pub use api::bodies::*;
 pub use api::bracket::*;
 pub use api::builder::*;
@@ -40,6 +41,7 @@ pub use api::solver::*;
 pub use api::source::*;
 pub use api::statistics::*;
 pub use api::system::*;
+pub use api::theory::*;
 pub use api::velocities::*;
 pub use api::verify::*;
 pub use api::version::*;

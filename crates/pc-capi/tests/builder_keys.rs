@@ -109,6 +109,8 @@ fn everything() -> Model {
     say!(model, pc_model_add_force, "v", "1").unwrap();
     say!(model, pc_model_add_integral, "half", "v/2").unwrap();
     say!(model, pc_model_add_output, "place", "x").unwrap();
+    say!(model, pc_model_set_action, "a*x").unwrap();
+    say!(model, pc_model_add_action_constant, "a"; 2.0).unwrap();
     let (name, when) = (c("hit"), c("x"));
     call(|error| unsafe {
         // SAFETY: a live model and texts.
@@ -134,7 +136,7 @@ fn written(text: &str, header: &str, table: Option<&str>) -> BTreeSet<String> {
     let keys = lines.map(|line| line.split_once(" = ").unwrap().0);
     let unquoted = |key: &str| key.trim_matches('"').to_owned();
     keys.filter_map(|key| match table {
-        None => Some(unquoted(key)),
+        None => Some(unquoted(key.split("\".").next().unwrap())),
         Some(table) => {
             let inner = key.strip_prefix(&format!("\"{table}\"."))?;
             Some(unquoted(inner.split('.').next().unwrap()))
@@ -157,6 +159,7 @@ fn there_is_a_call_for_every_key_of_the_text() {
         ("[quasi_velocities]\nv.", "quasi_velocities", Some("v")),
         ("[constraints]\nc.", "constraints", Some("rail")),
         ("[lagrangian]\n", "lagrangian", None),
+        ("[hamilton_jacobi]\n", "hamilton_jacobi", None),
         ("[bodies.b]\n", "bodies", Some("bob")),
         ("[events.e]\n", "events", Some("hit")),
     ] {
@@ -331,6 +334,9 @@ fn nulls_and_models_of_texts_are_refused() {
         pc_model_set_constraint_kind(draft, x, null) with "kind is a null pointer";
         pc_model_add_event(draft, x, null, 0, 0) with "when is a null pointer";
         pc_model_add_event_reset(draft, x, x, null) with "expression is a null pointer";
+        pc_model_set_action(draft, null) with "expression is a null pointer";
+        pc_model_add_action_constant(draft, null, 1.0) with "name is a null pointer";
+        pc_model_add_action_constant(draft, x, f64::NAN) with "value is NaN, but must be finite";
         pc_model_set_method(draft, null) with "method is a null pointer";
         pc_model_set_form(draft, null) with "form is a null pointer";
         pc_model_set_start_time(draft, f64::NAN) with "t_start is NaN, but must be finite";

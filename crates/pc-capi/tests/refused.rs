@@ -24,6 +24,7 @@ fn nulls_are_refused_everywhere() {
     let (no_model, no_system, no_solver): (*mut pc_model, *mut pc_system, *mut pc_solver) =
         (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
     let (none, no_numbers): (*const f64, *mut f64) = (ptr::null(), ptr::null_mut());
+    let no_texts: *const *const c_char = ptr::null();
     let name = name.as_ptr();
     let real = Model::named("euler-top");
     let of = System::of("euler-top");
@@ -94,6 +95,9 @@ fn nulls_are_refused_everywhere() {
         pc_system_print(of.0, 0, ptr::null_mut());
         pc_system_emit_c(of.0, name, 1.0, ptr::null_mut(), text_place);
         pc_system_emit_c(of.0, name, 1.0, text_place, ptr::null_mut());
+        pc_system_theory(no_system, 0, 2, no_texts, 0, text_place);
+        pc_system_theory(of.0, 0, 2, no_texts, 1, text_place);
+        pc_system_theory(of.0, 0, 2, no_texts, 0, ptr::null_mut());
         pc_kernel_new(no_system, kernel_place);
         pc_kernel_new(of.0, ptr::null_mut());
         pc_kernel_set_parameters(ptr::null_mut(), none, 0);

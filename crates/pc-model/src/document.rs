@@ -21,8 +21,8 @@ pub(crate) mod text_map;
 
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
-    Gravity, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity, Simulation,
-    State, TableFile,
+    Gravity, HamiltonJacobi, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation,
+    QuasiVelocity, Simulation, State, TableFile,
 };
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;

@@ -32,6 +32,7 @@ mod flow;
 mod model;
 mod names;
 
+pub use assembly::action::Action;
 pub use assembly::assembly::Assembly;
 pub use assembly::constraint_treatment::{
     ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,

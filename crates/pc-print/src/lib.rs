@@ -2,12 +2,13 @@
 //!
 //! A [`page`] is what `pc derive` and `pc_system_print` of the C interface show. Its parts are there too: what is
 //! [derived](Derived) in each [`Form`], the [`Sheet`] of expressions that is printed of it, and the [cost](Operations) of a
-//! right-hand side.
+//! right-hand side. The [`theory`](theory()) is what `pc theory` and `pc_system_theory` show.
 //!
 //! In goes an [`Assembly`](pc_model::Assembly), out comes text. Read `form` and `derived` first, the equations with what belongs
 //! to them; then `sheet`, what is printed of them, and `operations`, what they cost; `part` and `layout`, headings and lines,
 //! with `lines` and `constraints`, words and columns, and `visible`, by which text of others is no more than text; then `text`,
 //! `latex` and `json`, the three ways to print, and `page`, which chooses.
+//! `theory` has what can be said of motions, `words` numbers and lists for it.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -34,7 +35,9 @@ mod page;
 mod part;
 mod sheet;
 mod text;
+mod theory;
 mod visible;
+mod words;
 
 pub use constraints::kind_in_words;
 pub use derived::{Derived, energy_remark};
@@ -44,4 +47,10 @@ pub use lines::{columns, combination};
 pub use operations::{Operations, counted};
 pub use page::{Page, page};
 pub use sheet::{Balance, Bracket, Brackets, Sheet, recognised};
+pub use theory::integrals::integrals_of;
+pub use theory::measure::reducing_multiplier;
+pub use theory::options::TheoryOptions;
+pub use theory::page::theory;
+pub use theory::steady::{eigenvalues_in_words, stability_in_words};
 pub use visible::{one_line, visible, visible_json};
+pub use words::{short, small, wrapped};

@@ -30,12 +30,27 @@ pub(crate) fn combined(terms: impl IntoIterator<Item = (String, String)>) -> Vec
 }
 
 fn is_sum(text: &str) -> bool {
-    text.contains(" + ") || text.contains(" - ")
+    let outside = outside_of_brackets(text);
+    outside.contains(" + ") || outside.contains(" - ")
+}
+
+/// The text without what stands in brackets.
+fn outside_of_brackets(text: &str) -> String {
+    let mut depth = 0usize;
+    let is_outside = |c: &char| {
+        match c {
+            '(' | '{' => depth += 1,
+            ')' | '}' => depth = depth.saturating_sub(1),
+            _ => return depth == 0,
+        }
+        false
+    };
+    text.chars().filter(is_outside).collect()
 }
 
 /// Whether it is a quotient of more than numbers.
 fn is_quotient(text: &str) -> bool {
-    text.contains('/') && text.chars().any(char::is_alphabetic)
+    outside_of_brackets(text).contains('/') && text.chars().any(char::is_alphabetic)
 }
 
 /// Number of characters, each one column wide.
@@ -54,6 +69,7 @@ mod tests {
         assert_eq!(sum(&[("0", "X1"), ("0", "X2")]), "0");
         assert_eq!(sum(&[("-1", "X1"), ("2/3", "X2"), ("-a", "X3")]), "-X1 + 2/3 X2 - a X3");
         assert_eq!(sum(&[("1", "X1"), ("a - b", "X2")]), "X1 + (a - b) X2");
+        assert_eq!(sum(&[("1", "X1"), ("-2 (a/c - b)", "X2")]), "X1 - 2 (a/c - b) X2");
         let quotient = [("-cos(θ)/sin(θ)", "X1"), ("a/b", "X2")].map(|(c, x)| (c.to_owned(), x.to_owned()));
         assert_eq!(combination(quotient), "-(cos(θ)/sin(θ)) X1 + (a/b) X2");
     }

@@ -4,6 +4,7 @@ use pc_mech::Expr;
 
 use crate::brackets::poisson_bracket::PoissonBracket;
 use crate::error::AnalysisError;
+use crate::integrals::ansatz::Ansatz;
 use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
 impl<'g> PoissonBracket<'g> {
@@ -26,6 +27,24 @@ impl<'g> PoissonBracket<'g> {
     pub fn casimirs_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         self.check(functions)?;
         Ok(self.combinations(functions))
+    }
+
+    /// Functionally independent Casimirs of the form of an ansatz, Σ a_jl m_j f_l with monomials m_j in those of the variables
+    /// that are `moving` and rational a_jl, and independent of those that the ansatz knows.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAVariable`] for an ansatz with functions of something else than variables and constants.
+    pub fn casimirs_by(
+        &self,
+        ansatz: &Ansatz<'g>,
+        moving: &[Expr<'g>],
+    ) -> Result<Vec<Expr<'g>>, AnalysisError> {
+        let generators: Vec<Generator<'g>> = moving.iter().map(|&y| (y, ansatz.degree)).collect();
+        let products = monomials(&generators, ansatz.degree).into_iter();
+        let functions: Vec<Expr<'g>> =
+            products.flat_map(|m| ansatz.functions.iter().map(move |&f| m * f)).collect();
+        let found = self.casimirs_among(&functions)?;
+        Ok(independent(self.graph(), self.variables(), &ansatz.known, found))
     }
 
     fn combinations(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {

@@ -1,5 +1,7 @@
 //! The Poisson bracket of coordinates and momenta (12).
 
+use std::collections::BTreeMap;
+
 use pc_algebra::quadratic;
 use pc_mech::{
     Expr, Frame, Graph, LieAlgebra, Matrix, MatrixError, MechError, Neighbourhood, StructureCoefficients,
@@ -62,7 +64,11 @@ fn extended_tensor<'g>(
 ) -> Matrix<Expr<'g>> {
     let (n, k) = (frame.coordinates().len(), y.len());
     let (coordinate, momentum) = (|i: usize| 1 + i, |s: usize| 1 + n + s);
-    let contraction = |r, s| -> Expr<'g> { (1..=k).map(|m| structure.get(r, s, m) * y[m - 1]).sum() };
+    // Of thousands of momenta most pairs have no bracket.
+    let mut contractions: BTreeMap<(usize, usize), Vec<Expr<'g>>> = BTreeMap::new();
+    for (r, s, m, c) in structure.nonzero().filter(|&(r, s, m, _)| r.max(s).max(m) <= k) {
+        contractions.entry((r, s)).or_default().push(c * y[m - 1]);
+    }
     let size = n + k + 2;
     let mut tensor = Matrix::from_fn(size, size, |_, _| Expr::ZERO);
     let mut set = |i: usize, j: usize, value: Expr<'g>| {
@@ -76,10 +82,8 @@ fn extended_tensor<'g>(
             set(coordinate(i), momentum(s), frame.b()[(i, s - 1)]);
         }
     }
-    for r in 0..=k {
-        for s in r + 1..=k {
-            set(momentum(s), momentum(r), contraction(r, s));
-        }
+    for ((r, s), terms) in contractions {
+        set(momentum(s), momentum(r), frame.graph().sum(terms));
     }
     tensor
 }

@@ -153,6 +153,24 @@ impl<'g> Rates<'g> {
         })
     }
 
+    /// The part |df/dt|/Σ|∂f/∂z_i ż_i| of its terms that is left of the rate at a point, from 0 to 1: rounding where f is an
+    /// integral. None where all of them vanish, or are not numbers.
+    ///
+    /// # Errors
+    /// As for [`of`](Rates::of).
+    pub fn part_left(&self, f: Expr<'g>, at: &[(Expr<'g>, f64)]) -> Result<Option<f64>, AnalysisError> {
+        self.check(&[f])?;
+        let f = self.graph.substitute(&[f], &self.accelerations)[0];
+        let symbols: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();
+        let slopes = self.graph.gradient(f, &symbols);
+        let terms = slopes.iter().zip(&self.flow).map(|(&slope, &(_, rate))| slope * rate);
+        let terms = self.graph.substitute(&terms.collect::<Vec<_>>(), &self.momenta);
+        let values = self.graph.evaluate(&terms, at)?;
+        let size: f64 = values.iter().map(|term| term.abs()).sum();
+        let left = values.iter().sum::<f64>().abs() / size;
+        Ok(Some(left).filter(|left| left.is_finite()))
+    }
+
     /// Whether f is written with a sign, a step or an angle of what changes, and so may jump.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];

@@ -1,76 +1,15 @@
-//! What the motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
+//! What a motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
 
-use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number, System};
+use pc_mech::{Equations, Expr, Graph, Neighbourhood, System};
 
 use crate::brackets::poisson_bracket::PoissonBracket;
 use crate::integrals::cyclic_displacements::CyclicDisplacement;
+use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origin, bind};
+use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
 /// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
 const MOST_FUNCTIONS: usize = 150;
-
-/// A function that may keep its value.
-#[derive(Clone, Debug)]
-pub struct Integral<'g> {
-    /// What it is called: as declared, `energy`, `momentum 1`, `Casimir 1`, `found 1`.
-    pub name: String,
-    /// The function of (t, x, η).
-    pub value: Expr<'g>,
-    /// Where it comes from.
-    pub origin: Origin,
-    /// What is known of its rate.
-    pub verdict: ConservationVerdict<'g>,
-    /// Whether an event may change it.
-    pub jumps: bool,
-}
-
-/// Where an integral comes from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Origin {
-    /// It is declared with the system.
-    Declared,
-    /// It is declared, and a function of Casimirs.
-    DeclaredCasimir,
-    /// It is the energy of the velocities in the equations.
-    Energy,
-    /// It is the energy of all velocities, where the equations are those of independent ones.
-    EnergyOfAll,
-    /// It is the momentum a_s y_s of a [`CyclicDisplacement`].
-    CyclicDisplacement {
-        /// a_1..a_k
-        coefficients: Vec<Number>,
-    },
-    /// It is a Casimir of the bracket (12).
-    Casimir,
-    /// An ansatz found it.
-    Found,
-}
-
-/// What is known of the rate of change of a function along the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ConservationVerdict<'g> {
-    /// It vanishes identically.
-    Conserved,
-    /// It vanishes identically for these values of the parameters.
-    ConservedHere,
-    /// It vanishes identically, if only for these values, where the function does not jump.
-    BetweenJumps,
-    /// It is not known: the function is none of time and state alone, as one with reactions.
-    NoFunction,
-    /// It is not seen to vanish.
-    Rate {
-        /// The rate in terms of (t, x, η).
-        rate: Expr<'g>,
-        /// Its value at the start, if it has one.
-        at_start: Option<f64>,
-    },
-}
-
-/// What the motion keeps, or may keep.
-#[derive(Clone, Debug)]
-pub struct Integrals<'g> {
-    list: Vec<Integral<'g>>,
-}
 
 impl<'g> Integrals<'g> {
     /// The declared integrals, the energy, and what else is found, each with a verdict: momenta of cyclic displacements,
@@ -92,65 +31,19 @@ impl<'g> Integrals<'g> {
     /// # Ok::<(), pc_mech::MechError>(())
     /// ```
     pub fn find(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
+        let mut integrals = Integrals::known(equations, near);
+        Search::new(equations, near).add_found(&mut integrals.list);
+        integrals
+    }
+
+    /// The same without an ansatz.
+    pub fn known(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
         let search = Search::new(equations, near);
         let mut list = search.declared();
         list.push(search.energy());
         list.extend(search.cyclic_momenta());
         search.add_casimirs(&mut list);
-        search.add_found(&mut list);
         Integrals { list }
-    }
-
-    /// All of them, the declared ones first.
-    pub fn list(&self) -> &[Integral<'g>] {
-        &self.list
-    }
-
-    /// Gives each the name that `name` has for it, if it has one.
-    pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
-        for integral in &mut self.list {
-            if let Some(name) = name(integral) {
-                integral.name = name;
-            }
-        }
-    }
-
-    /// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
-    pub fn keep_energy(&mut self, equations: &Equations<'g>) {
-        let open = |integral: &&mut Integral<'g>| {
-            integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
-        };
-        for integral in self.list.iter_mut().filter(open) {
-            let jumps = Rates::poincare(equations).has_jumps(integral.value);
-            integral.verdict =
-                if jumps { ConservationVerdict::BetweenJumps } else { ConservationVerdict::Conserved };
-        }
-    }
-
-    /// Says of what keeps its value between events that resets may change it: those that do not leave it as it is whatever
-    /// the state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
-    /// with its new value.
-    pub fn jump<'r>(
-        &mut self,
-        system: &System<'g>,
-        resets: impl Iterator<Item = &'r [(usize, Expr<'g>)]>,
-        projected: bool,
-    ) where
-        'g: 'r,
-    {
-        let state = system.state();
-        for reset in resets.filter(|reset| !reset.is_empty()) {
-            let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
-            for integral in &mut self.list {
-                let after = system.graph().substitute(&[integral.value], &new)[0];
-                let jump = after - integral.value;
-                if projected || !bind(system, jump).is_zero() {
-                    integral.jumps = true;
-                } else if integral.verdict == ConservationVerdict::Conserved && !jump.is_zero() {
-                    integral.verdict = ConservationVerdict::ConservedHere;
-                }
-            }
-        }
     }
 
     /// Adds the energy of all velocities, that of a run; y·η − L of the independent ones is called Jacobi's then.
@@ -165,17 +58,24 @@ impl<'g> Integrals<'g> {
         }
         let verdict = Search::new(equations, near).verdict(value);
         let origin = Origin::EnergyOfAll;
-        self.list.push(Integral { name: "energy".to_owned(), value, origin, verdict, jumps: false });
+        self.list.push(Integral {
+            name: "energy".to_owned(),
+            value,
+            origin,
+            verdict,
+            jumps: false,
+            dependent: false,
+        });
     }
 }
 
 /// Where integrals are looked for.
-struct Search<'a, 'g> {
-    graph: &'g Graph,
+pub(super) struct Search<'a, 'g> {
+    pub(super) graph: &'g Graph,
     equations: &'a Equations<'g>,
     /// With the parameters as numbers.
     bound: System<'g>,
-    rates: Rates<'g>,
+    pub(super) rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
@@ -184,7 +84,7 @@ struct Search<'a, 'g> {
 }
 
 impl<'a, 'g> Search<'a, 'g> {
-    fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
+    pub(super) fn new(equations: &'a Equations<'g>, near: &'a Neighbourhood<'g>) -> Search<'a, 'g> {
         let system = equations.system();
         let (frame, k) = (system.frame(), system.quasi_velocities().len());
         Search {
@@ -198,7 +98,7 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    fn system(&self) -> &'a System<'g> {
+    pub(super) fn system(&self) -> &'a System<'g> {
         self.equations.system()
     }
 
@@ -218,7 +118,7 @@ impl<'a, 'g> Search<'a, 'g> {
         ConservationVerdict::Rate { rate, at_start }
     }
 
-    fn bind(&self, function: Expr<'g>) -> Expr<'g> {
+    pub(super) fn bind(&self, function: Expr<'g>) -> Expr<'g> {
         bind(self.system(), function)
     }
 
@@ -230,6 +130,7 @@ impl<'a, 'g> Search<'a, 'g> {
             origin: Origin::Declared,
             verdict: self.verdict(value),
             jumps: false,
+            dependent: false,
         };
         integrals.map(with_verdict).collect()
     }
@@ -253,7 +154,14 @@ impl<'a, 'g> Search<'a, 'g> {
             }
             verdict => verdict,
         };
-        Integral { name: "energy".to_owned(), value, origin: Origin::Energy, verdict, jumps: false }
+        Integral {
+            name: "energy".to_owned(),
+            value,
+            origin: Origin::Energy,
+            verdict,
+            jumps: false,
+            dependent: false,
+        }
     }
 
     /// The momenta of cyclic displacements that are not declared, for the values of the parameters.
@@ -267,20 +175,23 @@ impl<'a, 'g> Search<'a, 'g> {
         };
         let new =
             CyclicDisplacement::all(&self.bound).into_iter().filter(|cyclic| !is_declared(cyclic.momentum));
-        (1..)
-            .zip(new)
-            .map(|(number, cyclic)| Integral {
+        let momenta = self.system().momenta();
+        let with_parameters = |(number, cyclic): (usize, CyclicDisplacement<'g>)| {
+            let value = combination(self.graph, &cyclic.coefficients, &momenta);
+            Integral {
                 name: format!("momentum {number}"),
-                value: cyclic.momentum,
-                verdict: self.proved(cyclic.momentum),
+                value,
+                verdict: self.proved(value),
                 origin: Origin::CyclicDisplacement { coefficients: cyclic.coefficients },
                 jumps: false,
-            })
-            .collect()
+                dependent: false,
+            }
+        };
+        (1..).zip(new).map(with_parameters).collect()
     }
 
     /// The verdict on what is proved to be conserved at least for these parameters.
-    fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
+    pub(super) fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
             known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
             _ if self.rates.has_jumps(function) => ConservationVerdict::BetweenJumps,
@@ -335,7 +246,14 @@ impl<'a, 'g> Search<'a, 'g> {
             if self.is_new(&known, bound) {
                 number += 1;
                 let name = format!("Casimir {number}");
-                list.push(Integral { name, value, origin: Origin::Casimir, verdict, jumps: false });
+                list.push(Integral {
+                    name,
+                    value,
+                    origin: Origin::Casimir,
+                    verdict,
+                    jumps: false,
+                    dependent: false,
+                });
                 known.push(bound);
             }
         }
@@ -356,12 +274,19 @@ impl<'a, 'g> Search<'a, 'g> {
             let verdict = self.proved(value);
             let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
             let name = format!("found {number}");
-            list.push(Integral { name, value, origin: Origin::Found, verdict, jumps: false });
+            list.push(Integral {
+                name,
+                value,
+                origin: Origin::Found,
+                verdict,
+                jumps: false,
+                dependent: false,
+            });
         }
     }
 
     /// Whether f is no function of the known ones.
-    fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
+    pub(super) fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
         self.rank(&[known, &[f]].concat()) > self.rank(known)
     }
 
@@ -369,11 +294,6 @@ impl<'a, 'g> Search<'a, 'g> {
     fn rank(&self, functions: &[Expr<'g>]) -> usize {
         rank_of_gradients(self.graph, functions, &self.variables)
     }
-}
-
-/// The function with the parameters of a system replaced by their numbers.
-pub(crate) fn bind<'g>(system: &System<'g>, function: Expr<'g>) -> Expr<'g> {
-    system.graph().substitute(&[function], &system.numbers())[0]
 }
 
 /// Rank of ∂f/∂z at almost all points: how many of the functions are independent.
@@ -387,30 +307,6 @@ pub(crate) fn rank_of_gradients<'g>(
 }
 
 /// n over d
-fn binomial(n: usize, d: usize) -> usize {
-    (1..=d).fold(1, |product, i| product * (n + 1 - i) / i)
-}
-
-impl ConservationVerdict<'_> {
-    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
-    pub fn is_conserved(self) -> bool {
-        matches!(self, ConservationVerdict::Conserved | ConservationVerdict::ConservedHere)
-    }
-}
-
-impl Integral<'_> {
-    /// Whether it is proved to keep its value, if only for these parameters.
-    pub fn is_conserved(&self) -> bool {
-        self.verdict.is_conserved()
-    }
-
-    /// Whether it is the energy of the velocities in the equations.
-    pub fn is_energy(&self) -> bool {
-        self.origin == Origin::Energy
-    }
-
-    /// Whether it is a Casimir, declared or not.
-    pub fn is_casimir(&self) -> bool {
-        matches!(self.origin, Origin::Casimir | Origin::DeclaredCasimir)
-    }
+pub(super) fn binomial(n: usize, d: usize) -> usize {
+    (1..=d).fold(1, |product: usize, i| product.saturating_mul(n + 1 - i) / i)
 }

@@ -2,7 +2,8 @@
 
 use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion};
 
-use crate::integrals::search::{Integral, bind, rank_of_gradients};
+use crate::integrals::integral::{Integral, bind};
+use crate::integrals::search::rank_of_gradients;
 use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
@@ -104,62 +105,139 @@ impl SteadySearch {
         integrals: &[Integral<'g>],
         positions: &[(String, Expr<'g>)],
     ) -> SteadySearch {
-        let system = equations.system();
-        let (frame, time) = (system.frame(), system.frame().time());
-        let mut all = equations
-            .velocities()
-            .iter()
-            .chain(equations.mass_matrix().entries())
-            .chain(equations.right_hand_side())
-            .chain(system.states().iter().map(|(_, rate)| rate));
-        let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
-        if all.any(|&x| moves(bind(system, x))) {
+        if !is_autonomous(equations) {
             return SteadySearch::NotAutonomous;
         }
         if start.len() > MOST_COMPONENTS {
             return SteadySearch::TooLarge { components: start.len() };
         }
-        let Ok(slopes) = first_approximation(motion, t_start, start) else { return SteadySearch::None };
-        let steepest = MOST_STEEPER * largest(&slopes);
         let known = Known::of(equations, integrals);
-        let bound = equations.with_parameters_bound();
-        let all = known.integrals.clone();
-        for mut same in known.choices() {
-            for (name, position) in positions {
-                let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
-                let more = [functions.as_slice(), &[bind(system, *position)]].concat();
-                if rank_of_gradients(system.graph(), &more, frame.coordinates())
-                    > rank_of_gradients(system.graph(), &functions, frame.coordinates())
-                {
-                    same.push((name.clone(), bind(system, *position)));
-                }
-            }
+        let Some(seeker) = Seeker::new(equations, motion, t_start, start, &known) else {
+            return SteadySearch::None;
+        };
+        for same in known.choices() {
+            let same = seeker.with_positions(same, positions);
             let Some(surface) = Surface::new(equations, &same, start) else {
                 return SteadySearch::SurfaceUnknown;
             };
-            let options = SteadyOptions::default().iterations(MOST_STEPS);
-            let found = SteadyMotion::on_surface(motion, t_start, start, &options, |y| Ok(surface.at(y)?));
-            let Some(found) = found.ok().filter(|found| largest(&found.first_approximation) <= steepest)
-            else {
-                continue;
-            };
-            let state = system.state();
-            let names = state.iter().map(Expr::to_string);
-            let second =
-                SecondVariation::under(&bound, &all, &found.state).ok().map(|second| EnergyCriterion {
-                    verdict: second.verdict,
-                    variables: Some(second.variables).filter(|variables| *variables != found.components),
-                });
-            let same = same.into_iter().map(|(name, _)| name).collect();
-            let rates = constant_rates(equations, &found);
-            let neutral = neutral_directions(equations, &found, &all);
-            if let Some(steady) =
-                NearbySteadyMotion::new(&found, names, start, (rates, neutral), same, second)
-            {
+            let options = SteadyOptions::default();
+            let Some(found) = seeker.steady_motion(motion, start, &options, &surface) else { continue };
+            let steady = seeker.described(&found, start, same.into_iter().map(|(name, _)| name).collect());
+            // One that is farther from the start than the start is large is none near it.
+            if steady.distance <= 1.0 + seeker.size(&found, start) {
                 return SteadySearch::Found(Box::new(steady));
             }
         }
         SteadySearch::None
+    }
+}
+
+/// Whether nothing in the equations depends on time or on inputs.
+pub(super) fn is_autonomous(equations: &Equations<'_>) -> bool {
+    let (system, time) = (equations.system(), equations.system().frame().time());
+    let mut all = equations
+        .velocities()
+        .iter()
+        .chain(equations.mass_matrix().entries())
+        .chain(equations.right_hand_side())
+        .chain(system.states().iter().map(|(_, rate)| rate));
+    let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
+    !all.any(|&x| moves(x) && moves(bind(system, x)))
+}
+
+/// What a search has in hand at each of its starts.
+pub(super) struct Seeker<'a, 'g> {
+    equations: &'a Equations<'g>,
+    bound: Equations<'g>,
+    integrals: Vec<(String, Expr<'g>)>,
+    t: f64,
+    /// Coordinates are singular where rates are steeper.
+    steepest: f64,
+}
+
+impl<'a, 'g> Seeker<'a, 'g> {
+    /// None where the motion has no derivatives at the start.
+    pub(super) fn new(
+        equations: &'a Equations<'g>,
+        motion: &mut Motion,
+        t: f64,
+        start: &[f64],
+        known: &Known<'g>,
+    ) -> Option<Seeker<'a, 'g>> {
+        let slopes = first_approximation(motion, t, start).ok()?;
+        let (bound, integrals) = (equations.with_parameters_bound(), known.integrals.clone());
+        Some(Seeker { equations, bound, integrals, t, steepest: MOST_STEEPER * largest(&slopes) })
+    }
+
+    /// The functions with those of the positions that say something new of coordinates.
+    pub(super) fn with_positions(
+        &self,
+        mut same: Vec<(String, Expr<'g>)>,
+        positions: &[(String, Expr<'g>)],
+    ) -> Vec<(String, Expr<'g>)> {
+        let system = self.equations.system();
+        let x = system.frame().coordinates();
+        for (name, position) in positions {
+            let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
+            let more = [functions.as_slice(), &[bind(system, *position)]].concat();
+            if rank_of_gradients(system.graph(), &more, x) > rank_of_gradients(system.graph(), &functions, x)
+            {
+                same.push((name.clone(), bind(system, *position)));
+            }
+        }
+        same
+    }
+
+    /// That near a guess, if there is one where coordinates are regular.
+    pub(super) fn steady_motion(
+        &self,
+        motion: &mut Motion,
+        guess: &[f64],
+        options: &SteadyOptions,
+        surface: &Surface<'g>,
+    ) -> Option<SteadyMotion> {
+        let options = options.clone().iterations(MOST_STEPS);
+        let found = SteadyMotion::on_surface(motion, self.t, guess, &options, |y| Ok(surface.at(y)?)).ok()?;
+        (largest(&found.first_approximation) <= self.steepest).then_some(found)
+    }
+
+    /// The motion in names and numbers, with what is known of its stability.
+    pub(super) fn described(
+        &self,
+        found: &SteadyMotion,
+        start: &[f64],
+        same: Vec<String>,
+    ) -> NearbySteadyMotion {
+        let second = SecondVariation::under(&self.bound, &self.integrals, &found.state).ok();
+        let second_variation = second.map(|second| EnergyCriterion {
+            verdict: second.verdict,
+            variables: Some(second.variables).filter(|variables| *variables != found.components),
+        });
+        let kept = self.kept(found, start);
+        let distance = kept.iter().map(|(_, y, start)| (y - start).powi(2)).sum::<f64>().sqrt();
+        NearbySteadyMotion {
+            state: kept.into_iter().map(|(name, y, _)| (name, y)).collect(),
+            rates: constant_rates(self.equations, found),
+            distance,
+            same,
+            eigenvalues: found.spectrum.eigenvalues().to_vec(),
+            tolerance: found.spectrum.tolerance(),
+            first_approximation: found.verdict(),
+            neutral: neutral_directions(self.equations, found, &self.integrals),
+            second_variation,
+        }
+    }
+
+    /// The size of the start in the components that are not cyclic.
+    fn size(&self, found: &SteadyMotion, start: &[f64]) -> f64 {
+        self.kept(found, start).iter().map(|(_, _, start)| start * start).sum::<f64>().sqrt()
+    }
+
+    /// The names of the components that are not cyclic, with their values in the motion and at the start.
+    fn kept(&self, found: &SteadyMotion, start: &[f64]) -> Vec<(String, f64, f64)> {
+        let names = self.equations.system().state().into_iter().map(|y| y.to_string());
+        let all = names.zip(found.state.iter().zip(start)).map(|(name, (&y, &start))| (name, y, start));
+        all.filter(|(name, ..)| found.components.contains(name)).collect()
     }
 }
 
@@ -230,7 +308,7 @@ fn largest(matrix: &Matrix<f64>) -> f64 {
 }
 
 /// The integrals that do not contain the time, independent of the energy and of each other; parameters are numbers.
-struct Known<'g> {
+pub(super) struct Known<'g> {
     integrals: Vec<(String, Expr<'g>)>,
     /// Those of them that are Casimirs.
     casimirs: Vec<(String, Expr<'g>)>,
@@ -239,7 +317,7 @@ struct Known<'g> {
 }
 
 impl<'g> Known<'g> {
-    fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
+    pub(super) fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
         let system = equations.system();
         let (graph, eta) = (system.graph(), system.quasi_velocities());
         let variables = system.state();
@@ -268,7 +346,7 @@ impl<'g> Known<'g> {
 
     /// What a steady motion may have in common with the start, most first: a motion is compared with the steady
     /// ones of the same integrals, if there are any (E. J. Routh).
-    fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
+    pub(super) fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
         let mut choices = vec![self.integrals, self.casimirs, self.of_coordinates];
         choices.dedup_by_key(|choice| choice.len());
         choices
@@ -276,7 +354,7 @@ impl<'g> Known<'g> {
 }
 
 /// The states in which given functions have their values of the start.
-struct Surface<'g> {
+pub(super) struct Surface<'g> {
     graph: &'g Graph,
     symbols: Vec<Expr<'g>>,
     /// g_1, g_2, …, then ∂g_1/∂y_1, ∂g_1/∂y_2, …
@@ -286,7 +364,11 @@ struct Surface<'g> {
 
 impl<'g> Surface<'g> {
     /// If n − rank b of them are functions of the coordinates, as many as the frame keeps.
-    fn new(equations: &Equations<'g>, same: &[(String, Expr<'g>)], start: &[f64]) -> Option<Surface<'g>> {
+    pub(super) fn new(
+        equations: &Equations<'g>,
+        same: &[(String, Expr<'g>)],
+        start: &[f64],
+    ) -> Option<Surface<'g>> {
         let system = equations.system();
         let (graph, x, eta) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
         let symbols = system.state();
@@ -306,7 +388,7 @@ impl<'g> Surface<'g> {
     }
 
     /// g(y) − g(start) and ∂g/∂y
-    fn at(&self, y: &[f64]) -> Result<(Vec<f64>, Matrix<f64>), ExprError> {
+    pub(super) fn at(&self, y: &[f64]) -> Result<(Vec<f64>, Matrix<f64>), ExprError> {
         // Newton's method asks here at each step whether it may go on.
         self.graph.check_budget()?;
         let state: Vec<_> = self.symbols.iter().copied().zip(y.iter().copied()).collect();
@@ -318,33 +400,6 @@ impl<'g> Surface<'g> {
 }
 
 impl NearbySteadyMotion {
-    /// The motion in names and numbers, unless it is farther from the start than the start is large.
-    fn new(
-        found: &SteadyMotion,
-        names: impl Iterator<Item = String>,
-        start: &[f64],
-        (rates, neutral): (Vec<(String, f64)>, Option<usize>),
-        same: Vec<String>,
-        second_variation: Option<EnergyCriterion>,
-    ) -> Option<NearbySteadyMotion> {
-        let all = names.zip(found.state.iter().zip(start));
-        let kept: Vec<_> = all.filter(|(name, _)| found.components.contains(name)).collect();
-        let norm = |numbers: Vec<f64>| numbers.iter().map(|z| z * z).sum::<f64>().sqrt();
-        let distance = norm(kept.iter().map(|(_, (y, start))| *y - *start).collect());
-        let size = 1.0 + norm(kept.iter().map(|(_, (_, start))| **start).collect());
-        (distance <= size).then(|| NearbySteadyMotion {
-            state: kept.into_iter().map(|(name, (&y, _))| (name, y)).collect(),
-            rates,
-            distance,
-            same,
-            eigenvalues: found.spectrum.eigenvalues().to_vec(),
-            tolerance: found.spectrum.tolerance(),
-            first_approximation: found.verdict(),
-            neutral,
-            second_variation,
-        })
-    }
-
     /// What is known of stability, and by what.
     pub fn stability(&self) -> Stability {
         let proved = |second: &&EnergyCriterion| second.verdict == Verdict::Stable;

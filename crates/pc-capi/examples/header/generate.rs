@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 32] = [
+const FILES: [&str; 34] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -57,6 +57,7 @@ const FILES: [&str; 32] = [
     "api/model.rs",
     "api/builder.rs",
     "api/bodies.rs",
+    "api/action.rs",
     "api/settings.rs",
     "api/cancel.rs",
     "api/options.rs",
@@ -72,6 +73,7 @@ const FILES: [&str; 32] = [
     "api/bracket.rs",
     "api/legendre.rs",
     "api/source.rs",
+    "api/theory.rs",
     "api/verify.rs",
     "api/kernel.rs",
     "api/solver.rs",

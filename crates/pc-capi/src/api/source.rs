@@ -40,12 +40,7 @@ pub unsafe extern "C" fn pc_system_print(
     let print = || {
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(text, "text") }?;
-        let page = match format {
-            0 => Page::Text,
-            1 => Page::Latex,
-            2 => Page::Json,
-            value => return Err(CallError::Choice { what: "pc_format", value: value.into() }),
-        };
+        let page = page(format)?;
         // SAFETY: as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
         let printed = inventory.derive(|model| printed(inventory, &model, page))?;
@@ -54,6 +49,16 @@ pub unsafe extern "C" fn pc_system_print(
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, print) }
+}
+
+/// How a pc_format is printed.
+pub(crate) fn page(format: c_int) -> Result<Page, CallError> {
+    match format {
+        0 => Ok(Page::Text),
+        1 => Ok(Page::Latex),
+        2 => Ok(Page::Json),
+        value => Err(CallError::Choice { what: "pc_format", value: value.into() }),
+    }
 }
 
 fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, CallError> {

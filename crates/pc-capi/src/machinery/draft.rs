@@ -42,11 +42,12 @@ pub(crate) enum Section {
     Forces,
     Integrals,
     Outputs,
+    HamiltonJacobi,
     Events,
     Simulation,
 }
 
-const SECTIONS: [(Section, &str); 19] = [
+const SECTIONS: [(Section, &str); 20] = [
     (Section::Heading, "model"),
     (Section::Parameters, "parameters"),
     (Section::Inputs, "inputs"),
@@ -64,6 +65,7 @@ const SECTIONS: [(Section, &str); 19] = [
     (Section::Forces, "forces"),
     (Section::Integrals, "integrals"),
     (Section::Outputs, "outputs"),
+    (Section::HamiltonJacobi, "hamilton_jacobi"),
     (Section::Events, "events"),
     (Section::Simulation, "simulation"),
 ];

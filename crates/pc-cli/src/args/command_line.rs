@@ -2,7 +2,9 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::args::options::{CheckArguments, DeriveArguments, EmitArguments, ModelsArguments, RunArguments};
+use crate::args::options::{
+    CheckArguments, DeriveArguments, EmitArguments, ModelsArguments, RunArguments, TheoryArguments,
+};
 use crate::args::sweep::SweepArguments;
 
 /// The command line of `pc`.
@@ -30,6 +32,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Print the equations of motion
     Derive(DeriveArguments),
+    /// Print what can be said of the motions: brackets, integrals, measures, steady motions, reductions
+    Theory(TheoryArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
     Run(Box<RunArguments>),
     /// Integrate many motions, of other parameters and starts, over all cores; what is finished survives interruptions

@@ -120,6 +120,24 @@ pub struct DeriveArguments {
     pub inline: bool,
 }
 
+/// Arguments of `pc theory`.
+#[derive(Clone, Debug, Args)]
+pub struct TheoryArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Look for integrals that are polynomials of up to this degree in the velocities
+    #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u32).range(1..=6))]
+    pub degree: u32,
+    /// Functions of the place by which their coefficients may be multiplied, such as "1/r" (repeatable); polynomials of the
+    /// coordinates, or of their sines and cosines, are tried without
+    #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
+    pub functions: Vec<String>,
+    /// How to print
+    #[arg(long, default_value = "text")]
+    pub format: Page,
+}
+
 /// How events are looked for.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {

@@ -159,6 +159,7 @@ impl<'g> Assembler<'g, '_> {
         let constraints = constraints.with_independent(independent);
         let events =
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
+        let action = self.action()?;
         self.scope.look_at_unused()?;
         Ok(Assembly {
             system,
@@ -170,6 +171,7 @@ impl<'g> Assembler<'g, '_> {
             events,
             definitions: self.scope.meanings(&x_dot),
             given,
+            action,
             document: self.model.shared_document(),
         })
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pc_mech::{Equations, Expr, System};
 use pc_nonholo::NonholoError;
 
+use crate::assembly::action::Action;
 use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
@@ -32,6 +33,8 @@ pub struct Assembly<'g> {
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given beside those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The solution of Hamilton–Jacobi's equation that the text has, if it has one.
+    pub action: Option<Action<'g>>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }

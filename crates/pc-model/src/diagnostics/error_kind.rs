@@ -237,6 +237,8 @@ pub enum Role {
     Integral,
     /// An entry of `[outputs]`.
     Output,
+    /// A constant of `[hamilton_jacobi]`.
+    Constant,
 }
 
 impl fmt::Display for Role {
@@ -250,6 +252,7 @@ impl fmt::Display for Role {
             Self::State => "a first-order state",
             Self::Integral => "an integral",
             Self::Output => "an output",
+            Self::Constant => "a constant of the action",
         })
     }
 }
@@ -272,6 +275,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "forces",
     "integrals",
     "outputs",
+    "hamilton_jacobi",
     "events",
     "simulation",
 ];

@@ -49,7 +49,9 @@ impl Document {
         let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
         let inputs = self.inputs.iter().map(|input| (&input.name, Role::Input));
         let states = self.states.iter().map(|state| (&state.name, Role::State));
-        let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).collect();
+        let action = self.hamilton_jacobi.iter().flat_map(|action| &action.constants);
+        let constants = action.map(|(name, _)| (name, Role::Constant));
+        let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).chain(constants).collect();
         for (entries, role) in [
             (&self.parameters, Role::Parameter),
             (&self.definitions, Role::Definition),

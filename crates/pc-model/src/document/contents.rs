@@ -45,6 +45,8 @@ pub struct Document {
     pub integrals: Vec<NamedExpression>,
     /// `[outputs]`
     pub outputs: Vec<NamedExpression>,
+    /// `[hamilton_jacobi]`
+    pub hamilton_jacobi: Option<HamiltonJacobi>,
     /// `[events.NAME]`
     pub events: Vec<Event>,
     /// `[simulation]`
@@ -239,6 +241,15 @@ pub enum Orientation {
     Rotation(Box<[Expression; 9]>),
     /// The components of the angular velocity.
     AngularVelocity(Box<[Expression; 3]>),
+}
+
+/// A solution of Hamilton–Jacobi's equation, as the user has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HamiltonJacobi {
+    /// S, a function of time, coordinates and constants.
+    pub action: Expression,
+    /// Its constants, each with a value near which S is defined.
+    pub constants: Vec<(Name, Located<f64>)>,
 }
 
 /// Something that happens when an expression passes through zero.

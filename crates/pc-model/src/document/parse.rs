@@ -77,6 +77,7 @@ impl Document {
             "forces" => self.forces = table.expressions()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
+            "hamilton_jacobi" => self.hamilton_jacobi = Some(sections::hamilton_jacobi(&table)?),
             "events" => self.events = simulation::events(&table)?,
             _ => self.simulation = simulation::simulation(&table)?,
         }

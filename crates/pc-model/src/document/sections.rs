@@ -6,8 +6,8 @@ use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::contents::{
-    Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, Heading, Lagrangian,
-    QuasiVelocity, State,
+    Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, HamiltonJacobi, Heading,
+    Lagrangian, QuasiVelocity, State,
 };
 use crate::document::expression::NamedExpression;
 
@@ -171,4 +171,23 @@ pub(super) fn lagrangian(table: &Table<'_>) -> Result<Lagrangian, ModelError> {
         }
     }
     Ok(result)
+}
+
+pub(super) fn hamilton_jacobi(table: &Table<'_>) -> Result<HamiltonJacobi, ModelError> {
+    let (mut action, mut constants) = (None, Vec::new());
+    for item in table.items() {
+        match item.key() {
+            "action" => action = Some(item.expression()?),
+            "constants" => {
+                let values = item.table("a table", "{ E = 1.0 }")?;
+                let all = values.items().map(|value| Ok((value.new_name()?, value.number()?)));
+                constants = all.collect::<Result<_, ModelError>>()?;
+            }
+            _ => return Err(item.unknown(&["action", "constants"])),
+        }
+    }
+    match action {
+        Some(action) => Ok(HamiltonJacobi { action, constants }),
+        None => Err(table.error(ErrorKind::Missing { key: "action", example: "action = \"…\"" })),
+    }
 }

@@ -296,6 +296,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 | Stage::Kinematics
                 | Stage::Position
                 | Stage::Inertia
+                | Stage::Action
                 | Stage::Constraint => refuse(self),
                 Stage::Rate
                 | Stage::Gravity
@@ -310,12 +311,15 @@ impl<'g, 'd> Scope<'g, 'd> {
             {
                 refuse(self)
             }
-            Stage::Definition | Stage::Position if is_quasi_velocity || is_state => refuse(self),
+            Stage::Definition | Stage::Position | Stage::Action if is_quasi_velocity || is_state => {
+                refuse(self)
+            }
             Stage::Inertia if is_quasi_velocity => refuse(self),
             Stage::Kinematics | Stage::Constraint if is_state => refuse(self),
             Stage::Gravity if is_coordinate || is_quasi_velocity || is_state => refuse(self),
             _ if name == "t" => Ok(self.time),
             _ if is_coordinate || is_quasi_velocity || is_state => Ok(self.graph.symbol(name)),
+            Stage::Action if self.is_constant(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_resultant(name) => {
                 let symbol = self.graph.symbol(name);
@@ -327,6 +331,12 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Err(self.error(expression, span, fault))
             }
         }
+    }
+
+    /// Whether it is a constant of the action.
+    fn is_constant(&self, name: &str) -> bool {
+        let mut constants = self.document.hamilton_jacobi.iter().flat_map(|action| &action.constants);
+        constants.any(|(constant, _)| constant.text == name)
     }
 
     /// `λ_` before the name of a constraint.
@@ -379,6 +389,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
+            | Stage::Action
             | Stage::Gravity => Err(self.error(expression, span, |text| MeaningError::NotHere {
                 name: text,
                 place: stage.place(),
@@ -402,6 +413,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
+            | Stage::Action
             | Stage::Gravity => true,
             Stage::Definition
             | Stage::Constraint

@@ -27,6 +27,8 @@ pub(crate) enum Stage {
     Event,
     /// A function that is asked for: everything but accelerations.
     Function,
+    /// The action: its constants, coordinates and t.
+    Action,
     /// Integrals and outputs: everything.
     Observation,
 }
@@ -45,6 +47,7 @@ impl Stage {
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Event => "an event",
             Stage::Function => "a function of the state",
+            Stage::Action => "the action",
             Stage::Observation => "an integral or output",
         }
     }
@@ -57,6 +60,7 @@ impl Stage {
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position | Stage::Inertia => "parameters, coordinates and t",
             Stage::Gravity => "numbers, parameters, inputs and t",
+            Stage::Action => "parameters, coordinates, its constants and t",
             Stage::Constraint => "parameters, coordinates, velocities and t",
             Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
                 "declared names"

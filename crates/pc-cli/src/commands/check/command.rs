@@ -4,7 +4,7 @@ use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
 use pc_nonholo::{IntegrableCombination, Kind, Redundant};
-use pc_print::{Operations, columns, counted, energy_remark, kind_in_words, one_line, visible, visible_json};
+use pc_print::{Operations, columns, counted, integrals_of, kind_in_words, one_line, visible, visible_json};
 use pc_verify::{Agreement, Options, VerifyError, verify};
 use serde_json::{Value, json};
 
@@ -103,17 +103,7 @@ impl<'g> Report<'g> {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let mut integrals = Integrals::find(equations, &near);
-        integrals::name_momenta(&mut integrals, equations.system());
-        if assembly.keeps_energy() && energy_remark(assembly).is_none() {
-            integrals.keep_energy(equations);
-        }
-        if energy_remark(assembly).is_some()
-            && let Some(energy) = energy_of_all(assembly, equations)
-        {
-            integrals.add_energy_of_all(equations, &near, energy);
-        }
-        integrals::say_what_jumps(&mut integrals, assembly);
+        let integrals = integrals_of(assembly, equations, &near, true);
         Ok(Report {
             title: model.title().to_owned(),
             coordinates: names(frame.coordinates()),
@@ -275,15 +265,6 @@ fn held(residual: f64) -> String {
         Identity::Open { .. } => "open: has no values near the start".to_owned(),
         Identity::Disproved { rest } => format!("disproved: {} of the terms is left", small(rest)),
     }
-}
-
-/// The energy of all velocities, which is that of a run, in the independent ones of the equations.
-fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
-    let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
-    let values = assembly.quasi_velocities_of(free).ok()?;
-    let known: Vec<(Expr<'g>, Expr<'g>)> = all.iter().copied().zip(values).collect();
-    let graph = assembly.system.graph();
-    Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
 /// The steady motion near the start of the equations of a model, of which `motion` is what is integrated.

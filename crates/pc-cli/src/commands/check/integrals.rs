@@ -1,33 +1,14 @@
 //! What the motion keeps, in words.
 
-use pc_analysis::{ConservationVerdict, Integral, Integrals, Origin};
-use pc_mech::{Number, Style, System};
-use pc_model::{Assembly, ConstraintFormulation};
-use pc_print::{columns, combination};
+use pc_analysis::{ConservationVerdict, Integral, Origin};
+use pc_mech::Style;
+use pc_print::columns;
 use serde_json::{Value, json};
 
 use crate::report::text::short;
 
 /// A formula of more columns is not printed behind what is said of it.
 const WIDEST: usize = 100;
-
-/// Names momenta by their displacements.
-pub(super) fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
-    let name = |coefficients: &[Number]| {
-        let names = system.quasi_velocities().iter().map(ToString::to_string);
-        format!("momentum of {}", combination(coefficients.iter().map(ToString::to_string).zip(names)))
-    };
-    integrals.rename(|integral| match &integral.origin {
-        Origin::CyclicDisplacement { coefficients } => Some(name(coefficients)),
-        _ => None,
-    });
-}
-
-/// Says of what keeps its value between events whether resets may change it.
-pub(super) fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
-    let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
-    integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
-}
 
 /// Where it comes from, in words.
 fn how(origin: &Origin) -> &'static str {

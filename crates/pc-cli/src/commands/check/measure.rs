@@ -1,10 +1,9 @@
 //! The measure that the motion keeps, in words.
 
-use pc_analysis::{MeasureSearch, PhaseMeasure, ReducingMultiplier};
+use pc_analysis::{MeasureSearch, PhaseMeasure};
 use pc_mech::{Expr, Style, System};
 use pc_model::Assembly;
-use pc_nonholo::Voronets;
-use pc_print::{columns, combination};
+use pc_print::{columns, combination, reducing_multiplier};
 use serde_json::{Value, json};
 
 /// A formula of more columns is not printed.
@@ -38,7 +37,9 @@ impl<'g> Measure<'g> {
         let found = free.and_then(|free| MeasureSearch::of(&free, positions.as_deref(), at).ok());
         let search = found.unwrap_or(MeasureSearch::None);
         let is_positive = matches!(&search, MeasureSearch::Found(measure) if measure.singular.is_empty());
-        let multiplier = if is_positive && positions.is_none() { multiplier(assembly) } else { None };
+        let multiplier =
+            if is_positive && positions.is_none() { reducing_multiplier(assembly) } else { None };
+        let multiplier = multiplier.map(|reduced| reduced.multiplier);
         Measure { search: Some(search), square, jumps, multiplier }
     }
 
@@ -101,17 +102,4 @@ fn words(measure: &PhaseMeasure<'_>, square: bool) -> String {
         zeros => format!(", singular where {}", zeros.join(" or ")),
     };
     format!("{density}, {other}{whose}{singular}")
-}
-
-/// Chaplygin's reducing multiplier; none also where the equations are not Voronets' in independent coordinates, or have no
-/// closed form.
-fn multiplier<'g>(assembly: &Assembly<'g>) -> Option<Expr<'g>> {
-    let held = assembly.constraints.multipliers()?.in_velocities().ok()?;
-    let mut transform = assembly.system.velocity_transform().ok()?;
-    let start = transform.to_velocities(assembly.t_start, &assembly.start);
-    let lagrange = held.equations().system();
-    let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
-    at.push((lagrange.frame().time(), assembly.t_start));
-    let voronets = Voronets::shortest(&held, &at).ok()?;
-    ReducingMultiplier::of(&voronets).ok()?.map(|reduced| reduced.multiplier)
 }

@@ -1,33 +1,10 @@
 //! The steady motion near the start, and whether it is stable, in words.
 
-use pc_analysis::{Eigenvalue, NearbySteadyMotion, Stability, SteadySearch};
+use pc_analysis::{NearbySteadyMotion, SteadySearch};
+use pc_print::{eigenvalues_in_words, stability_in_words};
 use serde_json::{Map, Value, json};
 
 use crate::report::text::{short, wrapped};
-
-/// What is known of stability, and by what, in words.
-fn verdict(stability: &Stability) -> String {
-    match stability {
-        Stability::BySecondVariation { variables: None } => {
-            "stable, by the second variation of the energy".to_owned()
-        }
-        Stability::BySecondVariation { variables: Some(variables) } => {
-            format!("stable in {}, by the second variation of the energy", variables.join(", "))
-        }
-        Stability::AsymptoticBut { directions } => {
-            let directions = match directions {
-                1 => "one neutral direction".to_owned(),
-                count => format!("{count} neutral directions"),
-            };
-            format!("asymptotically stable but for {directions}, by the first approximation")
-        }
-        Stability::Undecided { second_variation: true } => {
-            "undecided by the first approximation and by the second variation of the energy".to_owned()
-        }
-        Stability::Undecided { second_variation: false } => "undecided by the first approximation".to_owned(),
-        Stability::ByFirstApproximation(verdict) => format!("{verdict}, by the first approximation"),
-    }
-}
 
 /// Where it is, how far from the start, eigenvalues, verdict: lines of `width` characters.
 fn motion_lines(steady: &NearbySteadyMotion, width: usize) -> Vec<String> {
@@ -40,12 +17,13 @@ fn motion_lines(steady: &NearbySteadyMotion, width: usize) -> Vec<String> {
         (_, []) => format!("{} from the start", short(steady.distance, 3)),
         (_, same) => format!("{} from the start, with its {}", short(steady.distance, 3), same.join(", ")),
     });
-    let eigenvalues = wrapped(spectrum(&steady.eigenvalues, steady.tolerance.max(ZERO)), width - 12);
+    let eigenvalues =
+        wrapped(eigenvalues_in_words(&steady.eigenvalues, steady.tolerance.max(ZERO)), width - 12);
     lines.extend((0..).zip(eigenvalues).map(|(i, line)| match i {
         0 => format!("eigenvalues {line}"),
         _ => format!("            {line}"),
     }));
-    lines.push(verdict(&steady.stability()));
+    lines.push(stability_in_words(&steady.stability()));
     lines
 }
 
@@ -61,7 +39,7 @@ fn motion_object(steady: &NearbySteadyMotion) -> Value {
         "eigenvalues": steady.eigenvalues.iter().map(|l| [l.real, l.imaginary]).collect::<Vec<_>>(),
         "first_approximation": steady.first_approximation.to_string(),
         "second_variation": steady.second_variation.as_ref().map(|second| second.verdict.to_string()),
-        "verdict": verdict(&steady.stability()),
+        "verdict": stability_in_words(&steady.stability()),
     })
 }
 
@@ -100,28 +78,4 @@ const ZERO: f64 = 1e-9;
 /// Six digits; what Newton's method leaves of a zero is one.
 fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
-}
-
-/// The eigenvalues, conjugate ones together, equal ones counted: `0.5, ±2i, 0 (twice)`.
-fn spectrum(eigenvalues: &[Eigenvalue], zero: f64) -> Vec<String> {
-    let part = |value: f64| if value.abs() <= zero { 0.0 } else { value };
-    let mut counted: Vec<(String, usize)> = Vec::new();
-    for eigenvalue in eigenvalues.iter().filter(|eigenvalue| part(eigenvalue.imaginary) >= 0.0) {
-        let (real, imaginary) = (part(eigenvalue.real), part(eigenvalue.imaginary));
-        let text = match (real == 0.0, imaginary == 0.0) {
-            (_, true) => short(real, 4),
-            (true, false) => format!("±{}i", short(imaginary, 4)),
-            (false, false) => format!("{} ± {}i", short(real, 4), short(imaginary, 4)),
-        };
-        match counted.iter_mut().find(|(known, _)| *known == text) {
-            Some((_, count)) => *count += 1,
-            None => counted.push((text, 1)),
-        }
-    }
-    let shown = counted.into_iter().map(|(text, count)| match count {
-        1 => text,
-        2 => format!("{text} (twice)"),
-        _ => format!("{text} ({count} times)"),
-    });
-    shown.collect()
 }

@@ -1,0 +1,106 @@
+//! What is known of a function that is said to solve Hamilton–Jacobi's equation.
+
+use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
+
+use crate::error::AnalysisError;
+use crate::hamilton_jacobi::{hamilton_jacobi, slopes};
+
+/// Points at which the residual is looked at, to show the one where it is largest.
+const POINTS: u64 = 16;
+
+/// The verdict on an action S(t, x, α).
+#[derive(Clone, Debug)]
+pub struct ProposedAction<'g> {
+    /// X_0 S + H(t, x, X_s S), zero if that is proved.
+    pub remainder: Expr<'g>,
+    /// Whether it vanishes, in parts of its two terms.
+    pub identity: Identity,
+    /// Where it does not, if it does not.
+    pub refuted: Option<Residual>,
+    /// The rank of ∂(X_s S)/∂α at almost all points, of k if the integral is complete.
+    pub rank: usize,
+}
+
+/// The value that a remainder has at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residual {
+    /// Names and values of its symbols.
+    pub at: Vec<(String, f64)>,
+    /// What it is there.
+    pub value: f64,
+}
+
+impl<'g> ProposedAction<'g> {
+    /// What is known of S = `action`, a function of (t, x) and of `constants`, by terms that cancel and by numbers `near` a point
+    /// where it is defined.
+    ///
+    /// # Errors
+    /// As for [`hamilton_jacobi`].
+    ///
+    /// ```
+    /// use pc_analysis::ProposedAction;
+    /// use pc_mech::{Graph, Identity, Neighbourhood, System};
+    ///
+    /// let graph = Graph::new();
+    /// let particle =
+    ///     System::builder(&graph).coordinates(["x"]).lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
+    /// let [t, x, a] = graph.symbols(["t", "x", "a"]);
+    /// let near = Neighbourhood { centre: vec![(t, 2.0), (x, 1.0), (a, 3.0)] };
+    /// let verdict = |action| ProposedAction::check(&particle.canonical()?, action, &[a], &near);
+    /// assert_eq!(verdict((x - a).square() / (2.0 * t))?.identity, Identity::Proved);
+    /// assert!(verdict((x - a).square() / (3.0 * t))?.refuted.is_some());
+    /// # Ok::<(), pc_analysis::AnalysisError>(())
+    /// ```
+    pub fn check(
+        canonical: &Canonical<'g>,
+        action: Expr<'g>,
+        constants: &[Expr<'g>],
+        near: &Neighbourhood<'g>,
+    ) -> Result<ProposedAction<'g>, AnalysisError> {
+        let (system, graph) = (canonical.system(), canonical.system().graph());
+        let remainder = hamilton_jacobi(canonical, action)?;
+        let momenta = slopes(canonical, action);
+        let known: Vec<_> = canonical.momenta().iter().copied().zip(momenta.iter().copied()).collect();
+        let rate = system.frame().apply(0, &[action])[0];
+        let terms = [rate, graph.substitute(&[canonical.hamiltonian()], &known)[0]];
+        let identity = match remainder.is_zero() {
+            true => Identity::Proved,
+            false => Identity::of(near.residual(graph, &[terms.to_vec()])),
+        };
+        let is_refuted = matches!(identity, Identity::Disproved { .. });
+        let rows: Vec<Vec<Expr<'g>>> = momenta.iter().map(|&y| graph.gradient(y, constants)).collect();
+        Ok(ProposedAction {
+            refuted: if is_refuted { largest(graph, terms, near) } else { None },
+            rank: graph.generic_rank(&rows),
+            remainder,
+            identity,
+        })
+    }
+}
+
+/// The point, the centre or one of those about it, where the sum of two terms is the largest part of these.
+fn largest<'g>(graph: &'g Graph, terms: [Expr<'g>; 2], near: &Neighbourhood<'g>) -> Option<Residual> {
+    let symbols = graph.symbols_of(&terms);
+    let centre =
+        |z: &Expr<'g>| near.centre.iter().find(|(known, _)| known == z).map_or(1.0, |&(_, value)| value);
+    let at = |point: u64| -> Vec<(Expr<'g>, f64)> {
+        let place = |(i, z): (usize, &Expr<'g>)| {
+            // Multiples of the golden section are spread evenly over 0..1.
+            let u = (point as f64 * (i as f64 + 1.0) * 0.618_033_988_749_894_9).fract();
+            let reach = if point == 0 { 0.0 } else { (0.1 + 0.2 * centre(z).abs()) * (2.0 * u - 1.0) };
+            (*z, centre(z) + reach)
+        };
+        symbols.iter().enumerate().map(place).collect()
+    };
+    let mut worst: Option<(f64, Residual)> = None;
+    for at in (0..POINTS).map(at) {
+        let Ok(values) = graph.evaluate(&terms, &at) else { continue };
+        let (value, size) = (values[0] + values[1], values[0].abs() + values[1].abs());
+        let part = value.abs() / size;
+        if part.is_finite() && worst.as_ref().is_none_or(|&(most, _)| part > most) {
+            let at = at.into_iter().map(|(z, value)| (z.to_string(), value)).collect();
+            worst = Some((part, Residual { at, value }));
+        }
+    }
+    worst.map(|(_, residual)| residual)
+}

@@ -1,0 +1,162 @@
+//! Functions that a motion keeps, or may keep, with what is known of them.
+
+use pc_mech::{Equations, Expr, Number, System};
+
+use crate::integrals::rates::Rates;
+
+/// A function that may keep its value.
+#[derive(Clone, Debug)]
+pub struct Integral<'g> {
+    /// What it is called: as declared, `energy`, `momentum 1`, `Casimir 1`, `found 1`.
+    pub name: String,
+    /// The function of (t, x, η).
+    pub value: Expr<'g>,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// What is known of its rate.
+    pub verdict: ConservationVerdict<'g>,
+    /// Whether an event may change it.
+    pub jumps: bool,
+    /// Whether it is known to be a function of those before it in the list.
+    pub dependent: bool,
+}
+
+/// Where an integral comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Origin {
+    /// It is declared with the system.
+    Declared,
+    /// It is declared, and a function of Casimirs.
+    DeclaredCasimir,
+    /// It is the energy of the velocities in the equations.
+    Energy,
+    /// It is the energy of all velocities, where the equations are those of independent ones.
+    EnergyOfAll,
+    /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
+    CyclicDisplacement {
+        /// a_1..a_k
+        coefficients: Vec<Number>,
+    },
+    /// It is a Casimir of the bracket (12).
+    Casimir,
+    /// An ansatz found it.
+    Found,
+}
+
+/// What is known of the rate of change of a function along the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConservationVerdict<'g> {
+    /// It vanishes identically.
+    Conserved,
+    /// It vanishes identically for these values of the parameters.
+    ConservedHere,
+    /// It vanishes identically, if only for these values, where the function does not jump.
+    BetweenJumps,
+    /// It is not known: the function is none of time and state alone, as one with reactions.
+    NoFunction,
+    /// It is not seen to vanish.
+    Rate {
+        /// The rate in terms of (t, x, η).
+        rate: Expr<'g>,
+        /// Its value at the start, if it has one.
+        at_start: Option<f64>,
+    },
+}
+
+/// What the motion keeps, or may keep.
+#[derive(Clone, Debug)]
+pub struct Integrals<'g> {
+    pub(super) list: Vec<Integral<'g>>,
+}
+
+impl<'g> Integrals<'g> {
+    /// All of them, the declared ones first.
+    pub fn list(&self) -> &[Integral<'g>] {
+        &self.list
+    }
+
+    /// Those that are proved to be conserved, if only for the values that the parameters have.
+    pub fn conserved(&self) -> impl Iterator<Item = &Integral<'g>> {
+        self.list.iter().filter(|integral| integral.is_conserved())
+    }
+
+    pub(super) fn push(&mut self, integral: Integral<'g>) {
+        self.list.push(integral);
+    }
+
+    /// Gives each the name that `name` has for it, if it has one.
+    pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
+        for integral in &mut self.list {
+            if let Some(name) = name(integral) {
+                integral.name = name;
+            }
+        }
+    }
+
+    /// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
+    pub fn keep_energy(&mut self, equations: &Equations<'g>) {
+        let open = |integral: &&mut Integral<'g>| {
+            integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
+        };
+        for integral in self.list.iter_mut().filter(open) {
+            let jumps = Rates::poincare(equations).has_jumps(integral.value);
+            integral.verdict =
+                if jumps { ConservationVerdict::BetweenJumps } else { ConservationVerdict::Conserved };
+        }
+    }
+
+    /// Says of what keeps its value between events that resets may change it: those that do not leave it as it is whatever
+    /// the state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
+    /// with its new value.
+    pub fn jump<'r>(
+        &mut self,
+        system: &System<'g>,
+        resets: impl Iterator<Item = &'r [(usize, Expr<'g>)]>,
+        projected: bool,
+    ) where
+        'g: 'r,
+    {
+        let state = system.state();
+        for reset in resets.filter(|reset| !reset.is_empty()) {
+            let new: Vec<_> = reset.iter().map(|&(place, value)| (state[place], value)).collect();
+            for integral in &mut self.list {
+                let after = system.graph().substitute(&[integral.value], &new)[0];
+                let jump = after - integral.value;
+                if projected || !bind(system, jump).is_zero() {
+                    integral.jumps = true;
+                } else if integral.verdict == ConservationVerdict::Conserved && !jump.is_zero() {
+                    integral.verdict = ConservationVerdict::ConservedHere;
+                }
+            }
+        }
+    }
+}
+
+/// The function with the parameters of a system replaced by their numbers.
+pub(crate) fn bind<'g>(system: &System<'g>, function: Expr<'g>) -> Expr<'g> {
+    system.graph().substitute(&[function], &system.numbers())[0]
+}
+
+impl ConservationVerdict<'_> {
+    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    pub fn is_conserved(self) -> bool {
+        matches!(self, ConservationVerdict::Conserved | ConservationVerdict::ConservedHere)
+    }
+}
+
+impl Integral<'_> {
+    /// Whether it is proved to keep its value, if only for these parameters.
+    pub fn is_conserved(&self) -> bool {
+        self.verdict.is_conserved()
+    }
+
+    /// Whether it is the energy of the velocities in the equations.
+    pub fn is_energy(&self) -> bool {
+        self.origin == Origin::Energy
+    }
+
+    /// Whether it is a Casimir, declared or not.
+    pub fn is_casimir(&self) -> bool {
+        matches!(self.origin, Origin::Casimir | Origin::DeclaredCasimir)
+    }
+}

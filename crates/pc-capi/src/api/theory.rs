@@ -1,0 +1,63 @@
+//! What can be said of the motions without integrating them, in print.
+
+use std::ffi::{c_char, c_int};
+
+use ::pc_model::Model;
+use pc_print::TheoryOptions;
+
+use crate::api::source::page;
+use crate::ffi::boundary::entry;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{clear, handle, texts, write};
+use crate::ffi::status::pc_status;
+use crate::ffi::strings::give;
+use crate::machinery::system::pc_system;
+
+/// The largest degree in the velocities of integrals that are looked for.
+const MOST_DEGREE: usize = 6;
+
+/// Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
+/// and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
+/// multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. What is claimed is
+/// said to be proved, disproved or open. Integrals are looked for that are polynomials of a
+/// `degree` from 1 to 6 in the velocities, whose coefficients are polynomials of the coordinates
+/// times 1 or one of the `functions`, expressions of the model; there may be none of these.
+/// `format` is a pc_format. Parameters have the values of the model. Everything is derived anew,
+/// which takes longer than pc_system_print. Free the text with pc_string_free.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_theory(
+    system: *const pc_system,
+    format: c_int,
+    degree: usize,
+    functions: *const *const c_char,
+    function_count: usize,
+    text: *mut *mut c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let print = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(text, "text") }?;
+        let page = page(format)?;
+        if !(1..=MOST_DEGREE).contains(&degree) {
+            return Err(CallError::Choice { what: "degree", value: degree as i64 });
+        }
+        // SAFETY: as the preamble demands.
+        let functions = unsafe { texts(functions, function_count, "functions") }?;
+        let functions = functions.into_iter().map(str::to_owned).collect();
+        let options = TheoryOptions { degree: degree as u32, functions };
+        // SAFETY: as the preamble demands.
+        let inventory = &unsafe { handle(system, "system") }?.inventory;
+        let printed = inventory.derive(|model| printed(&model, page, &options))?;
+        // SAFETY: as the preamble demands.
+        unsafe { write(text, give(&printed), "text") }
+    };
+    // SAFETY: `error` is null or a place for a pointer.
+    unsafe { entry(error, print) }
+}
+
+fn printed(model: &Model, page: pc_print::Page, options: &TheoryOptions) -> Result<String, CallError> {
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    Ok(pc_print::theory(model, &assembly, page, options)?)
+}

@@ -1,0 +1,247 @@
+//! What `pc theory` says of models.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use pc_expr::parse::parse;
+use pc_model::BUILTIN;
+use serde_json::Value;
+
+fn run(arguments: &[&str], directory: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pc"))
+        .arg("theory")
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .expect("pc starts")
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = run(arguments, Path::new("."));
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// What is said of the text of a model, with the exit code.
+fn said_of(model: &str, arguments: &[&str]) -> (i32, String) {
+    let directory = tempfile::tempdir().expect("a directory");
+    fs::write(directory.path().join("model.toml"), model).expect("written");
+    let output = run(&[&["model.toml"], arguments].concat(), directory.path());
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code().expect("an end"), String::from_utf8(text).expect("UTF-8"))
+}
+
+const KEPLER: &str = "[model]\nname = \"Kepler's problem\"\n[parameters]\nm = 2.0\nk = 3.0\n[coordinates]\nr = 1.2\n\"φ\" = 0.3\n\
+    [quasi_velocities]\n\"r'\" = 0.1\n\"φ'\" = 0.9\n[lagrangian]\nkinetic = \"m*(r'^2 + r^2*φ'^2)/2\"\npotential = \"-k/r\"\n";
+
+const ACTION: &str = "[hamilton_jacobi]\naction = \"l*φ - E*t + sqrt(2*m*E*r^2 + 2*m*k*r - l^2) \
+    + m*k/sqrt(-2*m*E)*atan((-2*m*E*r - m*k)/(sqrt(-2*m*E)*sqrt(2*m*E*r^2 + 2*m*k*r - l^2))) \
+    - l*atan((m*k*r - l^2)/(l*sqrt(2*m*E*r^2 + 2*m*k*r - l^2)))\"\nconstants = { E = -1.0, l = 2.4 }\n";
+
+#[test]
+fn a_planet_with_its_action() {
+    let (code, text) = said_of(&format!("{KEPLER}{ACTION}"), &[]);
+    assert_eq!(code, 0, "{text}");
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn a_heavy_top() {
+    insta::assert_snapshot!(said(&["heavy-top-lagrange"]));
+}
+
+#[test]
+fn a_rolling_disk() {
+    insta::assert_snapshot!(said(&["vertical-disk"]));
+}
+
+#[test]
+fn a_sleigh_for_a_paper() {
+    insta::assert_snapshot!(said(&["chaplygin-sleigh", "--format", "latex"]));
+}
+
+#[test]
+fn a_free_body_for_programs() {
+    insta::assert_snapshot!(said(&["euler-top", "--format", "json"]));
+}
+
+/// The formulas of JSON are expressions that are read back, braces of LaTeX are closed, and of no model anything is left out.
+#[test]
+fn all_models_have_a_theory() {
+    for builtin in BUILTIN {
+        let object: Value = serde_json::from_str(&said(&[builtin.name, "--format", "json"])).expect("JSON");
+        let sections = object.as_object().expect("an object");
+        let mut formulas = 0;
+        for entry in sections.values().filter_map(Value::as_array).flatten() {
+            for formula in entry["formulas"].as_array().into_iter().flatten() {
+                let right = formula["right"].as_str().expect("text");
+                let is_field = right.contains("∂/∂") || right.contains(" X_");
+                assert!(is_field || parse(right).is_ok(), "{}: {right}", builtin.name);
+                formulas += 1;
+            }
+            let verdict = entry["verdict"].as_str().unwrap_or("open");
+            assert!(["proved", "disproved", "open"].contains(&verdict), "{}: {verdict}", builtin.name);
+            assert_eq!(verdict == "disproved", entry["margin"].is_number(), "{}: {entry}", builtin.name);
+        }
+        assert!(formulas > 1, "{}", builtin.name);
+        let latex = said(&[builtin.name, "--format", "latex"]);
+        let count = |c: char| latex.chars().filter(|&other| other == c).count();
+        assert_eq!(count('{'), count('}'), "{}", builtin.name);
+        let text = said(&[builtin.name]);
+        // Formulas are as long as they are; sums are broken.
+        assert!(text.lines().all(|line| line.chars().count() < 400), "{}", builtin.name);
+    }
+}
+
+/// The examples of the page, by the program itself.
+#[test]
+fn the_page_says_what_the_program_says() {
+    let page = include_str!("../../../docs/theory.md");
+    let directory = tempfile::tempdir().expect("a directory");
+    let program = Path::new(env!("CARGO_BIN_EXE_pc")).parent().expect("a directory");
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").expect("a path"));
+    let mut examples = 0;
+    for block in page.split("\n```").skip(1).step_by(2) {
+        let (kind, text) = block.split_once('\n').expect("a block");
+        match kind {
+            "toml" => fs::write(directory.path().join("model.toml"), text).expect("written"),
+            "console" => {
+                let (command, expected) = text.split_once('\n').expect("a command");
+                let command = command.strip_prefix("$ ").expect("a command");
+                let mut shell = Command::new("sh");
+                let output = shell.args(["-c", command]).current_dir(&directory).env("PATH", &path).output();
+                let output = output.expect("a shell");
+                let said = String::from_utf8(output.stdout).expect("UTF-8");
+                assert_eq!(said.trim_end(), expected.trim_end(), "{command}");
+                examples += 1;
+            }
+            other => panic!("a block of {other}"),
+        }
+    }
+    assert_eq!(examples, 4);
+}
+
+/// The lines of a section.
+fn section<'a>(text: &'a str, title: &str) -> &'a str {
+    let text = text.split_once(&format!("\n{title}\n")).unwrap_or_else(|| panic!("no {title} in {text}")).1;
+    text.split("\n\n").next().unwrap_or_default()
+}
+
+/// Numbers at the start, or beside it where all states are possible, disprove what changes.
+#[test]
+fn what_changes_is_disproved_with_a_margin() {
+    for (model, margin) in [("damped-oscillator", "0.0769"), ("rotating-oscillator", "0.739")] {
+        let text = said(&[model]);
+        let integrals = section(&text, "Integrals");
+        assert!(
+            integrals.contains(&format!("(disproved, by {margin})\n      d/dt energy = ")),
+            "{integrals}"
+        );
+    }
+    let object: Value =
+        serde_json::from_str(&said(&["damped-oscillator", "--format", "json"])).expect("JSON");
+    let energy = object["integrals"].as_array().into_iter().flatten().find(|entry| entry["name"] == "energy");
+    let margin = energy.expect("the energy")["margin"].as_f64().expect("a margin");
+    assert!(margin > 1e-6 && margin < 1.0, "{margin}");
+}
+
+/// In the coefficients of what is found stand parameters, no numbers in their place.
+#[test]
+fn parameters_stand_in_integrals() {
+    let text = said(&["rotating-oscillator"]);
+    let integrals = section(&text, "Integrals");
+    assert!(integrals.contains("η1² (k1 - k2)") && !integrals.contains("for these"), "{integrals}");
+}
+
+/// A body of moments A, B, C without forces: of its nine or four or three coordinates nothing depends on any.
+#[test]
+fn a_free_body_has_the_bracket_of_lie_and_poisson() {
+    let body = "[parameters]\nA = 1.0\nB = 2.0\nC = 3.0\n[coordinates]\n\"ψ\" = 0.1\n\"θ\" = 1.0\n\"φ\" = 0.2\n\
+                [quasi_velocities]\nw1.is = \"ψ'*sin(θ)*sin(φ) + θ'*cos(φ)\"\nw2.is = \"ψ'*sin(θ)*cos(φ) - θ'*sin(φ)\"\n\
+                w3 = { is = \"ψ'*cos(θ) + φ'\", start = 1.0 }\n[lagrangian]\nkinetic = \"(A*w1^2 + B*w2^2 + C*w3^2)/2\"\n";
+    let (code, text) = said_of(body, &[]);
+    assert_eq!(code, 0, "{text}");
+    let expected =
+        "  nothing depends on other variables than p_w1, p_w2, p_w3, by the bracket of Lie and Poisson
+  (p_w1, p_w2) = -p_w3
+  (p_w1, p_w3) = p_w2
+  (p_w2, p_w3) = -p_w1
+  H = ½ (p_w1²/A + p_w2²/B + p_w3²/C)
+  p_w1' = -p_w2 p_w3 (1/B - 1/C)
+  p_w2' = p_w1 p_w3 (1/A - 1/C)
+  p_w3' = -p_w1 p_w2 (1/A - 1/B)
+  C1 = p_w1² + p_w2² + p_w3²   (proved)
+  rank 2 of 3: 1 independent near almost every point";
+    assert_eq!(section(&text, "Reduction by symmetry"), expected);
+    // The three components of its momentum in space belong to rotations that commute with those of the body.
+    let displacements = section(&text, "Cyclic displacements");
+    assert_eq!(displacements.matches("commutes with all operators").count(), 3, "{displacements}");
+}
+
+/// In them definitions of the model may stand.
+#[test]
+fn functions_are_those_of_the_model() {
+    let model = "[parameters]\nk = 3.0\n[coordinates]\nx = 1.0\ny = 0.2\nz = 0.3\n[definitions]\nr = \"sqrt(x^2 + y^2 + z^2)\"\n\
+                 [lagrangian]\nkinetic = \"(x'^2 + y'^2 + z'^2)/2\"\npotential = \"-k/r\"\n";
+    let count = |arguments: &[&str]| {
+        let (code, text) = said_of(model, arguments);
+        assert_eq!(code, 0, "{text}");
+        section(&text, "Integrals").matches("(proved)").count()
+    };
+    // Energy, area and the vector of Runge and Lenz.
+    assert_eq!((count(&[]), count(&["--functions", "1/r"]), count(&["--degree", "1"])), (4, 7, 4));
+    assert_eq!(count(&["--functions", "1/r", "x*y", "--degree", "2"]), 7, "options after functions are none");
+    let (code, text) = said_of(model, &["--functions", "1/q"]);
+    assert!(code == 3 && text.contains("`q`"), "{text}");
+    let (code, text) = said_of(model, &["--degree", "9"]);
+    assert!(code == 2 && text.contains("--degree"), "{text}");
+}
+
+#[test]
+fn a_verdict_on_an_action_is_one_of_three() {
+    let action = |action: &str| {
+        format!("{KEPLER}[hamilton_jacobi]\naction = \"{action}\"\nconstants = {{ E = -1.0, l = 2.4 }}\n")
+    };
+    let (_, proved) = said_of(&format!("{KEPLER}{ACTION}"), &[]);
+    assert!(section(&proved, "Hamilton–Jacobi").contains("(proved)"), "{proved}");
+    let (_, refuted) = said_of(&action("l*φ - E*t + m*r"), &[]);
+    let lines = section(&refuted, "Hamilton–Jacobi");
+    assert!(lines.contains("(disproved, by ") && lines.contains("refuted: X_0 S + H is "), "{lines}");
+    assert!(lines.contains("not complete: ∂(X_s S)/∂α has rank 1 of 2"), "{lines}");
+    // Nonholonomic systems have no such equation.
+    let held = "[coordinates]\nx = 1\ny = 0.5\nz = 0\n[constraints]\nc = \"z' - y*x'\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2 + z'^2)/2\"\n\
+                [hamilton_jacobi]\naction = \"x\"\n";
+    let (code, text) = said_of(held, &[]);
+    assert!(code == 0 && section(&text, "Hamilton–Jacobi").starts_with("  the action open: "), "{text}");
+}
+
+/// At the place in the file, whatever the command.
+#[test]
+fn a_wrong_action_is_refused() {
+    for (section, message) in [
+        ("action = \"r'*x\"", "r'"),
+        ("action = \"E*r\"", "`E`"),
+        ("constants = { E = 1.0 }", "`action` is missing"),
+        ("action = \"E*r\"\nconstants = { E = \"1\" }", "expected a number"),
+        ("action = \"k*r\"\nconstants = { k = 1.0 }", "`k`"),
+        ("action = \"r\"\nkonstants = { }", "`konstants`"),
+    ] {
+        let (code, text) = said_of(&format!("{KEPLER}[hamilton_jacobi]\n{section}\n"), &[]);
+        assert!(code == 3 && text.contains(message), "{section}: {text}");
+    }
+}
+
+#[test]
+fn limits_hold() {
+    // Its equations need some hundred, its theory some thousand.
+    for limit in ["100K", "500K", "2M"] {
+        let output = run(&["heavy-top-euler", "--limit-memory", limit], Path::new("."));
+        assert_eq!(output.status.code(), Some(4), "{limit}");
+        assert!(
+            output.stdout.is_empty() && String::from_utf8_lossy(&output.stderr).contains("--limit-memory")
+        );
+    }
+    let (code, text) = said_of(KEPLER, &["--limit-memory", "50K"]);
+    assert!(code == 4 && text.contains("--limit-memory"), "{text}");
+}

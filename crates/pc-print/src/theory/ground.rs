@@ -1,0 +1,82 @@
+//! What all parts of the theory start from.
+
+use pc_analysis::AnalysisError;
+use pc_mech::{Canonical, Equations, Expr, MechError, Neighbourhood, System};
+use pc_model::{Assembly, ConstraintFormulation, ModelError};
+use pc_nonholo::Constrained;
+
+/// A model with its equations in independent quasi-velocities.
+pub(crate) struct Ground<'a, 'g> {
+    pub(crate) assembly: &'a Assembly<'g>,
+    pub(crate) equations: Equations<'g>,
+    /// The system of the independent quasi-velocities.
+    pub(crate) free: System<'g>,
+    /// In the frame in which constraints make quasi-velocities vanish, if they are not integrable.
+    pub(crate) constrained: Option<Constrained<'g>>,
+    /// The canonical equations of the independent momenta, or why there are none.
+    pub(crate) canonical: Result<Canonical<'g>, String>,
+    /// Values at the start.
+    pub(crate) near: Neighbourhood<'g>,
+}
+
+impl<'a, 'g> Ground<'a, 'g> {
+    pub(crate) fn new(assembly: &'a Assembly<'g>) -> Result<Ground<'a, 'g>, ModelError> {
+        let at = assembly.at_start();
+        let free = assembly.free_system()?;
+        let canonical = match assembly.constraints.nonlinear() {
+            Some(_) => Err(NONLINEAR.to_owned()),
+            None => match free.canonical() {
+                Ok(canonical) if canonical.is_closed() => Ok(canonical),
+                Ok(_) => Err(NOT_CLOSED.to_owned()),
+                Err(error) => Err(error.to_string()),
+            },
+        };
+        let centre = assembly.system.parameters().iter().copied().chain(at.iter().copied()).collect();
+        Ok(Ground {
+            equations: assembly.equations()?,
+            constrained: assembly.placed(assembly.constraints.constrained(&at))?,
+            near: Neighbourhood { centre },
+            assembly,
+            canonical,
+            free,
+        })
+    }
+
+    /// Whether no constraint binds that cannot be integrated.
+    pub(crate) fn is_holonomic(&self) -> bool {
+        self.assembly.constraints.positions(&self.assembly.system).is_some()
+    }
+
+    /// Whether nothing holds the system but its frame.
+    pub(crate) fn is_unbound(&self) -> bool {
+        matches!(self.assembly.constraints.formulation(), ConstraintFormulation::Free)
+    }
+
+    /// Whether forces are computed outside.
+    pub(crate) fn has_external_forces(&self) -> bool {
+        !self.assembly.system.external_forces().is_empty()
+    }
+
+    /// The conditions on positions that multipliers hold, by their names.
+    pub(crate) fn positions(&self) -> Vec<(String, Expr<'g>)> {
+        let ConstraintFormulation::Multipliers(held) = self.assembly.constraints.formulation() else {
+            return Vec::new();
+        };
+        let constraints = held.multipliers.constraints().iter();
+        let positions = constraints.filter(|constraint| constraint.is_holonomic(&self.assembly.system));
+        positions.map(|c| (c.name().to_owned(), c.expression())).collect()
+    }
+
+    /// What came of an analysis, its error put at the place in the file that is to blame.
+    pub(crate) fn placed<T>(&self, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
+        found.or_else(|error| match error {
+            AnalysisError::Nonholo(error) => self.assembly.placed(Err(error)),
+            AnalysisError::Mech(error) => self.assembly.placed(Err(error)),
+            AnalysisError::Expr(error) => self.assembly.placed(Err(MechError::from(error))),
+            other => Err(self.assembly.not_derived(other.to_string())),
+        })
+    }
+}
+
+const NONLINEAR: &str = "a constraint is not affine in the velocities";
+const NOT_CLOSED: &str = "the momenta are not solved for the velocities in closed form";

@@ -1,0 +1,205 @@
+//! What the motion keeps, and the fields of displacements to which it belongs.
+
+use pc_analysis::{
+    AnsatzSearch, ConservationVerdict, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz, Rates,
+};
+use pc_mech::{Equations, Expr, Identity, Neighbourhood, Number, Style, System};
+use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
+
+use crate::derived::energy_remark;
+use crate::lines::combination;
+use crate::theory::description::{Entry, Section, Side, Verdict};
+use crate::theory::ground::Ground;
+use crate::theory::options::TheoryOptions;
+use crate::words::short;
+
+/// What the motion of a model keeps, that an ansatz finds or that is known without, named for people.
+pub fn integrals_of<'g>(
+    assembly: &Assembly<'g>,
+    equations: &Equations<'g>,
+    near: &Neighbourhood<'g>,
+    by_ansatz: bool,
+) -> Integrals<'g> {
+    let mut integrals = match by_ansatz {
+        true => Integrals::find(equations, near),
+        false => Integrals::known(equations, near),
+    };
+    name_momenta(&mut integrals, equations.system());
+    if assembly.keeps_energy() && energy_remark(assembly).is_none() {
+        integrals.keep_energy(equations);
+    }
+    if energy_remark(assembly).is_some()
+        && let Some(energy) = energy_of_all(assembly, equations)
+    {
+        integrals.add_energy_of_all(equations, near, energy);
+    }
+    say_what_jumps(&mut integrals, assembly);
+    integrals
+}
+
+/// Names momenta by their displacements.
+fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
+    let name = |coefficients: &[Number]| {
+        let names = system.quasi_velocities().iter().map(ToString::to_string);
+        format!("momentum of {}", combination(coefficients.iter().map(ToString::to_string).zip(names)))
+    };
+    integrals.rename(|integral| match &integral.origin {
+        Origin::CyclicDisplacement { coefficients } => Some(name(coefficients)),
+        _ => None,
+    });
+}
+
+/// Says of what keeps its value between events whether resets may change it.
+fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
+    let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
+    integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
+}
+
+/// The energy of all velocities, which is that of a run, in the independent ones of the equations.
+fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
+    let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
+    let values = assembly.quasi_velocities_of(free).ok()?;
+    let known: Vec<(Expr<'g>, Expr<'g>)> = all.iter().copied().zip(values).collect();
+    let graph = assembly.system.graph();
+    Some(graph.substitute(&[assembly.system.energy()], &known)[0])
+}
+
+/// The integrals of the theory, those of the ansatz at the end, with what this was tried with.
+pub(crate) fn found<'g>(
+    ground: &Ground<'_, 'g>,
+    model: &Model,
+    options: &TheoryOptions,
+) -> Result<(Integrals<'g>, AnsatzSearch), ModelError> {
+    let assembly = ground.assembly;
+    let texts = options.functions.iter();
+    let functions: Result<Vec<Expr<'g>>, ModelError> =
+        texts.map(|text| model.function(assembly, text)).collect();
+    let mut integrals = integrals_of(assembly, &ground.equations, &ground.near, false);
+    let ansatz = PolynomialAnsatz { degree: options.degree, functions: functions? };
+    let made = ground.placed(integrals.add_polynomials(&ground.equations, &ground.near, &ansatz))?;
+    say_what_jumps(&mut integrals, assembly);
+    Ok((integrals, made))
+}
+
+/// Each with its verdict.
+pub(crate) fn section(
+    ground: &Ground<'_, '_>,
+    (integrals, made): &(Integrals<'_>, AnsatzSearch),
+    options: &TheoryOptions,
+) -> Section {
+    let rates = Rates::poincare(&ground.equations);
+    let entry = |integral: &Integral<'_>| {
+        let (verdict, words) = verdict(ground, &rates, integral);
+        let of_rate = match integral.verdict {
+            ConservationVerdict::Rate { rate, .. } => {
+                let rate = ground.free.graph().shorten(&[rate], ground.free.quasi_velocities())[0];
+                Some((Side::rate_of(&integral.name), Side::of(rate)))
+            }
+            _ => None,
+        };
+        let constant = Side::symbol("const", "\\text{const}");
+        let formulas = [(Side::of(integral.value), constant)].into_iter().chain(of_rate).collect();
+        let dependent = integral.dependent.then(|| "a function of those above".to_owned());
+        let words = words.into_iter().chain(dependent).collect();
+        Entry { formulas, words, ..Entry::default() }.named(integral.name.clone()).with(verdict)
+    };
+    let mut entries: Vec<Entry> = integrals.list().iter().map(entry).collect();
+    entries.push(Entry::words(tried(*made, options)));
+    Section { key: "integrals", title: "Integrals", entries }
+}
+
+/// What is known of an integral: where its rate is not seen to vanish, numbers at the start tell whether it does.
+fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) -> (Verdict, Option<String>) {
+    let between = integral.jumps.then(|| "between events".to_owned());
+    match integral.verdict {
+        ConservationVerdict::Conserved => (Verdict::Proved, between),
+        ConservationVerdict::ConservedHere => (Verdict::ProvedHere, between),
+        ConservationVerdict::BetweenJumps => (Verdict::Proved, Some("where it does not jump".to_owned())),
+        ConservationVerdict::NoFunction => {
+            (Verdict::Open, Some("it is no function of time and state alone".to_owned()))
+        }
+        ConservationVerdict::Rate { at_start, rate } => {
+            let left = rates.part_left(integral.value, &ground.near.centre).ok().flatten();
+            let verdict = left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
+            let at_start = at_start.map(|rate| format!("its rate at the start is {}", short(rate, 4)));
+            let frame = ground.free.frame();
+            // Beside the start only where all states are possible.
+            let is_free = ground.is_unbound() && frame.coordinates().len() == frame.rank();
+            match verdict {
+                Verdict::Disproved { .. } => (verdict, at_start),
+                _ if is_free => {
+                    let residual = ground.near.residual(ground.free.graph(), &[vec![rate]]);
+                    (Verdict::of(Identity::of(residual)), at_start)
+                }
+                // That numbers leave nothing at one state is no proof.
+                _ => (Verdict::Open, at_start),
+            }
+        }
+    }
+}
+
+/// What the ansatz was tried with, in words.
+fn tried(made: AnsatzSearch, options: &TheoryOptions) -> String {
+    let degree = options.degree;
+    let times = match options.functions.as_slice() {
+        [] => String::new(),
+        functions => format!(", times 1, {}", functions.join(", ")),
+    };
+    match made {
+        AnsatzSearch::Made { coefficients, functions } => format!(
+            "looked for among {functions} functions: degree up to {degree} in the velocities, up to {coefficients} in the \
+             coordinates (or in their sines and cosines){times}"
+        ),
+        AnsatzSearch::TooMany { functions } => format!(
+            "no more are looked for: there are {functions} functions of degree up to {degree} in the velocities{times}"
+        ),
+        AnsatzSearch::TooLong => "no more are looked for: the equations are too long".to_owned(),
+    }
+}
+
+/// X = a_s X_s of those integrals that are linear in the momenta.
+pub(crate) fn displacements(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Section {
+    let section = |entries| Section { key: "cyclic_displacements", title: "Cyclic displacements", entries };
+    let Ok(canonical) = &ground.canonical else { return section(Vec::new()) };
+    if ground.constrained.is_some() {
+        return section(Vec::new()); // constraints let through no displacement that is a symmetry of L alone
+    }
+    let entry = |integral: &Integral<'_>| {
+        let field = NoetherField::of(canonical, integral.value)?;
+        let right = Side::written(|style| written(&ground.free, &field, style));
+        let gauge = (!field.gauge.is_zero()).then(|| {
+            let f = field.gauge.display(Style::Book);
+            format!("L changes along it by a rate: to its momentum is added {f}")
+        });
+        let commutes = if field.commutes {
+            "commutes with all operators: cyclic in Chetaev's sense"
+        } else {
+            "is not seen to commute with all operators"
+        };
+        let mut entry = Entry::formula(Side::symbol("X", "X"), right).named(integral.name.clone());
+        entry.words = [commutes.to_owned()].into_iter().chain(gauge).collect();
+        Some(entry.with(if integral.verdict == ConservationVerdict::Conserved {
+            Verdict::Proved
+        } else {
+            Verdict::ProvedHere
+        }))
+    };
+    section(integrals.conserved().filter_map(entry).collect())
+}
+
+/// a_s X_s, the operators of velocities as ∂/∂x.
+fn written(system: &System<'_>, field: &NoetherField<'_>, style: Style) -> String {
+    let (frame, eta) = (system.frame(), system.quasi_velocities());
+    let is_lagrange = frame.velocities(eta) == eta;
+    let operator = |s: usize| {
+        let name = if is_lagrange { frame.coordinates()[s] } else { eta[s] }.display(style);
+        match (is_lagrange, style) {
+            (true, Style::Latex) => format!("\\frac{{\\partial}}{{\\partial {name}}}"),
+            (true, Style::Book | Style::Text) => format!("∂/∂{name}"),
+            (false, Style::Latex) => format!("X_{{{name}}}"),
+            (false, Style::Book | Style::Text) => format!("X_{name}"),
+        }
+    };
+    let terms = field.coefficients.iter().enumerate();
+    combination(terms.map(|(s, a)| (a.display(style), operator(s))))
+}

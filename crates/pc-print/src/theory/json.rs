@@ -1,0 +1,53 @@
+//! The theory for programs, as JSON.
+
+use serde_json::{Map, Value, json};
+
+use crate::theory::description::{Entry, Theory, Verdict};
+
+/// Sections by their keys, each a list of entries.
+pub(crate) fn written(theory: &Theory, title: &str) -> Value {
+    let mut object = Map::new();
+    object.insert("model".to_owned(), json!(title));
+    for section in &theory.sections {
+        object.insert(section.key.to_owned(), section.entries.iter().map(entry).collect());
+    }
+    Value::Object(object)
+}
+
+fn entry(entry: &Entry) -> Value {
+    let mut object = Map::new();
+    let mut insert = |key: &str, value: Value| object.insert(key.to_owned(), value);
+    if let Some(name) = &entry.name {
+        insert("name", json!(name));
+    }
+    if !entry.formulas.is_empty() {
+        let formulas = entry.formulas.iter();
+        insert(
+            "formulas",
+            formulas.map(|(left, right)| json!({ "left": left.text, "right": right.text })).collect(),
+        );
+    }
+    if !entry.values.is_empty() {
+        let values = entry.values.iter().map(|(name, value)| (name.clone(), json!(value)));
+        insert("values", Value::Object(values.collect()));
+    }
+    if let Some((subject, verdict)) = entry.verdict {
+        if let Some(subject) = subject {
+            insert("verdict_on", json!(subject));
+        }
+        insert("verdict", json!(verdict.word()));
+        match verdict {
+            Verdict::ProvedHere => {
+                insert("for_these_parameters", json!(true));
+            }
+            Verdict::Disproved { margin } => {
+                insert("margin", json!(margin));
+            }
+            Verdict::Proved | Verdict::Open => {}
+        }
+    }
+    if !entry.words.is_empty() {
+        insert("words", json!(entry.words));
+    }
+    Value::Object(object)
+}

@@ -1,0 +1,61 @@
+//! The theory for a paper: displays of LaTeX with amsmath.
+
+use std::fmt::Write as _;
+
+use crate::theory::description::{Entry, Section, Theory, in_text};
+use crate::theory::folded::folded_outside;
+use crate::words::short;
+
+/// The most characters of a line of source, about the width of a page.
+const WIDTH: usize = 140;
+
+/// A display for each section, with a comment above it; what is said without formulas stands in comments under it.
+pub(crate) fn written(theory: &Theory) -> String {
+    let mut page = format!("% {}: theory (needs amsmath)\n", theory.title);
+    for section in &theory.sections {
+        // Writing to a string cannot fail.
+        let _ = write!(page, "\n% {}\n", section.title);
+        display(&mut page, section);
+        for entry in &section.entries {
+            for words in &entry.words {
+                let of = entry.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+                let _ = writeln!(page, "% {of}{words}");
+            }
+        }
+    }
+    page
+}
+
+fn display(page: &mut String, section: &Section) {
+    let lines: Vec<String> = section.entries.iter().flat_map(lines).collect();
+    if !lines.is_empty() {
+        let _ = write!(page, "\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
+    }
+}
+
+fn lines(entry: &Entry) -> Vec<String> {
+    let verdict = entry.verdict.map_or_else(String::new, |(subject, verdict)| {
+        let subject = subject.map_or_else(String::new, |subject| format!("{subject} "));
+        format!(" && \\text{{{}}}", in_text(&format!("{subject}{}", verdict.in_words())))
+    });
+    let values = entry.values.iter().map(|(name, value)| (latex_name(name), short(*value, 6)));
+    let formulas = entry.formulas.iter().map(|(left, right)| (left.latex.clone(), right.latex.clone()));
+    let mut lines: Vec<String> = Vec::new();
+    for (i, (left, right)) in formulas.chain(values).enumerate() {
+        let parts = folded_outside(&right, WIDTH);
+        lines.extend(parts.iter().enumerate().map(|(j, part)| {
+            let (start, end) = (if j == 0 { format!("  {left} &= ") } else { "  &\\quad ".to_owned() }, "");
+            let verdict = if i == 0 && j + 1 == parts.len() { verdict.as_str() } else { end };
+            format!("{start}{part}{verdict}")
+        }));
+    }
+    if lines.is_empty() && !verdict.is_empty() {
+        lines.push(format!(" {verdict}"));
+    }
+    lines
+}
+
+/// A name of the model as a symbol.
+fn latex_name(name: &str) -> String {
+    pc_mech::Graph::new().symbol(name).display(pc_mech::Style::Latex)
+}

@@ -1,0 +1,90 @@
+//! The measure that the motion keeps, and Chaplygin's reducing multiplier.
+
+use pc_analysis::{MeasureSearch, ReducingMultiplier};
+use pc_mech::Expr;
+use pc_model::{Assembly, ModelError};
+use pc_nonholo::Voronets;
+
+use crate::theory::description::{Entry, Section, Side, Verdict};
+use crate::theory::ground::Ground;
+
+/// N of N dx dy.
+pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
+    let section = |entries| Ok(Section { key: "invariant_measure", title: "Invariant measure", entries });
+    if ground.assembly.constraints.nonlinear().is_some() {
+        return section(vec![open("not looked for: a constraint is not affine in the velocities")]);
+    }
+    let positions = ground.assembly.constraints.positions(&ground.assembly.system);
+    let found = MeasureSearch::of(&ground.free, positions.as_deref(), &ground.near.centre);
+    let measure = match ground.placed(found)? {
+        MeasureSearch::None => return section(vec![open("none found")]),
+        MeasureSearch::External => return section(vec![open("not looked for: forces are computed outside")]),
+        MeasureSearch::TooLong => return section(vec![open("not looked for: the equations are too long")]),
+        MeasureSearch::Found(measure) => measure,
+    };
+    let density = |plain: &str, latex: &str, density: Option<Expr<'_>>| {
+        let formula = |density| Entry::formula(Side::symbol(plain, latex), Side::of(density));
+        density.map(|density| formula(density).with(Verdict::Proved))
+    };
+    let densities = [density("N", "N", measure.density), density("Nη", "N_{\\eta}", measure.in_velocities)];
+    let mut entries: Vec<Entry> = densities.into_iter().flatten().collect();
+    let whose = if measure.liouville { ", Liouville's" } else { "" };
+    entries.push(Entry::words(format!("the motion keeps N dx dy and Nη dx dη{whose}")));
+    if measure.density.is_none() {
+        entries.push(Entry::words("its density is no short expression").with(Verdict::Proved));
+    }
+    let singular: Vec<String> = measure.singular.iter().map(|p| format!("{p} = 0")).collect();
+    let resets = ground.assembly.events.iter().any(|event| !event.resets.is_empty());
+    let words = [
+        (!singular.is_empty()).then(|| format!("singular where {}", singular.join(" or "))),
+        measure.jumps.then(|| "where nothing jumps".to_owned()),
+        resets.then(|| "between events".to_owned()),
+    ];
+    entries.extend(words.into_iter().flatten().map(Entry::words));
+    section(entries)
+}
+
+fn open(words: &str) -> Entry {
+    Entry::words(words).with(Verdict::Open)
+}
+
+/// N of dτ = N dt, and the Lagrangian in that time.
+pub(crate) fn multiplier(ground: &Ground<'_, '_>) -> Section {
+    let section = |entries| Section { key: "reducing_multiplier", title: "Chaplygin's multiplier", entries };
+    if ground.is_holonomic() || ground.assembly.constraints.nonlinear().is_some() {
+        return section(Vec::new());
+    }
+    let Some(voronets) = voronets(ground.assembly) else {
+        return section(vec![open("not looked for: the constraints are not solved for velocities")]);
+    };
+    if !voronets.is_chaplygin() {
+        return section(vec![Entry::words("the equations are not of Chaplygin's form")]);
+    }
+    let Ok(Some(reduced)) = ReducingMultiplier::of(&voronets) else {
+        return section(vec![open("none found")]);
+    };
+    let multiplier = Entry::formula(Side::symbol("N", "N"), Side::of(reduced.multiplier));
+    let lagrangian = Entry::formula(Side::symbol("L*", "L^{*}"), Side::of(reduced.system.lagrangian()));
+    section(vec![
+        multiplier.with(Verdict::Proved),
+        lagrangian,
+        Entry::words("dτ = N dt: in the time τ the independent coordinates move as L* says, x' = dx/dτ"),
+    ])
+}
+
+/// Chaplygin's reducing multiplier of a model; none also where the equations are not Voronets' in independent coordinates, or have
+/// no closed form.
+pub fn reducing_multiplier<'g>(assembly: &Assembly<'g>) -> Option<ReducingMultiplier<'g>> {
+    ReducingMultiplier::of(&voronets(assembly)?).ok()?
+}
+
+/// The equations of independent velocities, if the constraints are solved for the others.
+fn voronets<'g>(assembly: &Assembly<'g>) -> Option<Voronets<'g>> {
+    let held = assembly.constraints.multipliers()?.in_velocities().ok()?;
+    let mut transform = assembly.system.velocity_transform().ok()?;
+    let start = transform.to_velocities(assembly.t_start, &assembly.start);
+    let lagrange = held.equations().system();
+    let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
+    at.push((lagrange.frame().time(), assembly.t_start));
+    Voronets::shortest(&held, &at).ok()
+}

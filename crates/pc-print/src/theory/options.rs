@@ -1,0 +1,17 @@
+//! What is asked of the theory.
+
+/// What is asked of the theory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TheoryOptions {
+    /// The largest degree in the velocities of integrals that are looked for, at least 1.
+    pub degree: u32,
+    /// Functions of the place by which their coefficients may be multiplied, in the language of the model.
+    pub functions: Vec<String>,
+}
+
+impl Default for TheoryOptions {
+    /// Degree 2, no functions.
+    fn default() -> TheoryOptions {
+        TheoryOptions { degree: 2, functions: Vec::new() }
+    }
+}
