@@ -44,8 +44,8 @@
  * That a function takes a handle as `const` says that what it computes stays, no more.
  *
  * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
- * does not end your program; memory that is exhausted does, and a stack: threads that make models
- * and systems need some 256 KiB, more for long expressions.
+ * does not end your program; memory that is exhausted does, and a stack: a thread needs 128 KiB,
+ * whatever the model; what goes deeper takes a stack of its own, of 8 MiB, while it derives.
  */
 
 #ifndef PC_H
@@ -149,8 +149,8 @@ typedef enum {
    */
   PC_DISAGREEMENT = 14,
   /**
-   * The equations of the model would take more memory or time than they may, or somebody
-   * cancelled the work.
+   * The equations of the model, or an integration, would take more memory or time than they
+   * may, or somebody cancelled the work.
    */
   PC_LIMIT = 15,
   /**
@@ -266,8 +266,8 @@ typedef enum {
 } pc_direction;
 
 /**
- * Ends derivations that were given it in pc_system_options. Any number of threads may use it at
- * the same time. Free it with pc_cancel_free.
+ * Ends derivations of systems that were given it in pc_system_options, and integrations of these.
+ * Any number of threads may use it at the same time. Free it with pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
 
@@ -330,12 +330,13 @@ typedef struct {
    */
   uint64_t memory_limit;
   /**
-   * Most seconds that a derivation may take, positive; 0, the default, for no limit.
+   * Most seconds that a derivation may take, and each call of a solver or an ensemble of the
+   * system, positive; 0, the default, for no limit.
    */
   double time_limit;
   /**
-   * By which derivations are ended; NULL, the default, for none. It may be freed when
-   * pc_system_new has returned.
+   * By which derivations and integrations are ended; NULL, the default, for none. It may be
+   * freed when pc_system_new has returned.
    */
   const pc_cancel *cancel;
 } pc_system_options;
@@ -1085,14 +1086,14 @@ pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **er
 pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
 
 /**
- * A handle by which derivations are ended.
+ * A handle by which derivations and integrations are ended.
  */
 pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
- * Ends the derivations under way with PC_LIMIT, soon, and those that begin later at once. It
- * takes no lock and allocates nothing, so that a handler of signals may call it, which is all
- * that one may. NULL is allowed.
+ * Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
+ * at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
+ * which is all that one may. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
@@ -1382,6 +1383,19 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        pc_error **error);
 
 /**
+ * Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
+ * pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
+ * forces, of which it is not known, and with inputs that have tables.
+ */
+pc_status pc_system_time_derivative(const pc_system *system,
+                                    double t,
+                                    const double *y,
+                                    size_t y_length,
+                                    double *derivative,
+                                    size_t length,
+                                    pc_error **error);
+
+/**
  * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
  * the integrals of pc_model_keep to their values at the start of the model, or where
  * pc_system_keep_from said. Where there is nothing to be kept it stays.
@@ -1562,6 +1576,20 @@ pc_status pc_system_right_hand_side(const pc_system *system,
                                     double *right,
                                     size_t length,
                                     pc_error **error);
+
+/**
+ * Solves M w = v at (t, y), M as of pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
+ * numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is singular.
+ */
+pc_status pc_system_solve_mass_matrix(const pc_system *system,
+                                      double t,
+                                      const double *y,
+                                      size_t y_length,
+                                      const double *v,
+                                      size_t v_length,
+                                      double *w,
+                                      size_t w_length,
+                                      pc_error **error);
 
 /**
  * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
@@ -1763,7 +1791,7 @@ pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, 
  * Integrates to the time t, in the direction of the first step, and writes the state there. With
  * PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
  * next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
- * reached.
+ * reached; one of them is PC_LIMIT, by the time limit or the pc_cancel of the system's options.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -2040,7 +2068,8 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
  * returns. A member that fails is told as any other, with what it reached, and the others go on.
  * What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
- * stops it. The system may be used meanwhile.
+ * stops it; PC_LIMIT, after those members that were finished, if the time limit or the pc_cancel
+ * of the system's options ends it. The system may be used meanwhile.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

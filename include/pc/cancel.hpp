@@ -1,4 +1,4 @@
-// What derivations may take, and how they are ended.
+// What derivations and integrations may take, and how they are ended.
 
 #ifndef PC_CANCEL_HPP
 #define PC_CANCEL_HPP
@@ -10,7 +10,7 @@
 
 namespace pc {
 
-/// Ends derivations, from another thread or a handler of signals.
+/// Ends derivations and integrations, from another thread or a handler of signals.
 class cancel {
 public:
     cancel() : handle_(detail::make<handle>(pc_cancel_new)) {}
@@ -26,13 +26,13 @@ private:
     handle handle_;
 };
 
-/// What a derivation may take.
+/// What a derivation may take, and a call of a solver or an ensemble.
 struct limits {
-    /// Bytes of its expressions; 0 for 4 GiB.
+    /// Bytes of the expressions; 0 for 4 GiB.
     std::uint64_t memory = 0;
-    /// Seconds; 0 for any time.
+    /// Seconds of each; 0 for any time.
     double time = 0.0;
-    /// Ends it, unless null; it may be gone when the system is there.
+    /// Ends them, unless null; it may be gone when the system is there.
     const cancel *by = nullptr;
 };
 

@@ -179,6 +179,13 @@ public:
         to(matrix, pc_system_parameter_jacobian, t, y);
     }
 
+    /// ∂f/∂t
+    vector time_derivative(double t, view<const double> y) { return at(pc_system_time_derivative, dim(), t, y); }
+    void time_derivative(double t, view<const double> y, view<double> derivative)
+    {
+        to(derivative, pc_system_time_derivative, t, y);
+    }
+
     /// F(t, y, ẏ), which vanishes on motions.
     vector residual(double t, view<const double> y, view<const double> ydot)
     {
@@ -241,6 +248,11 @@ public:
     {
         const std::size_t k = dim() - coordinate_count() - state_count();
         return at(pc_system_mass_matrix, k * k, t, y);
+    }
+    /// M⁻¹ v
+    vector solve_mass_matrix(double t, view<const double> y, view<const double> v)
+    {
+        return at(pc_system_solve_mass_matrix, dim() - coordinate_count() - state_count(), t, y, v.data(), v.size());
     }
     /// r of M η̇ = r
     vector right_hand_side(double t, view<const double> y)

@@ -1,13 +1,14 @@
-//! What a derivation may take, and ending it from elsewhere.
+//! What derivations and integrations may take, and ending them from elsewhere.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
 mod common;
 
+use std::ffi::{c_int, c_void};
 use std::ptr;
 use std::time::{Duration, Instant};
 
-use common::{Model, Refusal, System, call};
+use common::{Model, Refusal, Solver, System, call};
 use pc::*;
 
 /// Coordinates in a frame that is dense: every quasi-velocity is made of all velocities, with a cosine each.
@@ -121,4 +122,121 @@ fn what_is_derived_goes_on_without_the_handle() {
     unsafe { pc_cancel_free(cancel) };
     let (t, y) = system.start();
     assert_eq!(system.at(pc_system_mass_matrix, t, &y, 9).unwrap().len(), 9);
+}
+
+/// A heavy top to a time that it does not reach before hours.
+fn endless(options: &pc_system_options) -> (System, Solver) {
+    let system = derive(&Model::named("heavy-top-lagrange"), options).unwrap();
+    let options = pc_solver_options { max_steps: u64::MAX, ..Default::default() };
+    let solver = Solver::of(&system, &options);
+    (system, solver)
+}
+
+const HOURS: f64 = 1e12;
+
+#[test]
+fn time_of_integrations_is_limited_call_by_call() {
+    let (system, solver) = endless(&pc_system_options { time_limit: 1.0, ..Default::default() });
+    let (n, begun) = (system.dim(), Instant::now());
+    let mut y = vec![0.0; n];
+    // SAFETY: a live solver and room as said.
+    let mut advance =
+        |t: f64| call(|error| unsafe { pc_solver_advance(solver.0, t, y.as_mut_ptr(), n, error) });
+    let refusal = advance(HOURS).unwrap_err();
+    assert_eq!(refusal.status, pc_status::PC_LIMIT);
+    let said = "more time would be needed than the limit of 1 s, after reaching t = ";
+    assert!(refusal.message.starts_with(said), "{}", refusal.message);
+    // On a busy machine some tenths of a second may go by.
+    assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+    let mut t = f64::NAN;
+    // SAFETY: a live solver and a place for a number.
+    call(|error| unsafe { pc_solver_time(solver.0, &raw mut t, error) }).unwrap();
+    assert!(t > 0.0 && t < HOURS);
+    advance(t + 1.0).unwrap();
+}
+
+#[test]
+fn integrations_are_cancelled() {
+    let mut cancel = ptr::null_mut();
+    // SAFETY: a place for a handle.
+    call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();
+    let (system, solver) = endless(&pc_system_options { cancel, ..Default::default() });
+    let n = system.dim();
+    extern "C" fn request(t: f64, _: *const f64, _: usize, cancel: *mut c_void) -> c_int {
+        if t >= 2.0 {
+            // SAFETY: the handle of the test.
+            unsafe { pc_cancel_request(cancel.cast()) };
+        }
+        0
+    }
+    let times: Vec<f64> = (1..1000).map(f64::from).collect();
+    // SAFETY: a live solver, numbers as said, a function of that type.
+    let refusal = call(|error| unsafe {
+        pc_solver_run(solver.0, times.as_ptr(), times.len(), Some(request), cancel.cast(), error)
+    });
+    let refusal = refusal.unwrap_err();
+    assert_eq!(refusal.status, pc_status::PC_LIMIT);
+    assert!(refusal.message.starts_with("cancelled, after reaching t = "), "{}", refusal.message);
+    let (mut t, mut y) = (f64::NAN, vec![0.0; n]);
+    // SAFETY: a live solver and room as said.
+    let refusal =
+        call(|error| unsafe { pc_solver_step(solver.0, HOURS, &raw mut t, y.as_mut_ptr(), n, error) });
+    assert_eq!(refusal.unwrap_err().status, pc_status::PC_LIMIT);
+    // SAFETY: a live solver and room as said.
+    unsafe {
+        call(|error| pc_solver_time(solver.0, &raw mut t, error)).unwrap();
+        call(|error| pc_solver_state(solver.0, y.as_mut_ptr(), n, error)).unwrap();
+    }
+    assert!((2.0..5.0).contains(&t) && y.iter().all(|y| y.is_finite()), "{t}");
+    // SAFETY: ours, freed once.
+    unsafe { pc_cancel_free(cancel) };
+}
+
+#[test]
+fn an_ensemble_ends_with_the_members_that_were_finished() {
+    let mut cancel = ptr::null_mut();
+    // SAFETY: a place for a handle.
+    call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();
+    let system =
+        derive(&Model::named("euler-top"), &pc_system_options { cancel, ..Default::default() }).unwrap();
+    extern "C" fn request(member: *const pc_member, cancel: *mut c_void) -> c_int {
+        // SAFETY: a member, and the handle of the test.
+        unsafe {
+            assert_eq!((*member).status, pc_status::PC_OK);
+            if (*member).number == 3 {
+                pc_cancel_request(cancel.cast());
+            }
+        }
+        0
+    }
+    let times = [100.0];
+    let run = || {
+        // SAFETY: a live system, numbers as said, a function of that type.
+        call(|error| unsafe {
+            let (none, length) = (ptr::null(), times.len());
+            let times = times.as_ptr();
+            let user = cancel.cast();
+            pc_ensemble_run(
+                system.0,
+                ptr::null(),
+                100_000,
+                0.0,
+                none,
+                0,
+                none,
+                0,
+                times,
+                length,
+                2,
+                Some(request),
+                user,
+                error,
+            )
+        })
+    };
+    let refusal = run().unwrap_err();
+    assert_eq!((refusal.status, refusal.message.as_str()), (pc_status::PC_LIMIT, "cancelled"));
+    assert_eq!(run().unwrap_err().status, pc_status::PC_LIMIT);
+    // SAFETY: ours, freed once.
+    unsafe { pc_cancel_free(cancel) };
 }

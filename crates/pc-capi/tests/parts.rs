@@ -95,6 +95,81 @@ fn the_right_hand_side_and_its_derivatives() {
     }
 }
 
+/// M = ((2, ½), (½, 1)), and with forces by time alone ∂f/∂t = M⁻¹ (0, −c sin(c t)); in momenta nothing is divided by M.
+#[test]
+fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
+    let (t, y, c) = (0.7, [0.9, 0.1, -0.3, 0.4], 0.5_f64);
+    let solved = |r: [f64; 2]| [(r[0] - r[1] / 2.0) / 1.75, (2.0 * r[1] - r[0] / 2.0) / 1.75];
+    let near = |found: &[f64], expected: &[f64]| {
+        // A few roundings of numbers about 1.
+        let near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15);
+        assert!(near && found.len() == expected.len(), "{found:?} {expected:?}");
+    };
+    let change = [0.0, -c * (t * c).sin()];
+    let model = Model::text(DRIVEN).unwrap();
+    let system = model.system(pc_form::PC_POINCARE).unwrap();
+    let [x, y_] = solved(change);
+    near(&system.at(pc_system_time_derivative, t, &y, 4).unwrap(), &[0.0, 0.0, x, y_]);
+    let canonical = model.system(pc_form::PC_CANONICAL).unwrap();
+    near(&canonical.at(pc_system_time_derivative, t, &y, 4).unwrap(), &[0.0, 0.0, change[0], change[1]]);
+    for (system, v) in [(&system, [1.0, -2.0]), (&canonical, [0.0, 3.0])] {
+        let mut w = [0.0; 2];
+        // SAFETY: a live system, numbers and room as said.
+        call(|e| unsafe {
+            pc_system_solve_mass_matrix(system.0, t, y.as_ptr(), 4, v.as_ptr(), 2, w.as_mut_ptr(), 2, e)
+        })
+        .unwrap();
+        near(&w, &solved(v));
+    }
+    let (mut both, wrong) = ([1.0, 2.0], system.at(pc_system_time_derivative, t, &y, 3).unwrap_err());
+    assert_eq!(wrong.status, PC_INVALID_ARGUMENT);
+    // SAFETY: a live system; the arrays are one, which is refused.
+    let shared = call(|e| unsafe {
+        let w = both.as_mut_ptr();
+        pc_system_solve_mass_matrix(system.0, t, y.as_ptr(), 4, w, 2, w, 2, e)
+    });
+    assert_eq!(shared.unwrap_err().message, "v and w share memory");
+    // Where nothing contains t there is nothing to derive.
+    let top = System::of("euler-top");
+    let (t, y) = top.start();
+    assert_eq!(top.at(pc_system_time_derivative, t, &y, y.len()), Ok(vec![0.0; y.len()]));
+    let forced = Model::text(DRIVEN).unwrap();
+    let on = common::c("x");
+    // SAFETY: a live model and text.
+    call(|error| unsafe { pc_model_add_external_force(forced.0, on.as_ptr(), error) }).unwrap();
+    let forced = forced.system(pc_form::PC_POINCARE).unwrap();
+    assert_eq!(forced.at(pc_system_time_derivative, 0.7, &[0.0; 4], 4).unwrap_err().status, PC_UNSUPPORTED);
+}
+
+/// Of models that depend on time, in both forms and with multipliers, against quotients: h² is 1e-8 of the third derivative,
+/// and rounding 1e-16 over h.
+#[test]
+fn derivatives_by_time_are_limits_of_quotients() {
+    const HELD: &str = "[coordinates]\nx = 1.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = 0.0\n\"y'\" = 0.3\n\
+                        [constraints]\nrod = \"x^2 + y^2 - (1 + sin(t)/4)^2\"\n\
+                        [lagrangian]\nkinetic = \"(1 + t^2/2)*(x'^2 + y'^2)/2\"\npotential = \"y*cos(t)\"\n\
+                        [simulation]\nt_start = 0.0\n";
+    let held = || Model::text(&HELD.replace("\"x'\" = 0.0", "\"x'\" = 0.25")).unwrap();
+    let mut compared = 0;
+    for (name, model) in [("voronets-rheonomic", None), ("turning-hoop", None), ("held", Some(held()))] {
+        let model = model.unwrap_or_else(|| Model::named(name));
+        for form in [pc_form::PC_POINCARE, pc_form::PC_CANONICAL] {
+            let Ok(system) = model.system(form) else { continue };
+            let (t, y) = system.start();
+            let (n, h) = (y.len(), 1e-4);
+            let found = system.at(pc_system_time_derivative, t, &y, n).unwrap();
+            let [after, before] = [t + h, t - h].map(|t| system.at(pc_system_rhs, t, &y, n).unwrap());
+            let quotients = after.iter().zip(&before).map(|(a, b)| (a - b) / (2.0 * h));
+            let size = after.iter().fold(1.0f64, |size, rate| size.max(rate.abs()));
+            for (found, quotient) in found.iter().zip(quotients) {
+                assert!((found - quotient).abs() < 1e-6 * size, "{name}: {found} {quotient}");
+            }
+            compared += usize::from(found.iter().any(|&value| value != 0.0));
+        }
+    }
+    assert!(compared >= 4, "{compared}");
+}
+
 #[test]
 fn a_kernel_evaluates_many_states() {
     // √x has no rate below 0.

@@ -5,7 +5,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use pc_cli::args::input;
 use pc_cli::args::options::RunForm;
 use pc_cli::commands::run::integrate;
 use pc_cli::motion::plan::Plan;
@@ -15,7 +14,7 @@ use pc_cli::plot::picture::Picture;
 use pc_cli::report::text;
 use pc_mech::Graph;
 use pc_model::{Builtin, Model};
-use pc_print::{balance, brackets, columns, kinematics};
+use pc_print::{Form, Layout, Page, columns, page};
 use pc_solve::Method;
 
 const MODEL: &str = "heavy-top-lagrange";
@@ -59,11 +58,11 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
 
     section("the equations derived from it");
     let graph = Graph::new();
-    let (_, equations) = input::derive(&model, &graph)?;
-    let system = equations.system();
-    let rates = kinematics(system, equations.velocities());
-    for line in rates.iter().chain(&brackets(system, &[])[..3]).chain(&balance(&equations)) {
-        println!("  {line}");
+    let assembly = model.assemble(&graph)?;
+    let printed = page(Form::Poincare, Page::Text, &Layout::default(), model.title(), &assembly)?;
+    for heading in ["Kinematics", "Brackets", "Equations"] {
+        let lines = printed.lines().skip_while(|line| *line != heading).skip(1);
+        lines.take_while(|line| !line.is_empty()).for_each(|line| println!("{line}"));
     }
 
     section("the motion, relative tolerance 1e-12");
@@ -78,6 +77,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         samples_per_step: None,
         accumulation: None,
         method: Method::Adams,
+        deadline: model.budget().deadline().clone(),
     };
     let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;
     show_table(&table);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
-use pc_solve::{Code, SolveError};
+use pc_solve::{Code, SolveError, Spent};
 use pc_verify::VerifyError;
 
 use crate::exit_code;
@@ -152,6 +152,14 @@ pub enum CliError {
         /// Whether forces jump where the state changes, as dry friction does.
         jumps: bool,
     },
+    /// A limit of time.
+    #[error("ended at t = {}: {limit}", short(*t, 17))]
+    Ended {
+        /// How far the integration was.
+        t: f64,
+        /// The limit.
+        limit: Spent,
+    },
     /// Ctrl-C.
     #[error("interrupted at t = {}", short(*t, 17))]
     Interrupted {
@@ -188,7 +196,7 @@ impl CliError {
         match self {
             CliError::Model(error) => error.category().exit_code(),
             CliError::Sweep(error) => error.exit_code(),
-            CliError::Verify(_) | CliError::Rows { .. } => 4,
+            CliError::Verify(_) | CliError::Rows { .. } | CliError::Ended { .. } => 4,
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }

@@ -281,7 +281,7 @@ t_end = 20
 "#;
     assert_eq!(
         section(model, &["--form", "canonical"], "Kinematics"),
-        "th' = p_th/I1 - p_ps/I1\nps' = p_ps (I1 + I2)/(I1 I2) - p_th/I1\n"
+        "th' = (p_th - p_ps)/I1\nps' = (p_ps (I1 + I2)/I2 - p_th)/I1\n"
     );
     assert_eq!(section(model, &["--form", "canonical"], "Equations"), "p_th' = 0\np_ps' = -k sin(ps)\n");
 }

@@ -313,7 +313,7 @@ fn the_measure_that_a_motion_keeps_is_written() {
         ("relativistic-particle", "ρ dx dy, (ρ/((η1² + η2²)/c² - 1)²) dx dη, Liouville's"),
         (
             "spherical-pendulum-cartesian",
-            "-z dx dy, (-z ((x²/z² + 1) (y²/z² + 1) - x² y²/z⁴)) dx dη, Liouville's",
+            "-z dx dy, (z (x² y²/z⁴ - (x²/z² + 1) (y²/z² + 1))) dx dη, Liouville's",
         ),
         ("turning-wire", "(α t + 1) dx dy, (1/(α t + 1)) dx dη, Liouville's"),
         ("bouncing-ball", "dx dy, and so dx dη, Liouville's, between events"),

@@ -112,8 +112,9 @@ fn canonical_equations_in_print() {
         "Heavy top in Euler's angles: canonical equations",
         "θ' = p_ω1 cos(φ)/I1 - p_ω2 sin(φ)/I2",
         "p_ω1 = I1 ω1",
-        "p_ω1²/(2 I1) + p_ω2²/(2 I2) + p_ω3²/(2 I3) + mg (r1 sin(φ) sin(θ) + r2 cos(φ) sin(θ) + r3 cos(θ))",
-        "p_ω1' = r3 mg cos(φ) sin(θ) - r2 mg cos(θ) - p_ω2 p_ω3 (1/I2 - 1/I3)",
+        "p_ω1²/(2 I1) + p_ω2²/(2 I2) + p_ω3²/(2 I3) + mg (r1 sin(φ) sin(θ) + r2 cos(φ) sin(θ) + r3 γ3)",
+        "γ3 = cos(θ)",
+        "p_ω1' = r3 mg cos(φ) sin(θ) - r2 mg γ3 - p_ω2 p_ω3 (1/I2 - 1/I3)",
     ] {
         assert!(text.contains(line), "{line} not in {text}");
     }
@@ -132,8 +133,8 @@ fn canonical_equations_that_are_not_closed_in_print() {
     for line in [
         "Momenta\n  p_η1 = η1/sqrt(1 - (η1² + η2²)/c²)\n",
         "Hamiltonian\n  c² sqrt(1 - (η1² + η2²)/c²) - κ/ρ + η1 p_η1 + η2 p_η2\n",
-        "p_η1' = p_η2 η2/ρ - κ/ρ²",
-        "p_η2' = -p_η2 η1/ρ",
+        "p_η1' = η2 p_η2/ρ - κ/ρ²",
+        "p_η2' = -η1 p_η2/ρ",
         "Operations of one right-hand side, quasi-velocities known",
     ] {
         assert!(text.contains(line), "{line} not in {text}");
@@ -153,12 +154,9 @@ fn canonical_equations_that_are_not_closed_in_print() {
 #[test]
 fn lagranges_equations_in_print() {
     let text = pc(&["derive", "heavy-top-euler", "--form", "lagrange"]);
-    for line in [
-        "Lagrange's equations",
-        "all operators commute",
-        "M(φ', ψ') = I3 cos(θ)",
-        "I3 ψ'' cos(θ) + I3 φ'' = ",
-    ] {
+    for line in
+        ["Lagrange's equations", "all operators commute", "M(φ', ψ') = I3 γ3", "I3 ψ'' γ3 + I3 φ'' = "]
+    {
         assert!(text.contains(line), "{line} not in {text}");
     }
     let output = Command::new(env!("CARGO_BIN_EXE_pc"))

@@ -1,6 +1,6 @@
 //! What can go wrong with expressions.
 
-use crate::graph::budget::Spent;
+use crate::graph::limits::Spent;
 
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

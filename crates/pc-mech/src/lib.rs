@@ -223,6 +223,7 @@ mod transform;
 pub use compiled::forced_motion::ForcedMotion;
 pub use compiled::legendre_transform::LegendreTransform;
 pub use compiled::machine_code::MachineCode;
+pub use compiled::mass_factors::{MassFactors, SingularMatrix};
 pub use compiled::motion::Motion;
 pub use compiled::options::CompileOptions;
 pub use compiled::projection::integrals::KeptIntegrals;

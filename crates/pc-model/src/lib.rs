@@ -25,6 +25,7 @@
 //! ```
 
 mod assembly;
+mod deep;
 mod diagnostics;
 pub mod document;
 mod flow;
@@ -38,6 +39,7 @@ pub use assembly::constraint_treatment::{
 pub use assembly::event::Event;
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;
+pub use deep::deep;
 pub use diagnostics::category::Category;
 pub use diagnostics::error::{Diagnostic, ModelError};
 pub use diagnostics::error_kind::ErrorKind;

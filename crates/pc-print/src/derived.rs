@@ -99,11 +99,6 @@ impl<'g> Derived<'g> {
 }
 
 impl<'g> Derived<'g> {
-    /// The energy, and a line with what is to be known of it.
-    pub fn with_remark(&self, energy: String) -> Vec<String> {
-        [energy].into_iter().chain(self.energy_remark.map(|remark| format!("({remark})"))).collect()
-    }
-
     /// The left-hand side of a constraint, written out if it is a quasi-velocity.
     pub fn vanishing(&self, constraint: &Constraint<'g>) -> Expr<'g> {
         let expression = constraint.expression();

@@ -1,102 +1,161 @@
 //! Equations for programs, as JSON.
 
-use pc_mech::{Canonical, Expr, System};
+use pc_expr::{Given, Names, Side, Style, Written};
+use pc_mech::{Expr, Graph};
 use serde_json::{Map, Value, json};
 
-use crate::constraints::constraint_objects;
-use crate::derived::Derived;
+use crate::constraints::kind_in_words;
+use crate::layout::Layout;
 use crate::operations::Operations;
-use crate::sides::{operator_names, rates_of_states};
+use crate::sheet::{Balance, Bracket, Sheet};
 
-/// The equations for programs.
-pub(crate) fn poincare(title: &str, derived: &Derived<'_>, operations: &Operations) -> Value {
-    let equations = &derived.equations;
-    let mut object =
-        description(title, equations.system(), &derived.vanishing, &rates_of_states(equations.system()));
-    if !derived.constraints.is_empty() {
-        object.insert("constraints".to_owned(), constraint_objects(derived));
-        let reactions =
-            derived.reactions.iter().map(|(name, value)| (name.to_string(), json!(value.to_string())));
-        object.insert("reactions".to_owned(), Value::Object(reactions.collect()));
-    }
-    object.insert("mass_matrix".to_owned(), json!(matrix(&equations.mass_matrix().to_rows())));
-    object.insert("equations".to_owned(), json!(strings(equations.right_hand_side())));
-    object.insert("energy".to_owned(), json!(equations.energy().to_string()));
-    if let Some(remark) = derived.energy_remark {
-        object.insert("energy_remark".to_owned(), json!(remark));
-    }
-    object.insert("operations".to_owned(), operations.object());
-    Value::Object(object)
-}
-
-/// What all forms of the equations have in common.
-fn description(
-    title: &str,
-    system: &System<'_>,
-    vanishing: &[Expr<'_>],
-    state_rates: &[Expr<'_>],
-) -> Map<String, Value> {
-    let frame = system.frame();
-    let name = operator_names(&[system.quasi_velocities(), vanishing].concat(), "0");
-    let free = system.quasi_velocities().len();
-    let structure: Vec<Value> = system
-        .structure()
-        .nonzero()
-        .filter(|&(r, s, m, _)| r <= free && s <= free && m < name.len())
-        .map(|(r, s, m, c)| json!({ "r": name[r], "s": name[s], "m": name[m], "value": c.to_string() }))
-        .collect();
-    let parameters: Map<String, Value> =
-        system.parameters().iter().map(|(symbol, value)| (symbol.to_string(), json!(value))).collect();
-    let entries = [
-        ("model", json!(title)),
-        ("coordinates", json!(strings(frame.coordinates()))),
-        ("quasi_velocities", json!(strings(system.quasi_velocities()))),
-        ("parameters", Value::Object(parameters)),
-        ("kinematics", json!({ "b": matrix(&frame.b().to_rows()), "b_0": strings(frame.b0()) })),
-        ("structure_coefficients", json!(structure)),
-    ];
-    let mut object: Map<String, Value> =
-        entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    if !state_rates.is_empty() {
-        let rate = |((z, _), rate): (&(Expr<'_>, _), &Expr<'_>)| (z.to_string(), json!(rate.to_string()));
-        object.insert("states".to_owned(), system.states().iter().zip(state_rates).map(rate).collect());
-    }
-    object
-}
-
-/// The expressions as text.
-fn strings(list: &[Expr<'_>]) -> Vec<String> {
-    list.iter().map(Expr::to_string).collect()
-}
-
-fn matrix(rows: &[Vec<Expr<'_>>]) -> Vec<Vec<String>> {
-    rows.iter().map(|row| strings(row)).collect()
-}
-
-/// The equations for programs. Where they are not `closed`, there are no `quasi_velocities_of_momenta`, and the
+/// The equations for programs. Where canonical equations are not closed, there are no `quasi_velocities_of_momenta`, and the
 /// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
-pub(crate) fn canonical(
+pub(crate) fn page(
     title: &str,
-    derived: &Derived<'_>,
-    equations: &Canonical<'_>,
+    sheet: &Sheet<'_>,
     operations: &Operations,
+    layout: &Layout,
+    page: &Graph,
 ) -> Value {
-    let mut object = description(title, equations.system(), &[], equations.state_rates());
-    let solved = equations.is_closed().then(|| strings(equations.quasi_velocities()));
-    if !derived.constraints.is_empty() {
-        object.insert("constraints".to_owned(), constraint_objects(derived));
+    let names = sheet.names(layout, page);
+    let text = Text(names.written(Style::Text));
+    let definitions: Vec<Value> = names
+        .list()
+        .iter()
+        .map(|name| json!({ "name": name.name, "value": in_language(&text.0.meaning(name.value).join(" ")) }))
+        .collect();
+    let mut object = Map::new();
+    let mut put = |key: &str, value: Value| _ = object.insert(key.to_owned(), value);
+    put("model", json!(title));
+    put("coordinates", text.list(&sheet.coordinates));
+    put("quasi_velocities", text.list(&sheet.quasi_velocities));
+    let parameters = sheet.parameters.iter().map(|(name, value)| (name.clone(), json!(value)));
+    put("parameters", Value::Object(parameters.collect()));
+    if !definitions.is_empty() {
+        put("definitions", json!(definitions));
     }
-    for (key, value) in [
-        ("momenta", json!(strings(equations.momenta()))),
-        ("closed", json!(equations.is_closed())),
-        ("momenta_of_velocities", json!(strings(equations.momenta_of_velocities()))),
-        ("quasi_velocities_of_momenta", json!(solved)),
-        ("hamiltonian", json!(equations.hamiltonian().to_string())),
-        ("velocities", json!(strings(equations.velocities()))),
-        ("equations", json!(strings(equations.right_hand_side()))),
-        ("operations", operations.object()),
-    ] {
-        object.insert(key.to_owned(), value);
+    put("kinematics", json!({ "b": text.rows(&sheet.frame.0), "b_0": text.list(&sheet.frame.1) }));
+    put("structure_coefficients", text.structure(sheet));
+    if !sheet.states.is_empty() {
+        let name = |rate: &Expr<'_>| rate.to_string().trim_end_matches('\'').to_owned();
+        let states = sheet.states.iter().map(|(rate, value)| (name(rate), text.line(*value)));
+        put("states", Value::Object(states.collect()));
     }
+    if !sheet.constraints.is_empty() {
+        let constraint = |(name, left, kind): &(String, Expr<'_>, _)| json!({ "name": name, "expression": text.line(*left), "kind": kind_in_words(*kind) });
+        put("constraints", sheet.constraints.iter().map(constraint).collect());
+    }
+    match &sheet.balance {
+        Balance::Velocities { mass, right, .. } => {
+            if !sheet.constraints.is_empty() {
+                let reactions = sheet.reactions.iter();
+                let reactions = reactions.map(|(name, value)| (name.to_string(), text.line(*value)));
+                put("reactions", Value::Object(reactions.collect()));
+            }
+            put("mass_matrix", text.rows(mass));
+            put("equations", text.list(right));
+            put("energy", text.line(sheet.energy));
+            if let Some(remark) = sheet.energy_remark {
+                put("energy_remark", json!(remark));
+            }
+        }
+        Balance::Momenta { momenta, of_velocities, velocities, right, .. } => {
+            put("momenta", text.list(momenta));
+            put("closed", json!(velocities.is_some()));
+            put("momenta_of_velocities", text.list(of_velocities));
+            let solved = velocities.as_ref().map(|values| values.iter().map(|&eta| text.line(eta)));
+            put("quasi_velocities_of_momenta", json!(solved.map(Iterator::collect::<Vec<_>>)));
+            put("hamiltonian", text.line(sheet.energy));
+            let rates: Vec<Expr<'_>> = sheet.rates.iter().map(|&(_, value)| value).collect();
+            put("velocities", text.list(&rates));
+            put("equations", text.list(right));
+        }
+    }
+    put("operations", operations.object());
     Value::Object(object)
+}
+
+/// Text in the expression language, which has d(x') for x''.
+fn in_language(text: &str) -> String {
+    let mut pieces = text.split("''");
+    let mut written = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_';
+        let begin = written
+            .char_indices()
+            .rev()
+            .take_while(|&(_, c)| is_part(c))
+            .last()
+            .map_or(written.len(), |(i, _)| i);
+        let name = written.split_off(begin);
+        written += &format!("d({name}')");
+        written += piece;
+    }
+    written
+}
+
+/// Expressions as JSON.
+struct Text(Written);
+
+impl Text {
+    fn line(&self, expression: Expr<'_>) -> Value {
+        json!(in_language(&self.0.line(expression)))
+    }
+
+    fn list(&self, expressions: &[Expr<'_>]) -> Value {
+        expressions.iter().map(|&expression| self.line(expression)).collect()
+    }
+
+    fn rows(&self, rows: &[Vec<Expr<'_>>]) -> Value {
+        rows.iter().map(|row| self.list(row)).collect()
+    }
+
+    /// The coefficients c_rs^m that are not zero, by the names of the quasi-velocities, 0 for time.
+    fn structure(&self, sheet: &Sheet<'_>) -> Value {
+        let name = |s: &usize| s.checked_sub(1).map_or("0", |s| sheet.brackets.operators[s].as_str());
+        let coefficients = sheet.brackets.nonzero.iter().flat_map(|Bracket { pair: [r, s], components }| {
+            components.iter().map(move |(m, c)| (r, s, m, c))
+        });
+        let coefficients = coefficients
+            .map(|(r, s, m, c)| json!({ "r": name(r), "s": name(s), "m": name(m), "value": self.line(*c) }));
+        coefficients.collect()
+    }
+}
+
+impl<'p> Sheet<'p> {
+    /// Names for what is long in what programs are told.
+    fn names(&self, layout: &Layout, page: &'p Graph) -> Names<'p> {
+        let (b, b_0) = &self.frame;
+        let second = |pairs: &[(Expr<'p>, Expr<'p>)]| pairs.iter().map(|&(_, x)| x).collect::<Vec<_>>();
+        let structure =
+            self.brackets.nonzero.iter().flat_map(|bracket| bracket.components.iter().map(|&(_, c)| c));
+        let mut all: Vec<Expr<'p>> = [b.concat(), b_0.clone(), structure.collect()].concat();
+        all.extend(second(&self.states));
+        all.extend(self.constraints.iter().map(|&(_, left, _)| left));
+        match &self.balance {
+            Balance::Velocities { mass, right, .. } => {
+                all.extend(second(&self.reactions));
+                all.extend([mass.concat(), right.clone(), vec![self.energy]].concat());
+            }
+            Balance::Momenta { of_velocities, velocities, right, .. } => {
+                let velocities = velocities.clone().unwrap_or_default();
+                all.extend([of_velocities.clone(), velocities, vec![self.energy]].concat());
+                all.extend([second(&self.rates), right.clone()].concat());
+            }
+        }
+        let given: &[Given<'p>] = if layout.inline { &[] } else { &self.definitions };
+        page.names(&all.into_iter().map(Side::Sum).collect::<Vec<_>>(), given, layout.room())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn accelerations_are_read_back() {
+        assert_eq!(in_language("2*x''*sin(φ) - ψ_1''^2 + x'"), "2*d(x')*sin(φ) - d(ψ_1')^2 + x'");
+        assert_eq!(in_language("a + b"), "a + b");
+    }
 }

@@ -2,108 +2,171 @@
 
 use std::fmt::Write as _;
 
-use pc_mech::{Canonical, Expr, Style, System};
+use pc_expr::{Names, Style, Written};
+use pc_mech::{Expr, Graph};
 
-use crate::derived::Derived;
-use crate::sides::{momenta, rates_of_states, state_rates};
+use crate::layout::Layout;
+use crate::lines::columns;
+use crate::part::{Heading, Part, Parts, Row};
+use crate::sheet::{Bracket, Sheet};
 
-/// One display for each part of Poincaré's equations, with a comment above it.
-pub(crate) fn poincare(heading: &str, derived: &Derived<'_>) -> String {
-    let equations = &derived.equations;
-    let set = |list: &[(Expr<'_>, Expr<'_>)]| -> Vec<(String, String)> {
-        list.iter().map(|(left, right)| (left.display(Style::Latex), right.display(Style::Latex))).collect()
-    };
-    displays(
-        heading,
-        &[
-            ("Constraints", constraints(derived)),
-            ("Kinematics", kinematics(equations.system(), equations.velocities())),
-            ("Brackets", brackets(equations.system(), &derived.vanishing)),
-            ("Equations", equations.balance(Style::Latex)),
-            ("States", state_rates(equations.system(), &rates_of_states(equations.system()), Style::Latex)),
-            (&titled("Energy", derived), vec![("E".to_owned(), equations.energy().display(Style::Latex))]),
-            ("Reactions", set(&derived.reactions)),
-        ],
-    )
-}
-
-fn constraints(derived: &Derived<'_>) -> Vec<(String, String)> {
-    let constraints = derived.constraints.iter();
-    constraints.map(|(c, _)| (derived.vanishing(c).display(Style::Latex), "0".to_owned())).collect()
-}
-
-/// The same of the canonical equations.
-pub(crate) fn canonical(heading: &str, derived: &Derived<'_>, equations: &Canonical<'_>) -> String {
-    displays(
-        heading,
-        &[
-            ("Constraints", constraints(derived)),
-            ("Kinematics", kinematics(equations.system(), equations.velocities())),
-            ("Brackets", brackets(equations.system(), &[])),
-            ("Momenta", momenta(equations, Style::Latex)),
-            (
-                &titled("Hamiltonian", derived),
-                vec![("H".to_owned(), equations.hamiltonian().display(Style::Latex))],
-            ),
-            ("Equations", equations.balance(Style::Latex)),
-            ("States", state_rates(equations.system(), equations.state_rates(), Style::Latex)),
-        ],
-    )
-}
-
-/// The title with what is to be known of the energy.
-fn titled(title: &str, derived: &Derived<'_>) -> String {
-    derived.energy_remark.map_or_else(|| title.to_owned(), |remark| format!("{title}. {remark}"))
-}
-
-fn displays(heading: &str, parts: &[(&str, Vec<(String, String)>)]) -> String {
-    let mut page = format!("% {heading} (needs amsmath)\n");
-    for (part, lines) in parts {
-        display(&mut page, part, lines);
-    }
-    page
-}
-
-fn display(page: &mut String, part: &str, lines: &[(String, String)]) {
-    if lines.is_empty() {
-        return;
-    }
-    let lines: Vec<String> = lines.iter().map(|(left, right)| format!("  {left} &= {right}")).collect();
-    // Writing to a string cannot fail.
-    let _ = write!(page, "\n% {part}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
-}
-
-fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<(String, String)> {
-    let graph = system.graph();
-    let rate = |x: &Expr<'_>| graph.symbol(&format!("{x}'"));
-    let velocities = system.frame().coordinates().iter().zip(velocities);
-    velocities
-        .filter(|(x, velocity)| rate(x) != **velocity)
-        .map(|(x, velocity)| (rate(x).display(Style::Latex), velocity.display(Style::Latex)))
-        .collect()
-}
-
-fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<(String, String)> {
-    let structure = system.structure();
-    let graph = system.graph();
-    let free = system.quasi_velocities().len();
-    let all = [system.quasi_velocities(), vanishing].concat();
-    let k = structure.operators().min(all.len());
-    let operator = |s: usize| match s.checked_sub(1).and_then(|s| all.get(s)) {
-        Some(eta) => format!("X_{{{}}}", eta.display(Style::Latex)),
-        None => format!("X_{{{s}}}"),
-    };
-    let mut lines = Vec::new();
-    // The operators stand in for symbols of a sum, so that signs and brackets are set as in any other.
-    let placeholders: Vec<Expr<'_>> = (1..=k).map(|m| graph.symbol(&format!("X_{m}"))).collect();
-    let nonzero: Vec<_> = structure.nonzero().filter(|&(_, s, m, _)| s <= free && m <= k).collect();
-    for pair in nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let sum = graph.sum(pair.iter().map(|&(_, _, m, c)| c * placeholders[m - 1]));
-        let named = |text: String, &(_, _, m, _): &(usize, usize, usize, Expr<'_>)| {
-            text.replace(&format!("X_{{{m}}}"), &operator(m))
+/// A display for each part of the equations, with a comment above it.
+pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Graph) -> String {
+    let parts = Parts::new(sheet, layout, page, false);
+    let names = &parts.names;
+    let latex =
+        Latex { sheet, layout, names, set: names.written(Style::Latex), plain: names.written(Style::Book) };
+    let mut text = format!("% {heading} (needs amsmath)\n");
+    for (part, numbers) in parts.with_names() {
+        let lines: Vec<String> = latex.meanings(&numbers).into_iter().chain(latex.rows(part)).collect();
+        if lines.is_empty() {
+            continue;
+        }
+        let remark = match part.heading {
+            Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
+            _ => None,
         };
-        let text = pair.iter().rev().fold(sum.display(Style::Latex), named);
-        lines.push((format!("[{}, {}]", operator(pair[0].0), operator(pair[0].1)), text));
+        let title = part.heading.text();
+        let title = remark.map_or_else(|| title.to_owned(), |remark| format!("{title}. {remark}"));
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\n% {title}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
     }
-    lines
+    text
+}
+
+/// What is set of a sheet, by which names.
+struct Latex<'a, 'p> {
+    sheet: &'a Sheet<'p>,
+    layout: &'a Layout,
+    names: &'a Names<'p>,
+    set: Written,
+    /// The same in plain characters, by which lines are broken: what is set is as wide as they are, roughly.
+    plain: Written,
+}
+
+/// Left sides of more columns have lines of their own: all right sides of a display begin behind the longest of the others.
+const LONG_LEFT: usize = 24;
+/// Columns before what goes on in the next line.
+const HANGING: usize = 6;
+
+/// A line whose bracket both opens and closes in it, which then grows with what is in it.
+fn whole(line: String) -> String {
+    match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
+        (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
+        _ => line,
+    }
+}
+
+/// Terms as they are set, each with its columns in plain characters.
+type Terms = Vec<(String, usize)>;
+
+impl<'p> Latex<'_, 'p> {
+    fn meanings(&self, numbers: &[usize]) -> Vec<String> {
+        let meaning = |&number: &usize| {
+            let name = &self.names.list()[number];
+            let terms = self.set.meaning(name.value).into_iter();
+            let widths = self.plain.meaning(name.value);
+            let terms = terms.zip(widths.iter().map(|term| columns(term))).collect();
+            self.equation(vec![(self.set.name(&name.name), columns(&name.name))], terms)
+        };
+        numbers.iter().map(meaning).collect()
+    }
+
+    fn terms(&self, line: Expr<'p>) -> Terms {
+        let widths = self.plain.terms(line);
+        self.set.terms(line).into_iter().zip(widths.iter().map(|term| columns(term))).collect()
+    }
+
+    fn rows(&self, part: &Part<'p>) -> Vec<String> {
+        let rows = part.rows.iter().filter_map(|row| match row {
+            Row::Constraint { left, .. } => Some(self.vanishing(self.terms(*left))),
+            Row::Equation { left, right } => Some(self.equation(self.terms(*left), self.terms(*right))),
+            Row::Function { letter, value } => {
+                Some(self.equation(vec![((*letter).to_owned(), 1)], self.terms(*value)))
+            }
+            Row::Bracket(Bracket { pair: [r, s], components }) => {
+                let left = format!("[{}, {}]", self.operator(*r), self.operator(*s));
+                Some(self.equation(vec![(left, 8)], self.combination(components)))
+            }
+            Row::Entry { .. } => None,
+        });
+        rows.collect()
+    }
+
+    /// X_0, or the operator of a quasi-velocity.
+    fn operator(&self, s: usize) -> String {
+        match s.checked_sub(1) {
+            Some(s) => format!("X_{{{}}}", self.set.name(&self.sheet.brackets.operators[s])),
+            None => "X_{0}".to_owned(),
+        }
+    }
+
+    fn combination(&self, sum: &[(usize, Expr<'p>)]) -> Terms {
+        let mut terms = Terms::new();
+        for &(m, c) in sum {
+            let (set, plain) = (self.set.text(c), self.plain.text(c));
+            let is_sum = [" + ", " - "].iter().any(|sign| plain.contains(sign));
+            let (sign, size) = match set.strip_prefix('-') {
+                Some(size) if !is_sum => ("-", size),
+                _ => ("+", set.as_str()),
+            };
+            let operator = self.operator(m);
+            let term = match size {
+                "1" => operator,
+                _ if is_sum => format!("\\left({size}\\right) {operator}"),
+                _ => format!("{size} {operator}"),
+            };
+            let sign = match (terms.is_empty(), sign) {
+                (true, "+") => "",
+                (true, _) => "-",
+                (false, "+") => "+ ",
+                (false, _) => "- ",
+            };
+            terms.push((format!("{sign}{term}"), columns(&plain) + 4));
+        }
+        terms
+    }
+
+    /// left = 0
+    fn vanishing(&self, left: Terms) -> String {
+        let lines: Vec<String> =
+            self.flowed(left, HANGING).into_iter().map(|(line, _)| whole(line)).collect();
+        match lines.as_slice() {
+            [line] => format!("  {line} &= 0"),
+            lines => format!("  & {} = 0", lines.join(" \\\\\n    &\\quad ")),
+        }
+    }
+
+    /// The two sides in as many lines as they need: the right side begins behind a short left side, else in a line of its own.
+    fn equation(&self, left: Terms, right: Terms) -> String {
+        let width: usize = left.iter().map(|(_, width)| width + 1).sum();
+        let joined = |lines: Terms, before: &str| {
+            let lines: Vec<String> = lines.into_iter().map(|(line, _)| whole(line)).collect();
+            lines.join(&format!(" \\\\\n    {before} "))
+        };
+        if width <= LONG_LEFT {
+            let right = joined(self.flowed(right, width + 3), "&\\quad");
+            let left = left.into_iter().map(|(term, _)| term).collect::<Vec<_>>().join(" ");
+            return format!("  {} &= {right}", whole(left));
+        }
+        let left = joined(self.flowed(left, 0), "&\\quad");
+        let right = joined(self.flowed(right, HANGING), "&\\qquad");
+        format!("  & {left} \\\\\n    &\\quad = {right}")
+    }
+
+    /// Terms in lines, each with its columns.
+    fn flowed(&self, terms: Terms, begin: usize) -> Terms {
+        let mut lines = Terms::new();
+        for (term, width) in terms {
+            match lines.last_mut() {
+                Some((line, used)) if begin + *used + 1 + width <= self.layout.width => {
+                    line.push(' ');
+                    line.push_str(&term);
+                    *used += width + 1;
+                }
+                _ => lines.push((term, width)),
+            }
+        }
+        lines
+    }
 }

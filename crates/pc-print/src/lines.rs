@@ -2,26 +2,31 @@
 
 /// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` where all coefficients are.
 pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
-    let mut sum = String::new();
+    combined(terms).join(" ")
+}
+
+/// The terms of the combination, all but the first with their sign and a space before them.
+pub(crate) fn combined(terms: impl IntoIterator<Item = (String, String)>) -> Vec<String> {
+    let mut sum: Vec<String> = Vec::new();
     for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
         let (sign, size) = match coefficient.strip_prefix('-') {
             Some(rest) if !is_sum(rest) => ("-", rest),
             _ => ("+", coefficient.as_str()),
         };
-        sum += match (sum.is_empty(), sign) {
+        let sign = match (sum.is_empty(), sign) {
             (true, "-") => "-",
             (true, _) => "",
-            (false, "-") => " - ",
-            (false, _) => " + ",
+            (false, "-") => "- ",
+            (false, _) => "+ ",
         };
-        sum += &match size {
-            "1" => element,
+        sum.push(match size {
+            "1" => format!("{sign}{element}"),
             // What follows a quotient would be read into its divisor.
-            _ if is_sum(size) || is_quotient(size) => format!("({size}) {element}"),
-            _ => format!("{size} {element}"),
-        };
+            _ if is_sum(size) || is_quotient(size) => format!("{sign}({size}) {element}"),
+            _ => format!("{sign}{size} {element}"),
+        });
     }
-    if sum.is_empty() { "0".to_owned() } else { sum }
+    if sum.is_empty() { vec!["0".to_owned()] } else { sum }
 }
 
 fn is_sum(text: &str) -> bool {

@@ -4,8 +4,6 @@ use pc_expr::{Cost, ExprError, Inputs, Program};
 use pc_mech::{Canonical, Equations, Expr, System};
 use serde_json::{Value, json};
 
-use crate::sides::rates_of_states;
-
 /// The operations of one evaluation of the right-hand side ẋ, η̇.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Operations {
@@ -59,6 +57,11 @@ impl Operations {
             bound: Program::new(graph, &inputs, &bound)?.cost(),
         })
     }
+}
+
+/// ż of the first-order states.
+fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    system.states().iter().map(|&(_, rate)| rate).collect()
 }
 
 impl Operations {

@@ -1,11 +1,14 @@
 //! The equations of a model on a page.
 
+use pc_expr::Folding;
 use pc_mech::MechError;
 use pc_model::{Assembly, ModelError};
 
 use crate::derived::Derived;
 use crate::form::Form;
+use crate::layout::Layout;
 use crate::operations::Operations;
+use crate::sheet::Sheet;
 use crate::visible::{one_line, visible, visible_json};
 use crate::{json, latex, text};
 
@@ -24,28 +27,34 @@ pub enum Page {
 ///
 /// # Errors
 /// [`ModelError`] if they cannot be derived.
-pub fn page(form: Form, page: Page, title: &str, assembly: &Assembly<'_>) -> Result<String, ModelError> {
-    let shown = one_line(title);
-    if form == Form::Canonical {
-        let (_, derived) = Derived::new(form, assembly)?;
-        let equations = assembly.placed(assembly.free_system()?.canonical())?;
-        let operations = assembly.placed(Operations::of_canonical(&equations).map_err(MechError::from))?;
-        let heading = format!("{shown}: canonical equations");
-        return Ok(match page {
-            Page::Text => {
-                on_terminal(text::underlined(&heading) + &text::canonical(&derived, &equations, &operations))
-            }
-            Page::Latex => latex::canonical(&heading, &derived, &equations),
-            Page::Json => visible_json(&json::canonical(title, &derived, &equations, &operations)) + "\n",
-        });
-    }
+pub fn page(
+    form: Form,
+    page: Page,
+    layout: &Layout,
+    title: &str,
+    assembly: &Assembly<'_>,
+) -> Result<String, ModelError> {
     let (name, derived) = Derived::new(form, assembly)?;
-    let heading = format!("{shown}: {name}");
-    let operations = assembly.placed(Operations::of(&derived.equations).map_err(MechError::from))?;
+    let paper = assembly.system.graph().page(Folding::Structural);
+    let (name, sheet, operations) = match form {
+        Form::Canonical => {
+            let equations = assembly.placed(assembly.free_system()?.canonical())?;
+            let sheet = Sheet::of_momenta(assembly, &derived, &equations, &paper);
+            ("canonical equations", sheet, Operations::of_canonical(&equations))
+        }
+        _ => {
+            let sheet = Sheet::of_velocities(assembly, &derived, &paper);
+            (name, sheet, Operations::of(&derived.equations))
+        }
+    };
+    let operations = assembly.placed(operations.map_err(MechError::from))?;
+    let heading = format!("{}: {name}", one_line(title));
     Ok(match page {
-        Page::Text => on_terminal(text::underlined(&heading) + &text::poincare(&derived, &operations)),
-        Page::Latex => latex::poincare(&heading, &derived),
-        Page::Json => visible_json(&json::poincare(title, &derived, &operations)) + "\n",
+        Page::Text => {
+            on_terminal(text::underlined(&heading) + &text::page(&sheet, &operations, layout, &paper))
+        }
+        Page::Latex => latex::page(&heading, &sheet, layout, &paper),
+        Page::Json => visible_json(&json::page(title, &sheet, &operations, layout, &paper)) + "\n",
     })
 }
 

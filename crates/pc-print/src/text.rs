@@ -1,56 +1,46 @@
 //! Equations for people, as a book prints them.
 
-use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
-use pc_mech::{Canonical, Equations, Expr, Style, System};
+use pc_expr::{Names, Style, Written};
+use pc_mech::{Expr, Graph};
 
-use crate::constraints::constraints;
-use crate::derived::Derived;
-use crate::lines::{columns, combination};
+use crate::constraints::kind_in_words;
+use crate::layout::Layout;
+use crate::lines::{columns, combined};
 use crate::operations::Operations;
-use crate::sides::{momenta, operator_names, rates_of_states, state_rates};
+use crate::part::{Heading, Part, Parts, Row, entry_name};
+use crate::sheet::{Balance, Bracket, Sheet};
 
-/// The equations as a book prints them: constraints, kinematics, brackets, mass matrix, M η̇ = r, energy, reactions,
-/// operations.
-pub(crate) fn poincare(derived: &Derived<'_>, operations: &Operations) -> String {
-    let equations = &derived.equations;
-    let reactions: Vec<(String, String)> = derived
-        .reactions
-        .iter()
-        .map(|(reaction, value)| (reaction.display(Style::Book), value.display(Style::Book)))
+/// Matrices of more columns are written entry by entry.
+const WIDEST_MATRIX: usize = 96;
+/// What is indented under a heading.
+const INDENT: usize = 2;
+
+/// The equations as a book prints them, with what one right-hand side costs.
+pub(crate) fn page(sheet: &Sheet<'_>, operations: &Operations, layout: &Layout, page: &Graph) -> String {
+    let layout = Layout { width: layout.width.saturating_sub(INDENT), ..*layout };
+    let parts = Parts::new(sheet, &layout, page, true);
+    let text = Text { sheet, layout, names: &parts.names, written: parts.names.written(Style::Book) };
+    let mut sections: Vec<(&str, Vec<String>)> = parts
+        .with_names()
+        .map(|(part, names)| {
+            let lines = text.meanings(&names).into_iter().chain(text.rows(part));
+            (part.heading.text(), lines.collect())
+        })
         .collect();
-    sections(&[
-        ("Constraints", constraints(derived)),
-        ("Kinematics", kinematics(equations.system(), equations.velocities())),
-        ("Brackets", brackets(equations.system(), &derived.vanishing)),
-        ("Mass matrix", mass_matrix(equations)),
-        ("Equations", balance(equations)),
-        ("States", states(equations.system(), &rates_of_states(equations.system()))),
-        ("Energy", derived.with_remark(equations.energy().display(Style::Book))),
-        ("Reactions", aligned(reactions.iter().map(|(left, right)| (left, right)))),
-        ("Operations of one right-hand side", operations.lines()),
-    ])
-}
-
-/// The equations as a book prints them: constraints, kinematics, brackets, momenta, Hamiltonian, ẏ = …, operations. Where they are
-/// not closed, the momenta are equations for η.
-pub(crate) fn canonical(derived: &Derived<'_>, equations: &Canonical<'_>, operations: &Operations) -> String {
-    let system = equations.system();
-    let lines = |pairs: &[(String, String)]| aligned(pairs.iter().map(|(left, right)| (left, right)));
-    let cost = if equations.is_closed() {
-        "Operations of one right-hand side"
-    } else {
-        "Operations of one right-hand side, quasi-velocities known"
+    let cost = match &sheet.balance {
+        Balance::Momenta { velocities: None, .. } => {
+            "Operations of one right-hand side, quasi-velocities known"
+        }
+        _ => "Operations of one right-hand side",
     };
-    sections(&[
-        ("Constraints", constraints(derived)),
-        ("Kinematics", kinematics(system, equations.velocities())),
-        ("Brackets", brackets(system, &[])),
-        ("Momenta", lines(&momenta(equations, Style::Book))),
-        ("Hamiltonian", derived.with_remark(equations.hamiltonian().display(Style::Book))),
-        ("Equations", lines(&equations.balance(Style::Book))),
-        ("States", states(system, equations.state_rates())),
-        (cost, operations.lines()),
-    ])
+    let operations = operations.lines().into_iter().flat_map(|line| {
+        let terms: Vec<String> = line.split(" + ").map(str::to_owned).collect();
+        let (first, rest) = terms.split_at(1);
+        let rest = rest.iter().map(|term| format!("+ {term}"));
+        text.layout.flowed("", &first.iter().cloned().chain(rest).collect::<Vec<_>>())
+    });
+    sections.push((cost, operations.collect()));
+    self::sections(&sections)
 }
 
 /// A heading with a line under it.
@@ -61,101 +51,148 @@ pub(crate) fn underlined(heading: &str) -> String {
 /// Titles with the lines under them; those without lines are left out.
 fn sections(parts: &[(&str, Vec<String>)]) -> String {
     let section = |(title, lines): &(&str, Vec<String>)| {
-        let lines: String = lines.iter().map(|line| format!("  {line}\n")).collect();
+        let lines: String = lines.iter().map(|line| format!("{:INDENT$}{line}\n", "")).collect();
         format!("{title}\n{lines}")
     };
     let written: Vec<String> = parts.iter().filter(|(_, lines)| !lines.is_empty()).map(section).collect();
     written.join("\n")
 }
 
-/// ẋ_i = `velocities`, a line each but for those that are quasi-velocities themselves.
-pub fn kinematics(system: &System<'_>, velocities: &[Expr<'_>]) -> Vec<String> {
-    let rates = system.frame().coordinates().iter().map(|x| format!("{x}'"));
-    let velocities = velocities.iter().map(|v| v.display(Style::Book));
-    let lines: Vec<(String, String)> =
-        rates.zip(velocities).filter(|(rate, velocity)| rate != velocity).collect();
-    aligned(lines.iter().map(|(rate, velocity)| (rate, velocity)))
+/// What is written of a sheet, by which names.
+struct Text<'a, 'p> {
+    sheet: &'a Sheet<'p>,
+    layout: Layout,
+    names: &'a Names<'p>,
+    written: Written,
 }
 
-/// ż = `rates`, a line each.
-pub(crate) fn states(system: &System<'_>, rates: &[Expr<'_>]) -> Vec<String> {
-    let lines: Vec<(String, String)> = state_rates(system, rates, Style::Book);
-    aligned(lines.iter().map(|(left, right)| (left, right)))
-}
-
-/// M η̇ = r, a line an equation.
-pub fn balance(equations: &Equations<'_>) -> Vec<String> {
-    let sides = equations.balance(Style::Book);
-    aligned(sides.iter().map(|(left, right)| (left, right)))
-}
-
-/// Left = right, the equals signs under each other unless a left side is long.
-fn aligned<'a>(pairs: impl Iterator<Item = (&'a String, &'a String)> + Clone) -> Vec<String> {
-    let width = pairs.clone().map(|(left, _)| columns(left)).filter(|&width| width <= 24).max().unwrap_or(0);
-    pairs.map(|(left, right)| format!("{left:width$} = {right}")).collect()
-}
-
-/// The brackets [X_r, X_s] = c_rs^m X_m of the free operators that are not zero, by the names of the quasi-velocities,
-/// `t` for time; they may have components along `vanishing`.
-pub fn brackets(system: &System<'_>, vanishing: &[Expr<'_>]) -> Vec<String> {
-    let structure = system.structure();
-    let free = system.quasi_velocities();
-    let all: Vec<String> = free.iter().chain(vanishing).map(Expr::to_string).collect();
-    let name: Vec<String> = std::iter::once("t".to_owned()).chain(all).collect();
-    let mut lines = Vec::new();
-    let nonzero: Vec<_> =
-        structure.nonzero().filter(|&(_, s, m, _)| s <= free.len() && m < name.len()).collect();
-    for pair in nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let sum = combination(pair.iter().map(|&(_, _, m, c)| (c.display(Style::Book), name[m].clone())));
-        lines.push(format!("[{}, {}] = {sum}", name[pair[0].0], name[pair[0].1]));
+impl<'p> Text<'_, 'p> {
+    /// What names stand for.
+    fn meanings(&self, numbers: &[usize]) -> Vec<String> {
+        if self.layout.brief {
+            return Vec::new();
+        }
+        let names = numbers.iter().map(|&number| &self.names.list()[number]);
+        let meanings: Vec<_> =
+            names.map(|name| (vec![name.name.clone()], self.written.meaning(name.value))).collect();
+        self.layout.aligned(&meanings)
     }
-    if lines.is_empty() {
-        let words = if system.frame().restricted(free.len()).commutes() {
-            "all operators commute"
-        } else {
-            "none within the frame, which is not closed: the constraints are not integrable"
+
+    fn rows(&self, part: &Part<'p>) -> Vec<String> {
+        match part.heading {
+            Heading::Brackets => self.brackets(part),
+            Heading::MassMatrix => self.mass_matrix(part),
+            _ => {
+                let equations: Vec<_> = part.rows.iter().filter_map(|row| self.equation(row)).collect();
+                let others = part.rows.iter().flat_map(|row| self.alone(row));
+                self.layout.aligned(&equations).into_iter().chain(others).collect()
+            }
+        }
+    }
+
+    fn equation(&self, row: &Row<'p>) -> Option<(Vec<String>, Vec<String>)> {
+        match row {
+            Row::Equation { left, right } => Some((self.written.terms(*left), self.written.terms(*right))),
+            _ => None,
+        }
+    }
+
+    fn alone(&self, row: &Row<'p>) -> Vec<String> {
+        match row {
+            Row::Constraint { name, left, kind } => {
+                let mut terms = self.written.terms(*left);
+                terms.push(format!("= 0   ({})", kind_in_words(*kind)));
+                self.layout.flowed(&format!("{name}: "), &terms)
+            }
+            Row::Function { value, .. } => {
+                let remark = self.sheet.energy_remark.map(|remark| format!("({remark})"));
+                self.layout.flowed("", &self.written.terms(*value)).into_iter().chain(remark).collect()
+            }
+            Row::Equation { .. } | Row::Bracket(_) | Row::Entry { .. } => Vec::new(),
+        }
+    }
+
+    /// The brackets by the names of the quasi-velocities, `t` for time; they may have components along what vanishes.
+    fn brackets(&self, part: &Part<'p>) -> Vec<String> {
+        let operators = &self.sheet.brackets.operators;
+        let name = |s: usize| s.checked_sub(1).map_or("t", |s| operators[s].as_str());
+        let mut lines: Vec<String> = part
+            .rows
+            .iter()
+            .filter_map(|row| match row {
+                Row::Bracket(Bracket { pair: [r, s], components }) => {
+                    let terms = components.iter().map(|&(m, c)| (self.written.text(c), name(m).to_owned()));
+                    let head = format!("[{}, {}] = ", name(*r), name(*s));
+                    Some(self.layout.flowed(&head, &combined(terms)))
+                }
+                _ => None,
+            })
+            .flatten()
+            .collect();
+        if let Some(known) = self.sheet.brackets.algebra.filter(|_| !lines.is_empty()) {
+            lines.push(format!("the algebra {known}"));
+        }
+        if lines.is_empty() {
+            lines.push(no_brackets(self.sheet.brackets.commute).to_owned());
+        }
+        lines
+    }
+
+    fn mass_matrix(&self, part: &Part<'p>) -> Vec<String> {
+        let entries: Vec<([usize; 2], Expr<'p>)> = part
+            .rows
+            .iter()
+            .filter_map(|row| match row {
+                Row::Entry { place, value } => Some((*place, *value)),
+                _ => None,
+            })
+            .collect();
+        let k = self.sheet.quasi_velocities.len();
+        let named = |place| {
+            let name = entry_name(self.sheet, place);
+            self.names.list().iter().any(|used| used.shorthand && used.name == name)
         };
-        lines.push(words.to_owned());
-    } else if let Some(known) = recognised(structure).filter(|_| vanishing.is_empty()) {
-        lines.push(format!("the algebra {known}"));
+        if !entries.iter().any(|&(place, _)| named(place)) {
+            let mut cells = vec![vec!["0".to_owned(); k]; k];
+            for &([r, s], value) in &entries {
+                cells[r][s] = self.written.line(value);
+                cells[s][r] = cells[r][s].clone();
+            }
+            if entries.iter().all(|([r, s], _)| r == s) {
+                let diagonal: Vec<&str> = (0..k).map(|s| cells[s][s].as_str()).collect();
+                let line = format!("diag({})", diagonal.join(", "));
+                if columns(&line) <= self.layout.width {
+                    return vec![line];
+                }
+            } else if let Some(lines) = matrix(&cells) {
+                return lines;
+            }
+        }
+        let entry = |&(place, value): &([usize; 2], Expr<'p>)| {
+            (vec![entry_name(self.sheet, place)], self.written.terms(value))
+        };
+        self.layout.aligned(&entries.iter().map(entry).collect::<Vec<_>>())
     }
-    lines
 }
 
-/// The name of the algebra, if the structure coefficients are those of one in the catalogue.
-pub fn recognised(structure: &StructureCoefficients<'_>) -> Option<&'static str> {
-    let algebra = structure.lie_algebra().filter(|_| structure.nonzero().all(|(r, ..)| r > 0))?;
-    let known = CATALOGUE.iter().find(|entry| LieAlgebra::named(entry.name).as_ref() == Ok(&algebra));
-    known.map(|entry| entry.name)
+/// What is said where no bracket within the frame is different from zero.
+fn no_brackets(commute: bool) -> &'static str {
+    if commute {
+        "all operators commute"
+    } else {
+        "none within the frame, which is not closed: the constraints are not integrable"
+    }
 }
 
-fn mass_matrix(equations: &Equations<'_>) -> Vec<String> {
-    const WIDEST: usize = 96;
-    let rows: Vec<Vec<String>> = equations
-        .mass_matrix()
-        .to_rows()
-        .iter()
-        .map(|row| row.iter().map(|entry| entry.display(Style::Book)).collect())
-        .collect();
-    let k = rows.len();
-    let entries = || (0..k).flat_map(|r| (0..k).map(move |s| (r, s)));
-    if entries().all(|(r, s)| r == s || rows[r][s] == "0") {
-        let diagonal: Vec<&str> = (0..k).map(|s| rows[s][s].as_str()).collect();
-        return vec![format!("diag({})", diagonal.join(", "))];
-    }
+/// A matrix by rows, the columns under each other, if it is not too wide.
+fn matrix(cells: &[Vec<String>]) -> Option<Vec<String>> {
+    let k = cells.len();
     let widths: Vec<usize> =
-        (0..k).map(|s| rows.iter().map(|row| columns(&row[s])).max().unwrap_or(0)).collect();
-    if widths.iter().sum::<usize>() + 3 * k <= WIDEST {
-        let line = |row: &Vec<String>| {
-            let cells: Vec<String> =
-                row.iter().zip(&widths).map(|(entry, &width)| format!("{entry:width$}")).collect();
-            format!("[ {} ]", cells.join("   "))
-        };
-        return rows.iter().map(line).collect();
-    }
-    let name = operator_names(equations.system().quasi_velocities(), "t");
-    entries()
-        .filter(|&(r, s)| s <= r && rows[r][s] != "0")
-        .map(|(r, s)| format!("M({}, {}) = {}", name[r + 1], name[s + 1], rows[r][s]))
-        .collect()
+        (0..k).map(|s| cells.iter().map(|row| columns(&row[s])).max().unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells: Vec<String> =
+            row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
+        format!("[ {} ]", cells.join("   "))
+    };
+    (widths.iter().sum::<usize>() + 3 * k <= WIDEST_MATRIX).then(|| cells.iter().map(line).collect())
 }

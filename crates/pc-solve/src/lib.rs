@@ -81,7 +81,9 @@ pub use integration::stepper::{LastStep, Stepper};
 pub use integration::trajectory::Trajectory;
 #[cfg(feature = "cvode")]
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
-pub use pc_expr::{Direction, Event, Events, Failure, Pattern, TimeDependence, TimeProfile, VectorField};
+pub use pc_expr::{
+    Deadline, Direction, Event, Events, Failure, Pattern, Spent, TimeDependence, TimeProfile, VectorField,
+};
 pub use runge_kutta::{FixedStep, RungeKutta4};
 #[cfg(feature = "cvode")]
 pub use sensitivity::adjoint::{adjoint_gradient, adjoint_gradients, adjoint_gradients_with_events};

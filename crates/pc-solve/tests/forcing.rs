@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, TimeDependence};
-use pc_solve::{Failure, Method, Options, Trajectory, VectorField, from_fn, solve};
+use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorField, from_fn, solve};
 
 /// ẍ = −x + F(t, x), compiled.
 struct Spring {
@@ -216,5 +216,24 @@ fn pulses_are_found_wherever_they_are() {
             near(motion.state(0)[0], after_gauss(10.0, at, width), width)
         });
         assert_eq!(found.count(), 200, "of width {width}");
+    }
+}
+
+/// A force that turns faster than numbers tell times apart is refused soon, unless the tolerances do not feel it.
+#[test]
+fn what_no_step_can_follow_is_refused() {
+    for (at, from) in [(1e21, 0.0), (1e17, 3.0)] {
+        for method in [Method::Adams, Method::Bdf] {
+            let force = |size: f64| Spring::new(move |t, _| size * (at * t).sin());
+            let run = |size| solve(force(size), from, &[1.0, 0.0], &[from + 10.0], &Options::new(method));
+            let failure = run(1.0).unwrap_err();
+            let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
+            assert!(matches!(error.reason, Reason::Unresolved { .. }), "{error}");
+            assert!(error.time - from < 1e-3 && error.to_string().contains("faster near t = "), "{error}");
+            // x = cos(t − t_0), to the tolerance of some hundred steps.
+            let motion = run(1e-20).unwrap();
+            assert!((motion.state(0)[0] - 10.0_f64.cos()).abs() < 1e-6, "{method} {:?}", motion.state(0));
+            assert!(motion.statistics().steps < 2000, "{:?}", motion.statistics());
+        }
     }
 }

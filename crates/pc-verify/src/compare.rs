@@ -1,6 +1,6 @@
 //! The comparison of the two derivations.
 
-use pc_mech::Folding;
+use pc_mech::{Folding, Graph};
 use pc_model::{Assembly, Flow, Model, Variables};
 
 use crate::agreement::{Agreement, Passed};
@@ -53,36 +53,38 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
     observed.observe_reactions(true);
     let graph = model.graph();
     let assembly = observed.assemble(&graph)?;
-    let second = Second::new(&observed, &assembly)?;
+    assembly.stage("the second derivation", || compared(&observed, &assembly, model, options))
+}
+
+fn compared(
+    observed: &Model,
+    assembly: &Assembly<'_>,
+    model: &Model,
+    options: &Options,
+) -> Result<Agreement, VerifyError> {
+    let second = Second::new(observed, assembly)?;
     let mut agreement = second.nothing_yet();
-    let mut firsts = Vec::new();
-    let flow = Flow::new(&observed, &assembly, Variables::QuasiVelocities)?;
+    let flow = Flow::new(observed, assembly, Variables::QuasiVelocities)?;
     let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second.columns) };
-    let wholly = second.wholly(options.states);
-    firsts.push(First::flow("poincare", flow, &second, &assembly, &mut agreement));
-    match Flow::new(&observed, &assembly, Variables::Momenta) {
-        Ok(flow) => firsts.push(First::flow("canonical", flow, &second, &assembly, &mut agreement)),
-        Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
-    }
+    let (wholly, states) = (second.wholly(options.states), second.affordable(options.states));
     let plain_graph = model.graph();
     let plain = model.assemble(&plain_graph)?;
-    match First::emitted(&plain, &second, &mut agreement) {
-        Ok(first) => firsts.push(first),
-        Err(reason) => agreement.leave_out("emit", &reason),
-    }
-    let page = graph.page(Folding::Structural);
-    let printable = FORMS.into_iter().filter(|&form| match second.too_large_for(form, &plain) {
-        Some(reason) => {
-            agreement.leave_out(&printed_name(form), reason);
-            false
+    let page = assembly.system.graph().page(Folding::Structural);
+    let mut firsts = match wholly {
+        0 => {
+            agreement.leave_out("other forms, multipliers, integrals and outputs", "the model is large");
+            agreement.forms.push("poincare".to_owned());
+            Vec::new()
         }
-        None => true,
-    });
-    for form in printable.collect::<Vec<_>>() {
-        firsts.extend(First::printed(form, &plain, &second, &page, &mut agreement));
-    }
+        _ => {
+            let first = First::flow("poincare", flow, &second, assembly, &mut agreement);
+            let mut firsts = vec![first];
+            firsts.extend(others(observed, assembly, (&plain, &page), &second, &mut agreement));
+            firsts
+        }
+    };
     let mut number = 0;
-    while agreement.states < options.states && number < TRIES * options.states {
+    while agreement.states < states && number < TRIES * states {
         assembly.within_limits()?;
         let seed = (options.seed << 32) as usize + number;
         number += 1;
@@ -97,6 +99,32 @@ pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError
         }
     }
     agreement.finished(&firsts, number)
+}
+
+/// All forms but that in quasi-velocities which is integrated.
+fn others<'g>(
+    observed: &Model,
+    assembly: &Assembly<'_>,
+    (plain, page): (&Assembly<'g>, &'g Graph),
+    second: &Second,
+    agreement: &mut Agreement,
+) -> Vec<First<'g>> {
+    let mut firsts = Vec::new();
+    match Flow::new(observed, assembly, Variables::Momenta) {
+        Ok(flow) => firsts.push(First::flow("canonical", flow, second, assembly, agreement)),
+        Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
+    }
+    match First::emitted(plain, second, agreement) {
+        Ok(first) => firsts.push(first),
+        Err(reason) => agreement.leave_out("emit", &reason),
+    }
+    for form in FORMS {
+        match second.too_large_for(form, plain) {
+            Some(reason) => agreement.leave_out(&printed_name(form), reason),
+            None => firsts.extend(First::printed(form, plain, second, page, agreement)),
+        }
+    }
+    firsts
 }
 
 /// A large model in quasi-velocities.
@@ -148,8 +176,18 @@ impl Second {
         t: f64,
         state: &[f64],
     ) -> Result<Agreement, VerifyError> {
+        assembly.stage("the second derivation", || self.agrees_there(form, flow.clone(), assembly, t, state))
+    }
+
+    fn agrees_there(
+        &self,
+        form: &str,
+        mut flow: Flow,
+        assembly: &Assembly<'_>,
+        t: f64,
+        state: &[f64],
+    ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
-        let mut flow = flow.clone();
         if self.cost() > LONG && !flow.has_momenta() {
             return self.agrees_projected(form, flow, t, state, agreement);
         }

@@ -1,5 +1,6 @@
 //! The second derivation: the text over dual numbers at a place, and what is linear in velocities there.
 
+use crate::couplings::Couplings;
 use crate::error::Irregular;
 use crate::linear::independent_rows;
 use crate::number::{D1, D2};
@@ -39,6 +40,8 @@ pub(crate) struct Derivation {
     /// What completes the quasi-velocities.
     pub(crate) completing: Vec<Completing>,
     pub(crate) structure: Structure,
+    /// Which second derivatives of L by velocities vanish.
+    pub(crate) couplings: Couplings,
 }
 
 impl Derivation {

@@ -64,7 +64,7 @@ impl Derivation {
         let (mut momenta, mut transport, mut work) = (vec![0.0; k], vec![0.0; k], vec![0.0; k]);
         for s in 0..k {
             let along = at.along_velocity(s);
-            for r in s..k {
+            for r in (s..k).filter(|&r| self.couplings.has(s, r)) {
                 let value = self.twice(at, &along, &at.along_velocity(r), rounding).lagrangian()?;
                 mass[(s, r)] = value.eps.eps;
                 mass[(r, s)] = value.eps.eps;

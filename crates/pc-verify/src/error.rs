@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use pc_expr::Spent;
 use pc_model::ModelError;
 
 /// Why a model was not found to agree with its second derivation.
@@ -136,6 +137,12 @@ pub(crate) enum Irregular {
         form: String,
         /// What it says.
         message: String,
+    },
+    /// A limit of the work was reached, which is the answer then.
+    #[error("{what}")]
+    Spent {
+        /// The limit.
+        what: Spent,
     },
     /// Rounding errors are amplified until they hide errors of derivation.
     #[error("rounding errors are amplified too much")]

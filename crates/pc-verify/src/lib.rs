@@ -25,6 +25,7 @@ mod balance;
 mod brackets;
 mod compare;
 mod constants;
+mod couplings;
 mod derivation;
 mod equations;
 mod error;

@@ -1,4 +1,4 @@
-//! Small dense matrices, with pivoting.
+//! Dense matrices, with pivoting, block by block: n coordinates that have nothing to do with each other cost n small ones.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,6 +8,9 @@ use crate::rounding::within;
 /// Singular values below this part of the largest count as zero.
 const RANK: f64 = 1e-9;
 
+/// What is so far from that is no matter of rounding, of which a decomposition has some thousand times the condition.
+const CERTAIN: f64 = 0.1;
+
 /// Pivots below this part of the largest make equations singular.
 const PIVOT: f64 = 1e-13;
 
@@ -16,21 +19,118 @@ pub(crate) fn matrix(rows: &[Vec<f64>], columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 
-/// The pseudo-inverse, with the rank.
+/// Rows and columns of a matrix, ascending, that entries other than zero join to each other.
+struct Block {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+}
+
+impl Block {
+    fn of(&self, a: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(self.rows.len(), self.columns.len(), |i, j| a[(self.rows[i], self.columns[j])])
+    }
+}
+
+/// The blocks of a matrix. Rows and columns of zeros are blocks by themselves.
+fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
+    let (m, n) = a.shape();
+    // Each points towards the first of its block; columns come after the rows.
+    let mut first: Vec<usize> = (0..m + n).collect();
+    let find = |first: &mut Vec<usize>, mut i: usize| {
+        while first[i] != i {
+            first[i] = first[first[i]];
+            i = first[i];
+        }
+        i
+    };
+    for j in 0..n {
+        for i in (0..m).filter(|&i| a[(i, j)] != 0.0) {
+            let (one, other) = (find(&mut first, i), find(&mut first, m + j));
+            first[one.max(other)] = one.min(other);
+        }
+    }
+    let mut number = vec![None; m + n];
+    let mut blocks: Vec<Block> = Vec::new();
+    for i in 0..m + n {
+        let place = *number[find(&mut first, i)].get_or_insert_with(|| {
+            blocks.push(Block { rows: Vec::new(), columns: Vec::new() });
+            blocks.len() - 1
+        });
+        match i < m {
+            true => blocks[place].rows.push(i),
+            false => blocks[place].columns.push(i - m),
+        }
+    }
+    blocks
+}
+
+/// The pseudo-inverse, with the rank, block by block.
 pub(crate) fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
+    let mut inverse = DMatrix::zeros(a.ncols(), a.nrows());
     if a.is_empty() {
-        return Some((DMatrix::zeros(a.ncols(), a.nrows()), 0));
+        return Some((inverse, 0));
     }
     if a.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    let svd = a.clone().svd(true, true);
-    let threshold = RANK * svd.singular_values.max();
-    let rank = svd.singular_values.iter().filter(|&&value| value > threshold).count();
-    let inverse = svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?;
-    // The decomposition may be wrong by some thousand roundings: a step of Schulz squares that, and leaves the rank.
-    let product = a * &inverse;
-    Some((&inverse * 2.0 - &inverse * product, rank))
+    let with_part = |block: Block| {
+        let part = block.of(a);
+        (block, part)
+    };
+    let blocks: Vec<(Block, DMatrix<f64>)> = blocks(a).into_iter().map(with_part).collect();
+    let largest = a.norm();
+    let regular: Option<Vec<_>> = blocks.iter().map(|(_, part)| of_full_rank(part, largest)).collect();
+    let inverses = match regular {
+        Some(inverses) => inverses,
+        None => by_singular_values(&blocks)?,
+    };
+    let mut rank = 0;
+    for ((block, part), (of_block, of_rank)) in blocks.iter().zip(inverses) {
+        rank += of_rank;
+        // Either way it may be wrong by some thousand roundings: a step of Schulz squares that, and leaves the rank.
+        let product = part * &of_block;
+        let better = &of_block * 2.0 - &of_block * product;
+        for (i, &row) in block.columns.iter().enumerate() {
+            block.rows.iter().enumerate().for_each(|(j, &column)| inverse[(row, column)] = better[(i, j)]);
+        }
+    }
+    Some((inverse, rank))
+}
+
+/// The pseudo-inverse by orthogonal elimination, unless the rank is in doubt: no singular value is below 1/‖A⁺‖, and none above
+/// the norm of the whole matrix, `largest`.
+fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)> {
+    let rank = a.nrows().min(a.ncols());
+    if rank == 0 {
+        return Some((DMatrix::zeros(a.ncols(), a.nrows()), 0));
+    }
+    let is_tall = a.nrows() >= a.ncols();
+    let qr = if is_tall { a.clone() } else { a.transpose() }.qr();
+    let inverse = qr.r().solve_upper_triangular(&DMatrix::identity(rank, rank))?;
+    if !within(RANK * largest * inverse.norm(), CERTAIN) {
+        return None;
+    }
+    let inverse = inverse * qr.q().transpose();
+    Some((if is_tall { inverse } else { inverse.transpose() }, rank))
+}
+
+/// The same with the singular values, which tell the rank.
+fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f64>, usize)>> {
+    let parts: Vec<_> =
+        blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();
+    let largest = parts.iter().flatten().map(|svd| svd.singular_values.max()).fold(0.0, f64::max);
+    let threshold = RANK * largest;
+    let mut inverses = Vec::with_capacity(blocks.len());
+    for ((_, part), svd) in blocks.iter().zip(parts) {
+        inverses.push(match svd {
+            None => (DMatrix::zeros(part.ncols(), part.nrows()), 0),
+            Some(svd) => {
+                let rank = svd.singular_values.iter().filter(|&&value| value > threshold).count();
+                (svd.pseudo_inverse(threshold.max(f64::MIN_POSITIVE)).ok()?, rank)
+            }
+        });
+    }
+    Some(inverses)
 }
 
 /// The numbers of rows none of which is a combination of those before, by the method of Gram and Schmidt.
@@ -77,12 +177,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     }
     let (rows, columns) = scales(a);
     let scaled = DMatrix::from_fn(size, size, |i, j| rows[i] * a[(i, j)] * columns[j]);
-    let lu = scaled.clone().full_piv_lu();
-    let pivots = lu.u().diagonal().abs();
-    if !within(PIVOT * pivots.max(), pivots.min()) {
-        return Err(Irregular::Singular);
-    }
-    let inverse = lu.try_inverse().ok_or(Irregular::Singular)?;
+    let inverse = inverse_by_pivots(&scaled).ok_or(Irregular::Singular)?;
     let condition = scaled.norm() * inverse.norm();
     let inverse = DMatrix::from_fn(size, size, |i, j| columns[i] * inverse[(i, j)] * rows[j]);
     let right = DVector::from_column_slice(right);
@@ -93,6 +188,25 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     let led = |i: usize| (0..size).map(|j| inverse[(i, j)].abs() * largest[j]).fold(0.0, f64::max);
     let sizes = (0..size).map(led).collect();
     Ok(Solution { values: values.iter().copied().collect(), sizes, inverse, condition })
+}
+
+/// The inverse, block by block, unless a pivot is too small beside the largest.
+fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let mut inverse = DMatrix::zeros(a.nrows(), a.ncols());
+    let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
+    for block in blocks(a) {
+        if block.rows.len() != block.columns.len() {
+            return None;
+        }
+        let lu = block.of(a).full_piv_lu();
+        let pivots = lu.u().diagonal().abs();
+        (least, largest) = (least.min(pivots.min()), largest.max(pivots.max()));
+        let of_block = lu.try_inverse()?;
+        for (i, &row) in block.columns.iter().enumerate() {
+            block.rows.iter().enumerate().for_each(|(j, &column)| inverse[(row, column)] = of_block[(i, j)]);
+        }
+    }
+    within(PIVOT * largest, least).then_some(inverse)
 }
 
 /// Powers of two by which rows and columns are multiplied so that their largest entries are near 1.
@@ -110,4 +224,70 @@ fn scales(a: &DMatrix<f64>) -> (Vec<f64>, Vec<f64>) {
         columns.iter_mut().zip(by_column).for_each(|(scale, factor)| *scale *= factor);
     }
     (rows, columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::Random;
+
+    /// A matrix of such blocks, with rows and columns in another order.
+    fn shuffled(parts: &[DMatrix<f64>]) -> DMatrix<f64> {
+        let (m, n) = (parts.iter().map(DMatrix::nrows).sum(), parts.iter().map(DMatrix::ncols).sum());
+        let mut all = DMatrix::zeros(m, n);
+        let (mut row, mut column) = (0, 0);
+        for part in parts {
+            // 7 is prime to both sizes.
+            for (i, j) in (0..part.nrows()).flat_map(|i| (0..part.ncols()).map(move |j| (i, j))) {
+                all[((row + i) * 7 % m, (column + j) * 7 % n)] = part[(i, j)];
+            }
+            (row, column) = (row + part.nrows(), column + part.ncols());
+        }
+        all
+    }
+
+    fn random(m: usize, n: usize, rank: usize) -> DMatrix<f64> {
+        let mut random = Random::new((100 * m + 10 * n + rank) as u64);
+        let mut factor = |m, n| DMatrix::from_fn(m, n, |_, _| random.signed());
+        factor(m, rank) * factor(rank, n)
+    }
+
+    /// The four equations of Penrose, to some hundred roundings of numbers near 10.
+    #[test]
+    fn blocks_have_the_pseudo_inverse_of_the_whole() {
+        let full = [random(4, 4, 4), random(5, 2, 2), random(1, 3, 1)];
+        let deficient = [random(4, 4, 2), random(5, 2, 2), DMatrix::zeros(1, 2)];
+        for (parts, expected) in [(full, 7), (deficient, 4)] {
+            let a = shuffled(&parts);
+            let (inverse, rank) = pseudo_inverse(&a).expect("finite");
+            assert_eq!(rank, expected);
+            let (left, right) = (&inverse * &a, &a * &inverse);
+            for rest in [
+                &a * &left - &a,
+                &left * &inverse - &inverse,
+                left.transpose() - &left,
+                right.transpose() - &right,
+            ] {
+                assert!(rest.amax() < 1e-12 * inverse.amax().max(1.0), "{rest}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rank_is_relative_to_the_largest_block() {
+        let tiny = DMatrix::from_element(1, 1, 1e-11);
+        let (inverse, rank) = pseudo_inverse(&shuffled(&[random(3, 3, 3), tiny])).expect("finite");
+        assert_eq!(rank, 3);
+        assert!(inverse.amax() < 1e6, "{inverse}");
+    }
+
+    #[test]
+    fn what_no_block_determines_is_singular() {
+        let a = shuffled(&[random(2, 3, 2), random(3, 2, 2)]);
+        assert!(matches!(solve(&a, &[1.0; 5], &[1.0; 5]), Err(Irregular::Singular)));
+        let a = shuffled(&[random(3, 3, 3), random(2, 2, 2)]);
+        let solution = solve(&a, &[1.0; 5], &[1.0; 5]).expect("regular");
+        let rest = &a * DVector::from_vec(solution.values) - DVector::from_element(5, 1.0);
+        assert!(rest.amax() < 1e-12 * solution.condition, "{rest}");
+    }
 }

@@ -93,6 +93,11 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
+    /// That there is time left: each evaluation of something long asks.
+    fn within_limits(&self) -> Result<(), Irregular> {
+        self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
+    }
+
     /// ẋ
     pub(crate) fn velocities(&self) -> Result<&[T], Irregular> {
         if self.velocities.get().is_none() {
@@ -101,7 +106,10 @@ impl<'a, T: Number> Point<'a, T> {
                     self.require_velocities()?;
                     self.w.clone()
                 }
-                Velocities::Quasi(rates) => self.all(rates)?,
+                Velocities::Quasi(rates) => {
+                    self.within_limits()?;
+                    self.all(rates)?
+                }
             };
             let _ = self.velocities.set(value); // was empty
         }
@@ -122,6 +130,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// η
     pub(crate) fn quasi_velocities(&self) -> Result<Vec<T>, Irregular> {
+        self.within_limits()?;
         (0..self.text.names.quasi_velocities.len()).map(|s| self.quasi_velocity(s)).collect()
     }
 
@@ -293,6 +302,7 @@ impl<'a, T: Number> Point<'a, T> {
     /// What stays zero of constraint number `a`, as far as it contains velocities: the constraint itself, or the rate of
     /// one on positions.
     pub(crate) fn velocity_constraint(&self, a: usize, on_positions: bool) -> Result<T, Irregular> {
+        self.within_limits()?;
         let term = &self.text.constraints[a];
         if on_positions { self.rate(term) } else { self.value(term) }
     }
@@ -308,6 +318,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// L without that of the bodies.
     pub(crate) fn own_lagrangian(&self) -> Result<T, Irregular> {
+        self.within_limits()?;
         let part = |term: &Option<Term>| term.as_ref().map_or(Ok(T::constant(0.0)), |term| self.value(term));
         let text = self.text;
         Ok(part(&text.lagrangian)? + part(&text.kinetic)? - part(&text.potential)?)

@@ -1,11 +1,10 @@
-//! The equations as they are printed, as numbers: the very expressions that `pc derive` writes, and the sums of products that
-//! the right sides are written as, in the graph of a page.
+//! The equations as they are printed, as numbers: the very expressions that `pc derive` writes on a page.
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
 use pc_mech::{Canonical, Expr, Graph};
 use pc_model::Assembly;
-use pc_print::{Derived, Form};
+use pc_print::{Balance, Derived, Form, Sheet};
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
@@ -35,20 +34,14 @@ pub(crate) type Candidates = Vec<(String, Option<Quantity>)>;
 /// The expressions of one form.
 pub(crate) struct Printed<'g> {
     form: Form,
-    graph: &'g Graph,
     page: &'g Graph,
+    sheet: Sheet<'g>,
     /// Names of the free quasi-velocities.
     quasi_velocities: Vec<String>,
-    /// What expressions are equal to, each with its name.
+    /// What expressions are equal to, each with its name, but for reactions.
     direct: Vec<(Side, Expr<'g>)>,
-    /// M by rows; none in the canonical form, where the right sides are rates of momenta.
-    mass: Vec<Expr<'g>>,
-    right: Vec<Expr<'g>>,
-    written: Vec<Option<Expr<'g>>>,
-    /// The symbols of the momenta.
-    momenta: Vec<String>,
-    /// The symbols in both graphs, with what they stand for.
-    inputs: Vec<(Expr<'g>, Expr<'g>, Input)>,
+    /// The symbols, with what they stand for.
+    inputs: Vec<(Expr<'g>, Input)>,
 }
 
 /// A left side.
@@ -61,8 +54,6 @@ enum Side {
     /// Momentum number s, as a function of the quasi-velocities.
     Momentum(usize),
     Energy,
-    /// By its name.
-    Reaction(String),
 }
 
 impl Second {
@@ -103,64 +94,32 @@ pub(crate) enum Input {
 impl<'g> Printed<'g> {
     /// What is printed in a form; none where there is no such form of the equations.
     pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
-        match form {
-            // The same as Lagrange's.
-            Form::Voronets if assembly.constraints.multipliers().is_none() => None,
-            Form::Canonical => Printed::canonical(assembly, page),
-            _ => Printed::in_velocities(form, assembly, page),
-        }
-    }
-
-    fn in_velocities(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
         let (_, derived) = Derived::new(form, assembly).ok()?;
-        let (equations, system) = (&derived.equations, derived.equations.system());
-        let coordinates = system.frame().coordinates().iter();
-        let rate = |(x, &value): (&Expr<'g>, &Expr<'g>)| (Side::Rate(x.to_string()), value);
-        let mut direct: Vec<_> = coordinates.zip(equations.velocities()).map(rate).collect();
-        direct.extend(system.states().iter().map(|(z, value)| (Side::Rate(z.to_string()), *value)));
-        direct.push((Side::Energy, equations.energy()));
-        let reactions = derived.reactions.iter();
-        direct.extend(reactions.map(|(name, value)| (Side::Reaction(name.to_string()), *value)));
-        Some(Printed {
-            form,
-            graph: system.graph(),
-            page,
-            quasi_velocities: system.quasi_velocities().iter().map(Expr::to_string).collect(),
-            direct,
-            mass: equations.mass_matrix().entries().to_vec(),
-            right: equations.right_hand_side().to_vec(),
-            written: equations.written(page),
-            momenta: Vec::new(),
-            inputs: Vec::new(),
-        })
+        let sheet = match form {
+            // The same as Lagrange's.
+            Form::Voronets if assembly.constraints.multipliers().is_none() => return None,
+            Form::Canonical => {
+                let equations: Canonical<'g> = assembly.free_system().ok()?.canonical().ok()?;
+                Sheet::of_momenta(assembly, &derived, &equations, page)
+            }
+            _ => Sheet::of_velocities(assembly, &derived, page),
+        };
+        let quasi_velocities: Vec<String> = sheet.quasi_velocities.iter().map(Expr::to_string).collect();
+        let rate = |&(rate, value): &(Expr<'g>, Expr<'g>)| {
+            (Side::Rate(rate.to_string().trim_end_matches('\'').to_owned()), value)
+        };
+        let mut direct: Vec<_> = sheet.rates.iter().chain(&sheet.states).map(rate).collect();
+        direct.push((Side::Energy, sheet.energy));
+        if let Balance::Momenta { of_velocities, velocities, .. } = &sheet.balance {
+            direct.extend((0..).zip(of_velocities).map(|(s, &y)| (Side::Momentum(s), y)));
+            // Where the equations are not closed, quasi-velocities stand for themselves.
+            let solved = velocities.as_ref().unwrap_or(&sheet.quasi_velocities);
+            let solved = quasi_velocities.iter().zip(solved);
+            direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
+        }
+        Some(Printed { form, page, sheet, quasi_velocities, direct, inputs: Vec::new() })
     }
 
-    fn canonical(assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
-        let equations: Canonical<'g> = assembly.free_system().ok()?.canonical().ok()?;
-        let system = equations.system();
-        let quasi_velocities: Vec<String> = system.quasi_velocities().iter().map(Expr::to_string).collect();
-        let coordinates = system.frame().coordinates().iter();
-        let states = system.states().iter().map(|(z, _)| z);
-        let rate = |(x, &value): (&Expr<'g>, &Expr<'g>)| (Side::Rate(x.to_string()), value);
-        let mut direct: Vec<_> = coordinates.zip(equations.velocities()).map(rate).collect();
-        direct.extend(states.zip(equations.state_rates()).map(rate));
-        direct.push((Side::Energy, equations.hamiltonian()));
-        direct.extend((0..).zip(equations.momenta_of_velocities()).map(|(s, &y)| (Side::Momentum(s), y)));
-        let solved = quasi_velocities.iter().zip(equations.quasi_velocities());
-        direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
-        Some(Printed {
-            form: Form::Canonical,
-            graph: system.graph(),
-            page,
-            direct,
-            mass: Vec::new(),
-            right: equations.right_hand_side().to_vec(),
-            written: equations.written(page),
-            momenta: equations.momenta().iter().map(Expr::to_string).collect(),
-            inputs: Vec::new(),
-            quasi_velocities,
-        })
-    }
     /// The name of the form.
     pub(crate) fn name(&self) -> String {
         printed_name(self.form)
@@ -178,27 +137,30 @@ impl<'g> Printed<'g> {
         if !second.are_free(&free) {
             return Err("its velocities are not the independent ones".to_owned());
         }
-        let expressions: Vec<Expr<'g>> =
-            self.direct.iter().map(|(_, value)| *value).chain(self.mass.iter().copied()).collect();
-        for symbol in self.graph.symbols_of(&[expressions, self.right.clone()].concat()) {
+        let momenta = self.momenta();
+        for symbol in self.page.symbols_of(&self.all()) {
             let name = symbol.symbol_name().unwrap_or_default();
-            let momentum = self.momenta.iter().position(|y| *y == name).map(Input::Momentum);
+            if name
+                .strip_suffix('\'')
+                .is_some_and(|eta| self.quasi_velocities.iter().any(|known| known == eta))
+            {
+                continue; // an acceleration, by the equations themselves
+            }
+            let momentum = momenta.iter().position(|y| *y == name).map(Input::Momentum);
             let outside = || external.contains(&name).then_some(Input::External);
             let input = momentum.or_else(|| second.input(&name)).or_else(outside);
-            let input = input.ok_or_else(|| unknown(&name))?;
-            self.inputs.push((symbol, self.page.symbol(&name), input));
+            self.inputs.push((symbol, input.ok_or_else(|| unknown(&name))?));
         }
         let direct = self.direct.iter().map(|(side, _)| match side {
             Side::Rate(name) => (format!("the rate of {name}"), second.rate(name)),
             Side::QuasiVelocity(name) => (name.clone(), second.velocity(name)),
-            Side::Momentum(s) => (self.momenta[*s].clone(), Some(Quantity::Momentum(*s))),
+            Side::Momentum(s) => (momenta[*s].clone(), Some(Quantity::Momentum(*s))),
             Side::Energy => ("energy".to_owned(), Some(Quantity::FreeEnergy)),
-            Side::Reaction(name) => (name.clone(), second.observable(name)),
         });
         let mut candidates: Candidates = direct.collect();
         for way in ["", ", multiplied out"] {
             if self.form == Form::Canonical {
-                let rates = (0..).zip(&self.momenta);
+                let rates = (0..).zip(&momenta);
                 candidates.extend(
                     rates.map(|(s, y)| (format!("the rate of {y}{way}"), Some(Quantity::MomentumRate(s)))),
                 );
@@ -207,7 +169,36 @@ impl<'g> Printed<'g> {
                 candidates.extend(rates.map(|eta| (format!("the rate of {eta}{way}"), second.rate(eta))));
             }
         }
+        let reactions = self.sheet.reactions.iter().map(|(name, _)| name.to_string());
+        candidates.extend(reactions.map(|name| {
+            let observable = second.observable(&name);
+            (name, observable)
+        }));
         Ok((candidates, free))
+    }
+
+    /// The symbols of the momenta.
+    fn momenta(&self) -> Vec<String> {
+        match &self.sheet.balance {
+            Balance::Momenta { momenta, .. } => momenta.iter().map(Expr::to_string).collect(),
+            Balance::Velocities { .. } => Vec::new(),
+        }
+    }
+
+    /// M by rows, empty where rates of momenta are printed, and the right sides as they are and multiplied out.
+    fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
+        match &self.sheet.balance {
+            Balance::Velocities { mass, right, written, .. } => (mass.concat(), [right, written]),
+            Balance::Momenta { right, written, .. } => (Vec::new(), [right, written]),
+        }
+    }
+
+    /// All expressions.
+    fn all(&self) -> Vec<Expr<'g>> {
+        let (mass, [right, written]) = self.balance();
+        let direct = self.direct.iter().map(|&(_, value)| value);
+        let reactions = self.sheet.reactions.iter().map(|&(_, value)| value);
+        direct.chain(mass).chain(right.to_vec()).chain(written.to_vec()).chain(reactions).collect()
     }
 
     /// The right sides of what is printed, M η̇ = r being solved, with the momenta of the second derivation where these are the
@@ -219,7 +210,7 @@ impl<'g> Printed<'g> {
         free: &[Free],
     ) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
-        let wanted: Vec<Quantity> = (0..self.momenta.len()).map(Quantity::Momentum).collect();
+        let wanted: Vec<Quantity> = (0..self.momenta().len()).map(Quantity::Momentum).collect();
         let momenta = second.quantities(&here.derived, &wanted, Some(free), &exact)?;
         let still = second.still(&here.derived.place, &exact);
         let value = |input: &Input| match *input {
@@ -235,30 +226,30 @@ impl<'g> Printed<'g> {
             }
             Input::External => 0.0,
         };
-        let numbers: Vec<f64> = self.inputs.iter().map(|(.., input)| value(input)).collect();
-        let there: Vec<_> = self.inputs.iter().zip(&numbers).map(|((symbol, ..), &x)| (*symbol, x)).collect();
-        let on_page: Vec<_> =
-            self.inputs.iter().zip(&numbers).map(|((_, symbol, _), &x)| (*symbol, x)).collect();
+        let mut at: Vec<_> = self.inputs.iter().map(|(symbol, input)| (*symbol, value(input))).collect();
         let refused = |error: ExprError| Irregular::Refused { form: self.name(), message: error.to_string() };
-        let all =
-            [&self.direct.iter().map(|(_, value)| *value).collect::<Vec<_>>()[..], &self.mass, &self.right];
-        let mut values = self.graph.evaluate(&all.concat(), &there).map_err(refused)?;
-        let right = values.split_off(self.direct.len() + self.mass.len());
-        let mass = values.split_off(self.direct.len());
-        let of_page: Vec<Expr<'g>> = self.written.iter().map(|value| value.unwrap_or(Expr::ZERO)).collect();
-        let of_page = self.page.evaluate(&of_page, &on_page).map_err(refused)?;
-        let written = self.written.iter().zip(of_page).zip(&right);
-        let written: Vec<f64> =
-            written.map(|((known, value), &as_is)| if known.is_some() { value } else { as_is }).collect();
-        for right in [right, written] {
-            if self.form == Form::Canonical {
-                values.extend(right);
+        let evaluate =
+            |list: &[Expr<'g>], at: &[(Expr<'g>, f64)]| self.page.evaluate(list, at).map_err(refused);
+        let direct: Vec<Expr<'g>> = self.direct.iter().map(|&(_, value)| value).collect();
+        let mut values = evaluate(&direct, &at)?;
+        let (mass, ways) = self.balance();
+        let mass = evaluate(&mass, &at)?;
+        let mut rates = Vec::new();
+        for right in ways {
+            let right = evaluate(right, &at)?;
+            rates = if self.form == Form::Canonical {
+                right
             } else {
                 let k = right.len();
                 let mass = DMatrix::from_fn(k, k, |r, s| mass[r * k + s]);
-                values.extend(solve(&mass, &right, &right)?.values);
-            }
+                solve(&mass, &right, &right)?.values
+            };
+            values.extend(&rates);
         }
+        let accelerations = self.quasi_velocities.iter().map(|eta| self.page.symbol(&format!("{eta}'")));
+        at.extend(accelerations.zip(rates));
+        let reactions: Vec<Expr<'g>> = self.sheet.reactions.iter().map(|&(_, value)| value).collect();
+        values.extend(evaluate(&reactions, &at)?);
         match values.iter().all(|value| value.is_finite()) {
             true => Ok(values),
             false => Err(Irregular::NotFinite { what: "what is printed" }),

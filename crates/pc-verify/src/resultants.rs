@@ -32,6 +32,10 @@ impl Derivation {
             }
             if text.has_own_energy() {
                 for r in 0..k {
+                    if !self.couplings.has(s, r) {
+                        column.push(0.0);
+                        continue;
+                    }
                     let point = self.twice(at, &at.along_velocity(s), &at.along_velocity(r), rounding);
                     column.push(point.own_lagrangian()?.eps.eps);
                 }

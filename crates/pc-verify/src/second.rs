@@ -4,6 +4,7 @@ use pc_model::{Assembly, Flow, Model};
 use pc_print::Form;
 
 use crate::agreement::{Agreement, Passed};
+use crate::couplings::Couplings;
 use crate::derivation::{Completing, Derivation};
 use crate::error::{Irregular, VerifyError};
 use crate::linear::pseudo_inverse;
@@ -19,6 +20,15 @@ pub(crate) const LONG: usize = 100_000;
 
 /// Terms that are evaluated for all states together, in a second or so.
 const ALL_STATES: usize = 5_000_000;
+
+/// What all equations at a single state may take beyond that, in the same unit: some seconds.
+const ONE_STATE: usize = 5 * ALL_STATES;
+
+/// Operations of a product of matrices that take as long as one term.
+const PRODUCTS: usize = 50;
+
+/// States at which a model is compared along virtual velocities, however long that takes.
+const FEWEST: usize = 3;
 
 /// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
 /// a second, and ten times that with each two more.
@@ -54,6 +64,7 @@ impl Second {
             kept: Vec::new(),
             completing: Vec::new(),
             structure: Structure::Frame,
+            couplings: Couplings::of(&text),
             text,
         };
         // Which velocities the energy is one of is the first derivation's choice.
@@ -188,7 +199,21 @@ impl Second {
     /// How many terms of the text are evaluated for the equations at one state, roughly.
     pub fn cost(&self) -> usize {
         let k = self.start.w.len();
-        (k * (k + 1) / 2 + 4 * k + 4).saturating_mul(self.derivation.text.terms())
+        let evaluations = self.derivation.couplings.pairs() + 4 * k + 4;
+        evaluations
+            .saturating_mul(self.derivation.text.terms())
+            .saturating_add(k.saturating_pow(3) / PRODUCTS)
+    }
+
+    /// The same along a few virtual velocities.
+    fn projected_cost(&self) -> usize {
+        let k = self.start.w.len();
+        // The frame, the definitions of quasi-velocities and the constraints are linearised several times.
+        let is_linearised = matches!(self.derivation.text.velocities, Velocities::Quasi(_))
+            || self.derivation.has_definitions()
+            || !self.derivation.on_positions.is_empty();
+        let evaluations = if is_linearised { 200 + 8 * k } else { 30 };
+        evaluations.saturating_mul(self.derivation.text.terms())
     }
 
     /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
@@ -209,8 +234,14 @@ impl Second {
 
     /// At how many of so many states all equations are compared.
     pub(crate) fn wholly(&self, states: usize) -> usize {
-        let affordable = ALL_STATES / self.cost().max(1);
-        states.min(affordable.max(1))
+        let least = usize::from(self.cost() <= ONE_STATE);
+        states.min(ALL_STATES / self.cost().max(1)).max(least)
+    }
+
+    /// At how many of so many states they are compared at all.
+    pub(crate) fn affordable(&self, states: usize) -> usize {
+        let affordable = self.wholly(states) + 4 * ONE_STATE / self.projected_cost().max(1);
+        states.min(affordable.max(FEWEST))
     }
 
     pub(crate) fn named(&self, at: &Place, columns: &[f64]) -> Vec<(String, f64)> {

@@ -395,16 +395,18 @@ kinetic = "x'^2 + φ'^2 + q'^2"
     assert!(partly, "{:?}", agreement.not_compared);
 }
 
-/// Sixty coordinates on fifty-nine circles: the rates of the constraints cancel to the last digit, and scatter by nothing.
+/// Sixty coordinates, coupled by one with all, on fifty-nine circles: the rates of the constraints cancel to the last digit, and
+/// scatter by nothing.
 #[test]
 fn what_cancels_wholly_has_the_size_of_its_terms() {
     let list = |n: usize, entry: &dyn Fn(usize) -> String, between: &str| -> String {
         (0..n).map(entry).collect::<Vec<_>>().join(between)
     };
     let text = format!(
-        "[coordinates]\n{}\n[lagrangian]\nkinetic = \"{}\"\n[constraints]\n{}\n",
+        "[coordinates]\n{}\n[lagrangian]\nkinetic = \"{} + x0'*({})/8\"\n[constraints]\n{}\n",
         list(60, &|i| format!("x{i} = 0.5"), "\n"),
         list(60, &|i| format!("x{i}'^2/2"), " + "),
+        list(60, &|i| format!("x{i}'"), " + "),
         list(59, &|i| format!("k{i} = \"x{i}^2 + x{}^2 - 0.5\"", i + 1), "\n"),
     );
     let agreement = verify(&model(&text), &Options { states: 10, seed: 0 }).unwrap();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pc_expr::Deadline;
 use pc_mech::Table;
 use pc_model::Model;
 use pc_model::document::{AlgebraDefinition, Document, Expression, Inertia, NamedExpression, Orientation};
@@ -34,6 +35,8 @@ pub(crate) struct Text {
     pub(crate) forces: Vec<(Forced, Term)>,
     /// `[integrals]` and `[outputs]`, those that can be understood.
     pub(crate) observed: Vec<(String, Term)>,
+    /// When work on the model has to end.
+    pub(crate) deadline: Deadline,
 }
 
 /// The velocities w in which the equations are written, of which ẋ and η are functions.
@@ -148,6 +151,7 @@ impl Text {
                 .map(|force| Ok((forced(&names, &force.name.text)?, term(&force.expression)?)))
                 .collect::<Result<_, Unable>>()?,
             observed,
+            deadline: model.budget().deadline().clone(),
             names,
         })
     }

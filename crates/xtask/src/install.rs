@@ -6,6 +6,7 @@ mod texts;
 mod trial;
 
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,6 +16,7 @@ use crate::command::{announce_and_run, cargo, run, target_directory, workspace_r
 use crate::error::Error;
 use crate::header::{abi_version, functions_of_header, headers, macro_of_header};
 use crate::setup;
+use crate::tools::Machine;
 
 pub(crate) use places::Places;
 
@@ -30,6 +32,10 @@ struct Installed {
 enum Contents {
     /// A copy of a file.
     Copy(PathBuf),
+    /// What debuggers read of a library.
+    Debugging(PathBuf),
+    /// A library without that, which tells debuggers the name of the file beside it that has it.
+    Library { from: PathBuf, debugging: String },
     /// The archive, in which only the functions of the header are seen.
     Archive(PathBuf),
     /// A link to a file beside it.
@@ -52,9 +58,11 @@ pub(crate) fn install(places: &Places) -> Result<(), Error> {
 /// Installs what was built in a directory.
 ///
 /// # Errors
-/// [`Error::File`], or the failure of a tool; [`Error::NotLinux`].
+/// [`Error::File`], or the failure of a tool; [`Error::Missing`] if there is none, and then nothing is installed;
+/// [`Error::NotLinux`].
 pub(crate) fn place(built: &Path, places: &Places) -> Result<(), Error> {
     known(env::consts::OS)?;
+    binutils(&Machine::this())?;
     for Installed { path, contents } in files(built, places)? {
         let path = places.staged(&path);
         put(&path, contents)?;
@@ -102,9 +110,20 @@ fn known(system: &str) -> Result<(), Error> {
     }
 }
 
-/// The shared libraries in a directory, of whatever number.
+/// That there are the tools that make of a library what is installed.
+fn binutils(machine: &Machine) -> Result<(), Error> {
+    let missing: Vec<_> =
+        ["ld", "objcopy", "ar"].into_iter().filter(|name| !machine.has_program(name)).collect();
+    let remedy = || "install the package binutils".to_owned();
+    if missing.is_empty() { Ok(()) } else { Err(Error::Missing { tools: missing, remedy: remedy() }) }
+}
+
+/// The shared libraries in a directory, of whatever number, with what debuggers read of them.
 fn numbered(directory: &Path) -> Vec<PathBuf> {
-    let number = |name: &str| name.strip_prefix("libpc.so.").is_some_and(|rest| rest.parse::<u32>().is_ok());
+    let number = |name: &str| {
+        let number = name.strip_prefix("libpc.so.").map(|rest| rest.strip_suffix(".debug").unwrap_or(rest));
+        number.is_some_and(|number| number.parse::<u32>().is_ok())
+    };
     let entries = fs::read_dir(directory).into_iter().flatten().flatten();
     entries.filter(|entry| entry.file_name().to_str().is_some_and(number)).map(|entry| entry.path()).collect()
 }
@@ -138,8 +157,10 @@ fn files(built: &Path, places: &Places) -> Result<Vec<Installed>, Error> {
         files.push(Installed { path: places.includedir.join(name), contents });
     }
     let library = format!("libpc.so.{abi}");
+    let (from, debugging) = (built.join("libpc.so"), format!("{library}.debug"));
     for (name, contents) in [
-        (library.as_str(), Contents::Copy(built.join("libpc.so"))),
+        (debugging.as_str(), Contents::Debugging(from.clone())),
+        (library.as_str(), Contents::Library { from, debugging: debugging.clone() }),
         ("libpc.so", Contents::Link(library.clone())),
         ("libpc.a", Contents::Archive(built.join("libpc.a"))),
         ("pkgconfig/libpc.pc", Contents::Text(texts::pkg_config(places, &version))),
@@ -162,11 +183,22 @@ fn put(path: &Path, contents: Contents) -> Result<(), Error> {
         Contents::Copy(from) => fs::copy(&from, &new).map(|_| ()).map_err(|source| file(&from, source)),
         Contents::Link(to) => symlink(to, &new).map_err(|source| file(&new, source)),
         Contents::Text(text) => fs::write(&new, text).map_err(|source| file(&new, source)),
+        Contents::Debugging(from) => {
+            run(Command::new("objcopy").arg("--only-keep-debug").arg(from).arg(&new))
+        }
+        Contents::Library { from, debugging } => stripped(&from, &directory.join(debugging), &new),
         Contents::Archive(from) => archive(&from, &new),
     };
     let moved = made.and_then(|()| fs::rename(&new, path).map_err(|source| file(path, source)));
     let cleared = fs::remove_dir_all(&workshop).map_err(|source| file(&workshop, source));
     moved.and(cleared)
+}
+
+/// The library without what is in `debugging`, which stands beside it.
+fn stripped(from: &Path, debugging: &Path, to: &Path) -> Result<(), Error> {
+    let mut link = OsString::from("--add-gnu-debuglink=");
+    link.push(debugging);
+    run(Command::new("objcopy").arg("--strip-unneeded").arg(link).arg(from).arg(to))
 }
 
 /// Links what the functions of the header need to one object, in which nothing else is global: a program may
@@ -222,18 +254,19 @@ mod tests {
                 lib.join("cmake/pc/other.cmake"),
                 lib.join("libpc.so.0.1"),
                 lib.join("libpc.so.none"),
+                lib.join("libpc.so.none.debug"),
                 lib.join("libpcre.so.3"),
             ];
             own.sort();
             let files: Vec<_> = files(Path::new("/built"), &places).unwrap();
             let ours = files.iter().map(|file| places.staged(&file.path));
-            let earlier = ["libpc.so.7", "libpc.so.12"].map(|name| lib.join(name));
+            let earlier = ["libpc.so.7", "libpc.so.7.debug", "libpc.so.12"].map(|name| lib.join(name));
             for path in ours.chain(earlier).chain(own.clone()) {
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
                 fs::write(path, "").unwrap();
             }
             let top = places.staged(&places.prefix);
-            assert_eq!(left(&top).unwrap().len(), files.len() + 2 + own.len());
+            assert_eq!(left(&top).unwrap().len(), files.len() + 3 + own.len());
             uninstall(&places).unwrap();
             assert_eq!(left(&top).unwrap(), own);
             assert!(!include.join("pc").exists() && lib.join("cmake/pc").exists());
@@ -281,6 +314,14 @@ mod tests {
             ("old".to_owned(), vec![new, at("used")])
         );
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn without_its_tools_it_says_which() {
+        let directory = tempfile::tempdir().unwrap();
+        fs::write(directory.path().join("ld"), "").unwrap();
+        let error = binutils(&Machine::with_path(directory.path())).unwrap_err();
+        assert_eq!(error.to_string(), "missing: objcopy, ar\ninstall the package binutils");
     }
 
     #[test]

@@ -36,6 +36,16 @@ impl PackageManager {
         tools.iter().flat_map(|&tool| self.packages_of(tool)).copied().collect()
     }
 
+    /// The package with the run-time of the sanitizers for a clang of this version, where it is one of its own.
+    pub(crate) fn sanitizers(self, version: &str) -> Option<String> {
+        let major = version.trim().split('.').next().filter(|major| major.parse::<u32>().is_ok())?;
+        match self {
+            PackageManager::Apt => Some(format!("libclang-rt-{major}-dev")),
+            PackageManager::Dnf | PackageManager::Pacman => Some("compiler-rt".to_owned()),
+            PackageManager::Zypper | PackageManager::Brew => None,
+        }
+    }
+
     /// The command line, or lines, that installs these tools.
     pub(crate) fn install_line(self, tools: &[Tool]) -> String {
         let packages = self.packages(tools).join(" ");
@@ -106,6 +116,16 @@ mod tests {
         assert_eq!(PackageManager::Apt.packages(&[Tool::Libclang]), ["libclang-dev"]);
         assert_eq!(PackageManager::Brew.install_line(&[Tool::Cmake]), "brew install cmake");
         assert_eq!(PackageManager::Brew.install_line(&[Tool::Libclang]), "xcode-select --install");
+    }
+
+    #[test]
+    fn sanitizers_are_those_of_the_compiler() {
+        let of = |version| PackageManager::Apt.sanitizers(version);
+        assert_eq!(of("14.0.6\n").as_deref(), Some("libclang-rt-14-dev"));
+        assert_eq!(of("19").as_deref(), Some("libclang-rt-19-dev"));
+        assert_eq!(of("unknown"), None);
+        assert_eq!(PackageManager::Dnf.sanitizers("20.1.8").as_deref(), Some("compiler-rt"));
+        assert_eq!(PackageManager::Brew.sanitizers("17"), None);
     }
 
     #[test]

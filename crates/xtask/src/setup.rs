@@ -38,15 +38,48 @@ pub(crate) fn native_tools() -> Result<(), Error> {
     };
 
     println!("set-up: missing: {}", names(&missing).join(", "));
+    install(prefix, &PackageManager::Apt.packages(&missing))?;
+
+    let missing = Machine::this().missing_tools();
+    if missing.is_empty() { Ok(()) } else { Err(Error::StillMissing { tools: names(&missing) }) }
+}
+
+/// Installs packages of Debian.
+fn install(prefix: &[&str], packages: &[&str]) -> Result<(), Error> {
     // A foreign source that does not answer makes the update fail and is no obstacle to the installation.
     if let Err(error) = announce_and_run(&mut apt_get(prefix, &["update", "-q"])) {
         eprintln!("set-up: {error}; going on");
     }
     let install = ["install", "-q", "--yes", "--no-install-recommends"];
-    announce_and_run(apt_get(prefix, &install).args(PackageManager::Apt.packages(&missing)))?;
+    announce_and_run(apt_get(prefix, &install).args(packages))
+}
 
-    let missing = Machine::this().missing_tools();
-    if missing.is_empty() { Ok(()) } else { Err(Error::StillMissing { tools: names(&missing) }) }
+/// Whether clang's sanitizers are there, which distributions have in a package of their own: it is installed where we may, and
+/// named where not. `work` tries them.
+pub(crate) fn sanitizers_of_clang(work: impl Fn() -> bool) -> bool {
+    if work() {
+        return true;
+    }
+    let machine = Machine::this();
+    let version = Command::new("clang").arg("-dumpversion").output().map(|output| output.stdout);
+    let version = String::from_utf8_lossy(&version.unwrap_or_default()).into_owned();
+    let manager = PackageManager::of(&machine);
+    let package = manager.and_then(|manager| manager.sanitizers(&version));
+    if let (Some(PackageManager::Apt), Some(package)) = (manager, &package)
+        && let Some(prefix) = Rights::of(&machine).prefix()
+    {
+        println!("set-up: missing: the sanitizers of clang");
+        if let Err(error) = install(prefix, &[package]) {
+            eprintln!("set-up: {error}; going on");
+        }
+        if work() {
+            return true;
+        }
+    }
+    let where_from =
+        package.map_or_else(String::new, |package| format!("; they are in the package {package}"));
+    println!("skipped: the sanitizers of clang, which do not run here{where_from}");
+    false
 }
 
 /// rustfmt and clippy.

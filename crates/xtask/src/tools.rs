@@ -70,6 +70,13 @@ impl Machine {
         Machine { root: "/".into(), variables: env::vars_os().collect(), llvm_prefix }
     }
 
+    /// One with programs in a single directory.
+    #[cfg(test)]
+    pub(crate) fn with_path(directory: &Path) -> Machine {
+        let variables = BTreeMap::from([("PATH".into(), directory.into())]);
+        Machine { root: directory.to_owned(), variables, llvm_prefix: None }
+    }
+
     /// The tools that are not found.
     pub(crate) fn missing_tools(&self) -> Vec<Tool> {
         Tool::ALL.into_iter().filter(|&tool| !self.has(tool)).collect()

@@ -28,6 +28,7 @@ pub fn giants() -> Vec<Giant> {
         ),
         giant("power-of-power", one("((x^65535)^65535)^65535")),
         giant("samples", uncoupled(2).replace("samples = 5", "samples = 2000000")),
+        giant("fast-force", one("x*sin(1e21*t)")),
         giant("long-name", one("x").replace('x', &"x".repeat(1_000_000))),
         giant("dense-frame", dense_frame(10)),
         giant("sum-of-squares", sum_of_squares(100)),

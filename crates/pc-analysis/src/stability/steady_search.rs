@@ -16,6 +16,9 @@ const INDEPENDENT: f64 = 1e-8;
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
+/// Components of the state: each step decomposes a full matrix of as many rows, which takes some tenths of a second with more.
+const MOST_COMPONENTS: usize = 200;
+
 /// An equilibrium or a steady motion of an autonomous system near its start.
 #[derive(Clone, Debug)]
 pub struct NearbySteadyMotion {
@@ -80,6 +83,11 @@ pub enum SteadySearch {
     SurfaceUnknown,
     /// The constraints leave no velocities that are independent of each other.
     Nonlinear,
+    /// The state has too many components.
+    TooLarge {
+        /// So many.
+        components: usize,
+    },
     /// Newton's method ended nowhere, or far away.
     None,
     /// It is there.
@@ -107,6 +115,9 @@ impl SteadySearch {
         let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
         if all.any(|&x| moves(bind(system, x))) {
             return SteadySearch::NotAutonomous;
+        }
+        if start.len() > MOST_COMPONENTS {
+            return SteadySearch::TooLarge { components: start.len() };
         }
         let Ok(slopes) = first_approximation(motion, t_start, start) else { return SteadySearch::None };
         let steepest = MOST_STEEPER * largest(&slopes);
@@ -296,6 +307,8 @@ impl<'g> Surface<'g> {
 
     /// g(y) − g(start) and ∂g/∂y
     fn at(&self, y: &[f64]) -> Result<(Vec<f64>, Matrix<f64>), ExprError> {
+        // Newton's method asks here at each step whether it may go on.
+        self.graph.check_budget()?;
         let state: Vec<_> = self.symbols.iter().copied().zip(y.iter().copied()).collect();
         let numbers = self.graph.evaluate(&self.expressions, &state)?;
         let (values, slopes) = numbers.split_at(self.values.len());

@@ -5,7 +5,7 @@ use std::ffi::c_char;
 use pc_analysis::{AnalysisError, PoissonBracket};
 use pc_expr::Evaluator;
 use pc_mech::{Expr, MechError};
-use pc_model::{Assembly, ModelError};
+use pc_model::{Assembly, Model, ModelError};
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn pc_system_bracket(
         let (y, value) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         // SAFETY: null or text, as the preamble demands.
         let (f, g) = unsafe { (text(f, "f")?, text(g, "g")?) };
-        let mut bracket = derived(inventory, f, g)?;
+        let mut bracket = inventory.derive(|model| derived(&model, f, g))?;
         inner.read_quasi_velocities(inventory, t, y)?;
         evaluate(&mut bracket, (t, &inner.room.state, inner.field.parameters()), value)
     };
@@ -49,8 +49,7 @@ pub unsafe extern "C" fn pc_system_bracket(
 }
 
 /// (f, g) as a function of t and (x, η), η those of the state.
-fn derived(inventory: &Inventory, f: &str, g: &str) -> Result<Evaluator, CallError> {
-    let model = inventory.model_anew();
+fn derived(model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     if assembly.constraints.nonlinear().is_some() {

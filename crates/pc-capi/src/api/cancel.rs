@@ -1,4 +1,4 @@
-//! Ending a derivation from elsewhere.
+//! Ending derivations and integrations from elsewhere.
 
 use std::ffi::c_int;
 
@@ -9,13 +9,13 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, free, write};
 use crate::ffi::status::pc_status;
 
-/// Ends derivations that were given it in pc_system_options. Any number of threads may use it at
-/// the same time. Free it with pc_cancel_free.
+/// Ends derivations of systems that were given it in pc_system_options, and integrations of these.
+/// Any number of threads may use it at the same time. Free it with pc_cancel_free.
 pub struct pc_cancel {
     pub(crate) cancel: Cancel,
 }
 
-/// A handle by which derivations are ended.
+/// A handle by which derivations and integrations are ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut *mut pc_error) -> pc_status {
     let new = || {
@@ -29,9 +29,9 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
     unsafe { entry(error, new) }
 }
 
-/// Ends the derivations under way with PC_LIMIT, soon, and those that begin later at once. It
-/// takes no lock and allocates nothing, so that a handler of signals may call it, which is all
-/// that one may. NULL is allowed.
+/// Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
+/// at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
+/// which is all that one may. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_request(cancel: *const pc_cancel) {
     // SAFETY: null or a live handle, as the preamble demands.

@@ -77,7 +77,7 @@ pub unsafe extern "C" fn pc_solver_restore(
             (None, _) => return Err(CallError::NoModel),
         }
         // SAFETY: null or options, as the preamble demands.
-        let options = unsafe { take(options, "options")?.options(inventory.dim()) }?;
+        let options = unsafe { take(options, "options")?.options(inventory.dim(), inventory.deadline()) }?;
         let events = Followed::new(inner.events.clone());
         let integration = Integration::new(inner.field.clone(), &checkpoint, options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, inventory.dim());

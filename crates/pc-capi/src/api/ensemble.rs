@@ -166,7 +166,8 @@ impl Plan<'_> {
 /// be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
 /// returns. A member that fails is told as any other, with what it reached, and the others go on.
 /// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
-/// stops it. The system may be used meanwhile.
+/// stops it; PC_LIMIT, after those members that were finished, if the time limit or the pc_cancel
+/// of the system's options ends it. The system may be used meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,
@@ -188,6 +189,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
         // SAFETY: null or a live handle, as the preamble demands.
         let system = unsafe { handle(system, "system") }?;
         let inventory = Arc::clone(&system.inventory);
+        let deadline = inventory.deadline();
         let (mut field, events) = {
             let inner = system.inner.take()?;
             (inner.field.clone(), inner.events.clone())
@@ -207,9 +209,8 @@ pub unsafe extern "C" fn pc_ensemble_run(
         // SAFETY: null or `times_length` numbers, as the preamble demands.
         let times = unsafe { numbers(times, times_length, times_length, "times") }?;
         // SAFETY: null or options, as the preamble demands.
-        let options = unsafe { take(options, "options")?.options(start.len()) }?;
+        let options = unsafe { take(options, "options")?.options(start.len(), deadline.clone()) }?;
         let observer = observer.ok_or(CallError::Null { what: "observer" })?;
-
         let t = if states.is_none() { t_start } else { t };
         if let Some(&end) = times.last() {
             // A step of one member compiles the derivatives that all need. What goes wrong, each will hear of.
@@ -224,14 +225,20 @@ pub unsafe extern "C" fn pc_ensemble_run(
             ensemble = ensemble.threads(threads);
         }
         let work = |member: u64, stop: &Stop<'_>| plan.follow(member as usize, stop);
+        let mut ended = None;
         let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
             let outcome =
                 outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&CallError::Panic { message }));
+            // What the limit has ended is none of the members' matter.
+            if outcome.status == pc_status::PC_LIMIT {
+                ended = deadline.passed();
+                return ControlFlow::Break(());
+            }
             // SAFETY: a function of that type, as the preamble demands.
             unsafe { outcome.tell(member as usize, start.len(), observer, user) }
         };
         match ensemble.map(0..members as u64, work, consume)? {
-            Ending::Stopped => Err(CallError::Stopped),
+            Ending::Stopped => Err(ended.map_or(CallError::Stopped, CallError::Limit)),
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }
     };

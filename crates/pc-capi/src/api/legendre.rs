@@ -12,10 +12,10 @@ impl Inner {
     /// Derives the transform of the state when it is first asked for.
     pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
-            let model = inventory.model_anew();
-            let graph = model.graph();
-            let assembly = model.assemble(&graph)?;
-            let mut transform = assembly.legendre_transform(inventory.variables)?;
+            let mut transform = inventory.derive(|model| {
+                let graph = model.graph();
+                Ok(model.assemble(&graph)?.legendre_transform(inventory.variables)?)
+            })?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);
         }

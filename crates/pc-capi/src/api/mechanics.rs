@@ -1,7 +1,7 @@
 //! The parts of the equations: mass matrix, structure coefficients, residual.
 
 use ::pc_model::Variables;
-use pc_mech::VectorField;
+use pc_mech::{EvaluationError, MassFactors, MechError, SingularMatrix, VectorField};
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -19,7 +19,8 @@ impl Inner {
         inventory: &Inventory,
     ) -> Result<(&mut Mechanics, &mut MotionField, &mut Room), CallError> {
         if self.mechanics.is_none() {
-            self.mechanics = Some(Mechanics::of(&inventory.model_anew(), inventory.variables)?);
+            let derived = inventory.derive(|model| Mechanics::of(&model, inventory.variables))?;
+            self.mechanics = Some(derived);
         }
         const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
@@ -96,6 +97,50 @@ pub unsafe extern "C" fn pc_system_right_hand_side(
         let (values, state) = room.split(dim);
         evaluate(&mut mechanics.right, (t, state, motion.inputs(t, y)?), values)?;
         right.copy_from_slice(&values[n..n + k]);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
+/// Solves M w = v at (t, y), M as of pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
+/// numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is singular.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_solve_mass_matrix(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    v: *const f64,
+    v_length: usize,
+    w: *mut f64,
+    w_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compute = |inventory: &Inventory, inner: &mut Inner| {
+        let (dim, k) = (inventory.dim(), inner.field.quasi_velocities());
+        if v_length == k && w_length == k {
+            apart((v, k, "v"), (w, k, "w"))?;
+        }
+        // SAFETY: as the preamble demands; w shares no memory with it.
+        let v = unsafe { numbers(v, v_length, k, "v") }?;
+        let target = Target { data: w, length: w_length, expected: k, what: "w" };
+        // SAFETY: as the preamble demands.
+        let (y, w) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
+        inner.read_quasi_velocities(inventory, t, y)?;
+        let (mechanics, motion, room) = inner.mechanics(inventory)?;
+        let n = motion.coordinates();
+        let (mass, state) = room.split(k * k);
+        evaluate(&mut mechanics.mass, (t, state, motion.parameters()), mass)?;
+        let factors = inner.factors.get_or_insert_with(|| MassFactors::new(k));
+        factors.factorise(inner.room.numbers(k * k)).map_err(|SingularMatrix { index, pivot }| {
+            let quasi_velocity = inventory.names[n + index].to_string_lossy().into_owned();
+            let names = inventory.names.iter().map(|name| name.to_string_lossy().into_owned());
+            let state = names.zip(y.iter().copied()).collect();
+            MechError::from(EvaluationError::SingularMassMatrix { quasi_velocity, pivot, t, state })
+        })?;
+        w.copy_from_slice(v);
+        factors.solve(w);
         Ok(())
     };
     // SAFETY: as the preamble demands.

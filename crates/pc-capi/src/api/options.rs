@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use ::pc_model::Variables;
 use pc_expr::Limits;
-use pc_solve::{Accumulation, Krylov, LinearSolver, Method, NonlinearSolver, Options};
+use pc_solve::{Accumulation, Deadline, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
 use crate::api::cancel::pc_cancel;
 use crate::ffi::call_error::CallError;
@@ -35,10 +35,11 @@ pub struct pc_system_options {
     /// default, for 4 GiB. Beyond it, PC_LIMIT. It holds for pc_system_new, and for each later
     /// call that derives by itself, as do the next two.
     pub memory_limit: u64,
-    /// Most seconds that a derivation may take, positive; 0, the default, for no limit.
+    /// Most seconds that a derivation may take, and each call of a solver or an ensemble of the
+    /// system, positive; 0, the default, for no limit.
     pub time_limit: f64,
-    /// By which derivations are ended; NULL, the default, for none. It may be freed when
-    /// pc_system_new has returned.
+    /// By which derivations and integrations are ended; NULL, the default, for none. It may be
+    /// freed when pc_system_new has returned.
     pub cancel: *const pc_cancel,
 }
 
@@ -251,11 +252,11 @@ pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str
 }
 
 impl pc_solver_options {
-    /// The same for the solver of a state of `dim` components.
+    /// The same for the solver of a state of `dim` components, until the deadline.
     ///
     /// # Safety
     /// The tolerances are null or as many numbers as said.
-    pub(crate) unsafe fn options(&self, dim: usize) -> Result<Options, CallError> {
+    pub(crate) unsafe fn options(&self, dim: usize, deadline: Deadline) -> Result<Options, CallError> {
         unreserved("pc_solver_options.reserved", self.reserved.into())?;
         let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };
         let mut options = Options::new(match self.method {
@@ -303,6 +304,7 @@ impl pc_solver_options {
         if self.stop_time.is_nan() || self.stop_time.is_finite() {
             options = options.stop_time(self.stop_time);
         }
+        options = options.deadline(deadline);
         let accumulation = Accumulation { within: self.accumulation, ..Accumulation::default() };
         Ok(options.samples_per_step(self.samples_per_step).accumulation(accumulation))
     }

@@ -270,6 +270,43 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
+/// Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
+/// pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
+/// forces, of which it is not known, and with inputs that have tables.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_time_derivative(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    derivative: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let evaluate = |inventory: &Inventory, inner: &mut Inner| {
+        let unknown = |why| Err(CallError::Unsupported { what: "∂f/∂t", why });
+        if !inventory.forces.is_empty() {
+            return unknown("that of external forces is not");
+        }
+        if !inventory.model.parameter_values().tables().is_empty() {
+            return unknown("there are inputs with tables");
+        }
+        let (state, dim) = (State { y, length: y_length }, inventory.dim());
+        let target = Target { data: derivative, length, expected: dim, what: "derivative" };
+        // SAFETY: as the preamble demands.
+        let (y, derivative) = unsafe { slices(state, dim, target) }?;
+        match inner.by_time(inventory)? {
+            Some(motion) => Ok(motion.time_derivative(t, y, derivative)?),
+            None => {
+                derivative.fill(0.0);
+                Ok(())
+            }
+        }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, evaluate) }
+}
+
 /// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
 /// the integrals of pc_model_keep to their values at the start of the model, or where
 /// pc_system_keep_from said. Where there is nothing to be kept it stays.

@@ -29,17 +29,19 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
         if parameter >= values.len() {
             return Err(CallError::Index { what: "parameter", index: parameter, count: values.len() });
         }
-        let mut model = inventory.model_anew();
-        // Those that follow others have followed when their turn comes.
-        for (place, &value) in values.iter().enumerate() {
-            let known = model.parameters().nth(place).map(|(name, known)| (name.to_owned(), known));
-            let is_table = model.parameter_values().is_table(place);
-            match known {
-                Some((name, known)) if known != value && !is_table => model.set(&name, value)?,
-                _ => {}
+        let derived = inventory.derive(|mut model| {
+            // Those that follow others have followed when their turn comes.
+            for (place, &value) in values.iter().enumerate() {
+                let known = model.parameters().nth(place).map(|(name, known)| (name.to_owned(), known));
+                let is_table = model.parameter_values().is_table(place);
+                match known {
+                    Some((name, known)) if known != value && !is_table => model.set(&name, value)?,
+                    _ => {}
+                }
             }
-        }
-        column.copy_from_slice(&Flow::start_by_parameter(&model, inventory.variables, parameter)?);
+            Ok(Flow::start_by_parameter(&model, inventory.variables, parameter)?)
+        })?;
+        column.copy_from_slice(&derived);
         Ok(())
     };
     // SAFETY: as the preamble demands.

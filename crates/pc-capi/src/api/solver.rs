@@ -60,7 +60,7 @@ pub unsafe extern "C" fn pc_solver_new(
     let new = |inventory: &Inventory, inner: &mut Inner| {
         let dim = inventory.dim();
         // SAFETY: null or options, as the preamble demands.
-        let options = unsafe { take(options, "options")?.options(dim) }?;
+        let options = unsafe { take(options, "options")?.options(dim, inventory.deadline()) }?;
         let (t, y) = if y.is_null() && y_length == 0 {
             inventory.start()
         } else {
@@ -142,7 +142,7 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
 /// Integrates to the time t, in the direction of the first step, and writes the state there. With
 /// PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
 /// next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
-/// reached.
+/// reached; one of them is PC_LIMIT, by the time limit or the pc_cancel of the system's options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,

@@ -2,9 +2,9 @@
 
 use std::ffi::{c_char, c_int};
 
-use ::pc_model::Variables;
+use ::pc_model::{Model, Variables};
 use pc_mech::{EmitOptions, Language};
-use pc_print::{Form, Page};
+use pc_print::{Form, Layout, Page};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -47,7 +47,8 @@ pub unsafe extern "C" fn pc_system_print(
             value => return Err(CallError::Choice { what: "pc_format", value: value.into() }),
         };
         // SAFETY: as the preamble demands.
-        let printed = printed(&unsafe { handle(system, "system") }?.inventory, page)?;
+        let inventory = &unsafe { handle(system, "system") }?.inventory;
+        let printed = inventory.derive(|model| printed(inventory, &model, page))?;
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
@@ -55,15 +56,14 @@ pub unsafe extern "C" fn pc_system_print(
     unsafe { entry(error, print) }
 }
 
-fn printed(inventory: &Inventory, page: Page) -> Result<String, CallError> {
-    let model = inventory.model_anew();
+fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let form = match inventory.variables {
         Variables::QuasiVelocities => Form::Poincare,
         Variables::Momenta => Form::Canonical,
     };
-    Ok(pc_print::page(form, page, model.title(), &assembly)?)
+    Ok(pc_print::page(form, page, &Layout::default(), model.title(), &assembly)?)
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
         let name = unsafe { text(name, "name") }?;
         // SAFETY: as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
-        let [written_header, written_source] = emitted(inventory, name, t_end)?;
+        let [written_header, written_source] = inventory.derive(|model| emitted(&model, name, t_end))?;
         // SAFETY: as the preamble demands; neither is null, so that both texts are handed over.
         unsafe {
             write(header, give(&written_header), "header")?;
@@ -102,8 +102,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
     unsafe { entry(error, emit) }
 }
 
-fn emitted(inventory: &Inventory, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
-    let model = inventory.model_anew();
+fn emitted(model: &Model, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let equations = assembly.equations()?;

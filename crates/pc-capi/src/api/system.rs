@@ -2,6 +2,8 @@
 
 use std::ffi::c_char;
 
+use ::pc_model::deep;
+
 use crate::api::model::pc_model;
 use crate::api::options::{pc_system_options, take};
 use crate::ffi::boundary::entry;
@@ -33,7 +35,7 @@ pub unsafe extern "C" fn pc_system_new(
         let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
         let mut model = contents.model()?;
         model.limit(limits);
-        let derived = pc_system::new(model, variables, contents.observes_reactions)?;
+        let derived = deep(|| pc_system::new(model, variables, contents.observes_reactions))?;
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };

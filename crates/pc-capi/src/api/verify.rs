@@ -2,6 +2,7 @@
 
 use std::ffi::c_char;
 
+use ::pc_model::Model;
 use pc_verify::{Options, VerifyError, verify};
 
 use crate::ffi::call_error::CallError;
@@ -31,7 +32,7 @@ pub unsafe extern "C" fn pc_system_verify(
             // SAFETY: the pointers are as the preamble demands.
             unsafe { clear(text, "text") }?;
         }
-        let report = report(inventory, inner.field.parameters(), states)?;
+        let report = inventory.derive(|model| report(model, inner.field.parameters(), states))?;
         // SAFETY: as the preamble demands.
         if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }
     };
@@ -39,8 +40,7 @@ pub unsafe extern "C" fn pc_system_verify(
     unsafe { inside(system, error, compare) }
 }
 
-fn report(inventory: &Inventory, parameters: &[f64], states: usize) -> Result<String, CallError> {
-    let mut model = inventory.model_anew();
+fn report(mut model: Model, parameters: &[f64], states: usize) -> Result<String, CallError> {
     let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
     for (name, &value) in names.iter().zip(parameters) {
         model.set(name, value)?;

@@ -73,6 +73,6 @@ pub const PREAMBLE: &str = "\
  * That a function takes a handle as `const` says that what it computes stays, no more.
  *
  * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
- * does not end your program; memory that is exhausted does, and a stack: threads that make models
- * and systems need some 256 KiB, more for long expressions.
+ * does not end your program; memory that is exhausted does, and a stack: a thread needs 128 KiB,
+ * whatever the model; what goes deeper takes a stack of its own, of 8 MiB, while it derives.
  */";

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::ffi::CString;
 
 use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
-use pc_expr::Failure;
+use pc_expr::{Failure, Spent};
 use pc_mech::MechError;
 use pc_solve::{CheckpointError, EnsembleError, SolveError};
 use pc_verify::VerifyError;
@@ -55,6 +55,8 @@ pub(crate) enum CallError {
     Broken,
     #[error("a fault of the library: {message}")]
     Panic { message: String },
+    #[error("{0}")]
+    Limit(Spent),
     #[error("the observer stopped the integration")]
     Stopped,
     #[error("a terminal event ended the integration")]
@@ -141,6 +143,8 @@ impl CallError {
             CallError::Evaluation(_) | CallError::Mechanics(_) | CallError::NoValue { .. } => {
                 pc_status::PC_EVALUATION
             }
+            CallError::Limit(_) => pc_status::PC_LIMIT,
+            CallError::Solve(error) if error.ended().is_some() => pc_status::PC_LIMIT,
             CallError::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
             CallError::Stopped => pc_status::PC_STOPPED,
             CallError::Terminal => pc_status::PC_EVENT,

@@ -41,8 +41,8 @@ pub enum pc_status {
     PC_INVALID_CHECKPOINT = 13,
     /// Two derivations of one model give different motions: a defect of the library.
     PC_DISAGREEMENT = 14,
-    /// The equations of the model would take more memory or time than they may, or somebody
-    /// cancelled the work.
+    /// The equations of the model, or an integration, would take more memory or time than they
+    /// may, or somebody cancelled the work.
     PC_LIMIT = 15,
     /// None.
     PC_STATUS_LAST = 0x7fff_ffff,

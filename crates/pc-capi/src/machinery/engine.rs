@@ -181,13 +181,19 @@ impl Integration {
         Ok(self.engine.checkpoint())
     }
 
-    pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {
+    /// A call begins, which may take as long as each.
+    fn called(&mut self) {
         self.record.terminal = None;
+        self.engine.renew_deadline();
+    }
+
+    pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {
+        self.called();
         self.engine.advance_to(t, |occurrence| self.record.note(occurrence))
     }
 
     pub(crate) fn step(&mut self, towards: f64) -> Result<Ending, SolveError> {
-        self.record.terminal = None;
+        self.called();
         self.engine.step(towards, |occurrence| self.record.note(occurrence))
     }
 
@@ -196,13 +202,13 @@ impl Integration {
         times: &[f64],
         output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
-        self.record.terminal = None;
+        self.called();
         let occurred = |occurrence: &Occurrence| self.record.note(occurrence);
         self.engine.run_observed(times, Observed::new(output).occurrences(occurred))
     }
 
     pub(crate) fn run_dense(&mut self, end: f64) -> Result<(DenseOutput, Ending), SolveError> {
-        self.record.terminal = None;
+        self.called();
         let mut motion = DenseOutput::default();
         let keep = |segment| {
             motion.extend([segment]);

@@ -3,9 +3,9 @@
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
 
-use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables};
-use pc_expr::{Event, Events, Pattern};
-use pc_mech::{LegendreTransform, VectorField};
+use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables, deep};
+use pc_expr::{Deadline, Event, Events, Pattern, TimeDependence};
+use pc_mech::{LegendreTransform, MassFactors, Motion, VectorField};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -55,11 +55,16 @@ impl Inventory {
         self.names.len()
     }
 
-    /// The model for another derivation, which may take as much as the first one.
-    pub(crate) fn model_anew(&self) -> Model {
+    /// Derives something else from the model, which may take as much as the first derivation.
+    pub(crate) fn derive<T>(&self, work: impl FnOnce(Model) -> Result<T, CallError>) -> Result<T, CallError> {
         let mut model = self.model.clone();
         model.limit(self.model.budget().limits().clone());
-        model
+        deep(|| work(model))
+    }
+
+    /// When something that begins now has to end, by the limits of the first derivation.
+    pub(crate) fn deadline(&self) -> Deadline {
+        Deadline::new(self.model.budget().limits())
     }
 
     /// The time and state from which the model starts.
@@ -80,6 +85,10 @@ pub(crate) struct Inner {
     /// Derived when first asked for.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
+    /// The motion with its derivative by time, or nothing where f does not contain it.
+    by_time: Option<Option<Box<Motion>>>,
+    /// Those of M, when first solved with.
+    pub(crate) factors: Option<MassFactors>,
     pub(crate) room: Room,
 }
 
@@ -148,7 +157,17 @@ impl pc_system {
         let values = inventory.model.parameter_values().clone();
         let room = Room { state: vec![0.0; inventory.dim()], values: Vec::new() };
         let events = flow.events;
-        let inner = Inner { field, values, kept_at, events, mechanics: None, legendre: None, room };
+        let inner = Inner {
+            field,
+            values,
+            kept_at,
+            events,
+            mechanics: None,
+            legendre: None,
+            by_time: None,
+            factors: None,
+            room,
+        };
         Ok(pc_system {
             inventory: Arc::new(inventory),
             direct: OnceLock::new(),
@@ -197,6 +216,29 @@ impl Inner {
         if let Some(legendre) = &mut self.legendre {
             legendre.parameters_mut().copy_from_slice(values);
         }
+    }
+
+    /// The motion with its derivative by time, derived when first asked for, with the parameters as they are; nothing where f
+    /// does not contain it.
+    pub(crate) fn by_time(&mut self, inventory: &Inventory) -> Result<Option<&mut Motion>, CallError> {
+        if self.by_time.is_none() {
+            self.by_time = Some(match self.field.time_dependence() {
+                TimeDependence::Absent => None,
+                TimeDependence::Known(_) | TimeDependence::Unknown => {
+                    Some(inventory.derive(|mut model| {
+                        model.differentiate_by_time(true);
+                        let graph = model.graph();
+                        let assembly = model.assemble(&graph)?;
+                        Ok(Box::new(Flow::new(&model, &assembly, inventory.variables)?.motion))
+                    })?)
+                }
+            });
+        }
+        let mut motion = self.by_time.as_mut().and_then(Option::as_deref_mut);
+        if let Some(motion) = &mut motion {
+            motion.parameters_mut().copy_from_slice(self.field.parameters());
+        }
+        Ok(motion)
     }
 
     /// What is kept by projection are then the values there.

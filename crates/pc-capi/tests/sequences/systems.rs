@@ -109,7 +109,8 @@ impl Handles {
             let _ = self.call(|error| {
                 pc_system_jacobian_pattern(system, &raw mut entries, ptr::null_mut(), ptr::null_mut(), error)
             });
-            let functions: [(At, usize); 14] = [
+            let functions: [(At, usize); 15] = [
+                (pc_system_time_derivative, dim),
                 (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system)),
                 (pc_system_right_hand_side, velocities),
                 (pc_system_events, pc_system_event_count(system)),
@@ -143,7 +144,9 @@ impl Handles {
             let (y, y_length, v, v_length) = (y.data(), y.len(), v.data(), v.len());
             let (out, length) = (result.data(), result.len());
             let mut number = 0.0;
-            self.call(|error| match function % 9 {
+            let velocities = dim - pc_system_coordinate_count(system) - pc_system_state_count(system);
+            let [of_v, of_w] = [v_length, length].map(|length| length.min(velocities));
+            self.call(|error| match function % 10 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -153,6 +156,7 @@ impl Handles {
                 5 => pc_system_jvp(system, t, y, y_length, v, v_length, v, v_length, error),
                 6 => pc_system_verify(system, 1 + index, ptr::null_mut(), error),
                 7 => pc_system_start_by_parameter(system, index, out, length, error),
+                8 => pc_system_solve_mass_matrix(system, t, y, y_length, v, of_v, out, of_w, error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
             })
         }

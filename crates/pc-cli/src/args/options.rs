@@ -27,7 +27,7 @@ pub struct ModelArguments {
     /// What the expressions of the equations, and again the rows of a motion, may take in memory, such as 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
     pub limit_memory: u64,
-    /// How many seconds the equations may take to be derived; no limit unless given
+    /// How many seconds all work on the model may take, from its derivation to the end of a motion; no limit unless given
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_time: Option<Duration>,
 }
@@ -91,6 +91,15 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
+    /// Columns of a line; what is longer goes on in the next, between two signs
+    #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
+    pub width: u16,
+    /// In text: the first line of each equation, without what the names of long parts stand for
+    #[arg(long)]
+    pub brief: bool,
+    /// Write out the definitions of the model instead of naming them
+    #[arg(long)]
+    pub inline: bool,
 }
 
 /// How events are looked for.

@@ -1,6 +1,6 @@
 //! `pc derive`: the equations of motion, printed.
 
-use pc_print::page;
+use pc_print::{Layout, page};
 
 use crate::args::input;
 use crate::args::options::DeriveArguments;
@@ -18,7 +18,8 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
-    let page = page(arguments.form.into(), arguments.format.into(), model.title(), &assembly)?;
+    let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
+    let page = page(arguments.form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
     print(|out| write!(out, "{page}"))
 }

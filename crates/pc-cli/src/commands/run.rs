@@ -161,7 +161,7 @@ fn integrate_into(
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (ending, error) {
-        (_, Some(error)) => Ending::Failed(Box::new(error)),
+        (_, Some(error)) => error.ended().map_or_else(|| Ending::Failed(Box::new(error)), Ending::Ended),
         (Some(solver::Ending::Completed), None) => Ending::Completed,
         (Some(solver::Ending::Event { event }), None) => Ending::Event { name: events[event].clone() },
         (Some(solver::Ending::Stopped) | None, None) if is_full => Ending::Unwritten,
@@ -225,6 +225,7 @@ impl Run {
             // How the file was written says why.
             Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
+            Ending::Ended(limit) => Err(CliError::Ended { t: self.statistics.current_time, limit }),
             Ending::Failed(cause) => Err(CliError::Integration { cause, names, jumps: self.jumps }),
         }
     }

@@ -130,7 +130,8 @@ impl Checkpoints {
             Ok(motion) => (motion, None),
             Err(failure) => (failure.reached, Some(failure.error)),
         };
-        if motion.ending == Some(Ending::Stopped) {
+        let is_ended = error.as_ref().is_some_and(|error: &SolveError| error.ended().is_some());
+        if motion.ending == Some(Ending::Stopped) || is_ended {
             let path = self.place.path().display();
             text::say(format_args!(
                 "note: the same command with --resume {path} goes on from the last checkpoint\n"

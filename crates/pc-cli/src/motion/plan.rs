@@ -2,7 +2,7 @@
 
 use pc_model::Model;
 use pc_model::document;
-use pc_solve::{Accumulation, Method, Options};
+use pc_solve::{Accumulation, Deadline, Method, Options};
 
 use crate::args::options;
 use crate::args::options::{RunArguments, RunForm};
@@ -35,6 +35,8 @@ pub struct Plan {
     pub method: Method,
     /// The parameters, by their numbers, by which the motion is to be differentiated.
     pub sensitivities: Vec<usize>,
+    /// When all work on the model has to end.
+    pub deadline: Deadline,
 }
 
 impl Plan {
@@ -77,6 +79,7 @@ impl Plan {
             accumulation: arguments.events.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
             method,
             sensitivities: sensitivities::parameters(model, &arguments.sensitivities)?,
+            deadline: model.budget().deadline().clone(),
         })
     }
 
@@ -88,10 +91,12 @@ impl Plan {
         inner.chain([self.t_end]).collect()
     }
 
-    /// Method, tolerances and the limit of steps for the integrator.
+    /// Method, tolerances, the limit of steps and that of time for the integrator.
     pub fn options(&self) -> Options {
-        let mut options =
-            Options::new(self.method).relative_tolerance(self.rtol).absolute_tolerance(self.atol);
+        let mut options = Options::new(self.method)
+            .relative_tolerance(self.rtol)
+            .absolute_tolerance(self.atol)
+            .deadline(self.deadline.clone());
         if let Some(parts) = self.samples_per_step {
             options = options.samples_per_step(parts);
         }

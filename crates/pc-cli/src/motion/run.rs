@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use pc_solve::{SolveError, Statistics};
+use pc_solve::{SolveError, Spent, Statistics};
 
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
@@ -55,6 +55,8 @@ pub enum Ending {
     },
     /// By Ctrl-C.
     Interrupted,
+    /// At a limit of time.
+    Ended(Spent),
     /// Rows were written on the way, and one could not be.
     Unwritten,
     /// The integration could not go on.
@@ -68,6 +70,7 @@ impl Ending {
             Ending::Completed => "completed",
             Ending::Event { .. } => "event",
             Ending::Interrupted => "interrupted",
+            Ending::Ended(_) => "ended by its limit",
             Ending::Unwritten => "not written",
             Ending::Failed(_) => "failed",
         }

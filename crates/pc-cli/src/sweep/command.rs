@@ -80,7 +80,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let mut kept = Ok(());
     let consume = |member, record: Result<Option<_>, pc_solve::Panicked>| {
         let record = record.unwrap_or_else(|panicked| Some(work.panicked(member, &panicked.message)));
-        // None: interrupted on its way.
+        // None: interrupted on its way, or ended by a limit.
         let Some(record) = record else { return ControlFlow::Break(()) };
         kept = journal.append(&record);
         progress.at(member + 1);
@@ -95,7 +95,11 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     kept?;
     let done = journal.tally().done;
     if ending.map_err(SweepError::from)? == Ending::Stopped && done < members {
-        return Err(SweepError::Interrupted { done, members }.into());
+        return Err(match plan.deadline.passed() {
+            Some(limit) if !interrupt::requested() => SweepError::Ended { done, members, limit },
+            _ => SweepError::Interrupted { done, members },
+        }
+        .into());
     }
     destination.write(&title, &sheet, &journal)?;
     let elapsed = start.elapsed().as_secs_f64();

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use pc_solve::EnsembleError;
+use pc_solve::{EnsembleError, Spent};
 
 use crate::exit_code;
 
@@ -89,6 +89,16 @@ pub enum SweepError {
         /// What is the matter with the first.
         first: String,
     },
+    /// A limit of time.
+    #[error("ended after {done} of {members} members: {limit}; the same command goes on from there")]
+    Ended {
+        /// How many are finished.
+        done: u64,
+        /// How many there are.
+        members: u64,
+        /// The limit.
+        limit: Spent,
+    },
     /// Ctrl-C.
     #[error("interrupted after {done} of {members} members; the same command goes on from there")]
     Interrupted {
@@ -103,6 +113,7 @@ impl SweepError {
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
+            SweepError::Ended { .. } => 4,
             SweepError::NoneCompleted { .. } => 5,
             SweepError::Interrupted { .. } => 130,
             SweepError::UnknownName { .. }

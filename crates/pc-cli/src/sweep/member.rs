@@ -103,7 +103,7 @@ impl Members {
         Members { model, design, form, t_start, times, options, all_rows: rows, columns, prototype }
     }
 
-    /// Integrates a member; none if it was stopped on its way.
+    /// Integrates a member; none if it was stopped on its way, or time was over.
     pub(crate) fn integrate(&self, member: u64, stop: &Stop<'_>) -> Option<Record> {
         let values = self.design.values(member);
         let blank = Record {
@@ -115,9 +115,11 @@ impl Members {
             rows: vec![f64::NAN; self.width()],
         };
         let mut model = self.design.model(&self.model, &blank.values);
-        model.limit(model.budget().limits().clone()); // each member on its own
+        // Memory is each member's own, time that of all.
+        model.within(self.model.budget().beside());
         let mut flow = match self.flow(&model) {
             Ok(flow) => flow,
+            Err(_) if model.budget().deadline().passed().is_some() => return None,
             Err(error) => return Some(Record { message: line(&error.diagnostic().message), ..blank }),
         };
         let observer = |_, _: &[f64]| {
@@ -129,7 +131,7 @@ impl Members {
         };
         let (motion, error) = follow(&mut flow, self.t_start, &self.times, &self.options, observer);
         let Solution { trajectory, ending, .. } = motion;
-        if ending == Some(Ending::Stopped) {
+        if ending == Some(Ending::Stopped) || error.as_ref().is_some_and(|error| error.ended().is_some()) {
             return None;
         }
         let reached = error.as_ref().and_then(|error| error.reached());

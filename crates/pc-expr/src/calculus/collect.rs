@@ -422,7 +422,7 @@ impl<'g> Polynomial<'g> {
             let monomial = self.variables.iter().zip(exponents).fold(Expr::ONE, |product, (z, &e)| {
                 product * into.symbol(&z.symbol_name().unwrap_or_default()).powi(e as i32)
             });
-            from.transcribe(&[*coefficient], into)[0] * monomial
+            from.typeset(&[*coefficient], into)[0] * monomial
         });
         into.sum(terms.collect::<Vec<_>>())
     }

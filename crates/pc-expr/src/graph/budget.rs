@@ -1,26 +1,10 @@
 //! What making expressions may take.
 
-use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::time::{Duration, Instant};
 
-/// What work on expressions may take.
-#[derive(Clone, Debug)]
-pub struct Limits {
-    /// Bytes of expressions, as they are estimated from the nodes; 4 GiB by default.
-    pub memory: u64,
-    /// From when the [budget](Budget::new) is made; no limit by default.
-    pub time: Option<Duration>,
-    /// Ends the work from elsewhere.
-    pub cancel: Cancel,
-}
-
-impl Default for Limits {
-    fn default() -> Limits {
-        Limits { memory: 4 << 30, time: None, cancel: Cancel::default() }
-    }
-}
+use crate::graph::deadline::Deadline;
+use crate::graph::limits::{Limits, Spent};
 
 /// What is left of the limits; clones are the same budget, and graphs that are [within](crate::Graph::within) it take from it
 /// together. Once it is spent no graph makes expressions any more, and what is derived in them ends in
@@ -40,12 +24,23 @@ pub struct Budget(Arc<Meter>);
 impl Budget {
     /// A budget of which nothing is spent yet; its time begins to run.
     pub fn new(limits: Limits) -> Budget {
-        Budget(Arc::new(Meter::new(limits)))
+        let deadline = Deadline::new(&limits);
+        Budget(Arc::new(Meter::new(limits, deadline)))
+    }
+
+    /// A budget of as much memory, of which nothing is spent yet, that ends when this one does.
+    pub fn beside(&self) -> Budget {
+        Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
     /// What there was.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
+    }
+
+    /// When it ends.
+    pub fn deadline(&self) -> &Deadline {
+        &self.0.deadline
     }
 
     /// What is spent by now, if anything is, and in which stage of the work it was.
@@ -64,62 +59,6 @@ impl Default for Budget {
     }
 }
 
-/// A handle by which another thread ends what works within a [`Budget`]; clones are the same handle.
-#[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
-
-impl Cancel {
-    /// Ends the work. It does not begin again.
-    pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the work has been ended.
-    pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-/// Which of the [limits](Limits) is reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spent {
-    /// The memory.
-    Memory {
-        /// Bytes.
-        limit: u64,
-    },
-    /// The time.
-    Time {
-        /// All there was.
-        limit: Duration,
-    },
-    /// Somebody [cancelled](Cancel::cancel) the work.
-    Cancelled,
-}
-
-impl fmt::Display for Spent {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Spent::Memory { limit } => {
-                let (amount, unit) = match *limit {
-                    bytes if bytes >= 1 << 30 => (bytes as f64 / f64::from(1 << 30), "GiB"),
-                    bytes if bytes >= 1 << 20 => (bytes as f64 / f64::from(1 << 20), "MiB"),
-                    bytes => (bytes as f64 / 1024.0, "KiB"),
-                };
-                write!(
-                    f,
-                    "more memory would be needed than the limit of {} {unit}",
-                    (amount * 10.0).round() / 10.0
-                )
-            }
-            Spent::Time { limit } => {
-                write!(f, "more time would be needed than the limit of {} s", limit.as_secs_f64())
-            }
-            Spent::Cancelled => write!(f, "cancelled"),
-        }
-    }
-}
-
 /// A node with its values and its places in tables, in bytes.
 const NODE: usize = 256;
 /// An operand of a sum or of a product, or a term of a value with roots.
@@ -129,7 +68,7 @@ const OPERAND: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Meter {
     limits: Limits,
-    deadline: Option<Instant>,
+    deadline: Deadline,
     used: AtomicU64,
     stage: Mutex<&'static str>,
     /// What was spent first, and in which stage.
@@ -137,9 +76,9 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    fn new(limits: Limits) -> Meter {
+    fn new(limits: Limits, deadline: Deadline) -> Meter {
         Meter {
-            deadline: limits.time.and_then(|time| Instant::now().checked_add(time)),
+            deadline,
             used: AtomicU64::new(0),
             stage: Mutex::new("the expressions"),
             spent: OnceLock::new(),
@@ -176,11 +115,8 @@ impl Meter {
     }
 
     fn look(&self) {
-        if self.limits.cancel.is_cancelled() {
-            self.spend(Spent::Cancelled);
-        }
-        if self.deadline.is_some_and(|deadline| Instant::now() > deadline) {
-            self.spend(Spent::Time { limit: self.limits.time.unwrap_or_default() });
+        if let Some(what) = self.deadline.passed() {
+            self.spend(what);
         }
     }
 

@@ -28,6 +28,12 @@ impl Graph {
         }
     }
 
+    /// The number of different nodes that the expressions are made of: about how long they are where each is written once.
+    pub fn size<'g>(&'g self, expressions: &[Expr<'g>]) -> usize {
+        let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
+        self.with(|dag| Cone::below(dag, roots).order.len())
+    }
+
     /// The names of the symbols that `outputs` contain, in order of their making.
     pub fn symbols_of<'g>(&'g self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();

@@ -1,7 +1,7 @@
 //! Plain characters set as in a book: vulgar fractions and raised exponents.
 
 use crate::graph::number::Number;
-use crate::print::piece::{Binding, Piece, number as plain};
+use crate::print::piece::{Binding, Piece, multiple_of_pi, number as plain};
 
 const FRACTIONS: &[(&str, char)] = &[
     ("1/2", '½'),
@@ -16,6 +16,10 @@ const FRACTIONS: &[(&str, char)] = &[
 const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 pub(super) fn number(c: Number) -> Piece {
+    if let Some((num, den)) = multiple_of_pi(c) {
+        let above = if num == 1 { "π".to_owned() } else { format!("{num}π") };
+        return if den == 1 { Piece::atom(above) } else { Piece::product(format!("{above}/{den}")) };
+    }
     let piece = plain(c);
     let (sign, size) = piece.text.strip_prefix('-').map_or(("", piece.text.as_str()), |size| ("-", size));
     match FRACTIONS.iter().find(|(text, _)| *text == size) {

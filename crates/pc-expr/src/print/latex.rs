@@ -2,7 +2,7 @@
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
-use crate::print::piece::{Binding, Piece};
+use crate::print::piece::{Binding, Piece, multiple_of_pi};
 
 /// Greek letters by the names that LaTeX has for them.
 const GREEK: &[(char, &str)] = &[
@@ -105,6 +105,10 @@ fn character(c: char) -> String {
 }
 
 pub(super) fn number(c: Number) -> Piece {
+    if let Some((num, den)) = multiple_of_pi(c) {
+        let above = if num == 1 { "\\pi".to_owned() } else { format!("{num} \\pi") };
+        return Piece::product(if den == 1 { above } else { format!("\\frac{{{above}}}{{{den}}}") });
+    }
     let text = c.to_string();
     let (sign, size) = text.strip_prefix('-').map_or(("", text.as_str()), |size| ("-", size));
     let size = match (size.split_once('/'), size.split_once('e')) {
@@ -205,7 +209,13 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
         if digit(text.chars().last()) && digit(factor.chars().next()) {
             text.push_str(" \\cdot ");
         } else if !text.is_empty() {
-            text.push(' ');
+            // Names of several letters and those with indices do not run into each other.
+            let is_name = |factor: &str| {
+                let word = factor.starts_with("\\mathrm{") && !factor.starts_with("\\mathrm{e}^");
+                word || factor.contains("_{") && !factor.contains(' ')
+            };
+            let between = is_name(&factors[i - 1]) || is_name(factor);
+            text.push_str(if between { "\\, " } else { " " });
         }
         let bracketed = factor.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
         match bracketed {

@@ -100,6 +100,8 @@ pub struct Surprises {
     pub many: Vec<f64>,
     /// Up to where they are known, if not to the end of the interval.
     pub until: Option<f64>,
+    /// Whether there are so many that some function of t turns faster than numbers tell times apart.
+    pub noise: bool,
 }
 
 impl Surprises {
@@ -158,6 +160,7 @@ impl TimeProfile {
             let (known, features) = scan.between(part, (t, to), Line::default(), enough);
             choose(features.iter(), (t, known), part, &mut self.room, &mut times);
             times.limit(known, (t, to));
+            times.noise |= scan.is_noise();
         }
         let line = Line { t, state: at.0, rates: at.1 };
         for part in &mut self.mixed {
@@ -165,6 +168,7 @@ impl TimeProfile {
             let (known, features) = scan.between(part, (t, to), line, enough);
             choose(features.iter(), (t, known), part, &mut self.room, &mut times);
             times.limit(known, (t, to));
+            times.noise |= scan.is_noise();
         }
         for times in [&mut times.few, &mut times.many] {
             times.sort_by(|a, b| ((a - b) * direction).total_cmp(&0.0));

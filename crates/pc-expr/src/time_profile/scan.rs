@@ -21,6 +21,9 @@ const ROUNDING: f64 = 1e-12;
 const SHORTEST: f64 = 1e-13;
 /// Evaluations for one question.
 const MOST: u32 = 20_000;
+/// So many of the shortest pieces that all show nothing are no jumps, each of which takes some forty evaluations to find: what
+/// is watched turns faster than time is told.
+const NOISE: u32 = MOST / 4;
 
 /// A place where a function of time does not go on as before.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +59,8 @@ struct Track {
     /// The values at the last feature, and at the end of the last piece.
     at_feature: Option<f64>,
     at_end: f64,
+    /// The end of the last piece that was too short to be halved.
+    sharp: Option<f64>,
 }
 
 /// The last sign of a derivative other than zero, and up to where it was known.
@@ -90,6 +95,8 @@ pub(crate) struct Scan {
     pieces: Vec<(f64, f64)>,
     tracks: Vec<Track>,
     features: VecDeque<Feature>,
+    /// Whether what is watched turns faster than time is told. It is not looked at closely any more.
+    noise: bool,
 }
 
 impl Scan {
@@ -111,6 +118,7 @@ impl Scan {
             last_rate: Interval::ALL,
             at_feature: None,
             at_end: 0.0,
+            sharp: None,
         };
         pieces.reverse();
         Scan {
@@ -122,7 +130,13 @@ impl Scan {
             pieces,
             tracks: ranges.into_iter().map(track).collect(),
             features: VecDeque::new(),
+            noise: false,
         }
+    }
+
+    /// Whether what is watched turns faster than time is told, as far as has been seen.
+    pub(crate) fn is_noise(&self) -> bool {
+        self.noise
     }
 
     /// Whether what is asked for lies ahead in the window.
@@ -145,10 +159,11 @@ impl Scan {
         let direction = if to < t { -1.0 } else { 1.0 };
         self.from = t;
         self.features.retain(|feature| (feature.t - t) * direction > 0.0);
-        let mut left = MOST;
+        let (enough, mut left) = if self.noise { (true, 0) } else { (enough, MOST) };
+        let mut sharp = 0;
         while let Some(&(a, b)) = self.pieces.last() {
             // A sign that is not known yet may show a change before.
-            let open = self.tracks.iter().any(|track| track.rate.until != a || track.bend.until != a);
+            let open = self.tracks.iter().any(|track| track.is_open(a));
             if (a - to) * direction > 0.0 && (!open || left == 0) {
                 break;
             }
@@ -157,14 +172,18 @@ impl Scan {
             }
             self.pieces.pop();
             let middle = a + 0.5 * (b - a);
-            let shortest = (b - a).abs() <= self.shortest || left == 0;
+            let indivisible = (b - a).abs() <= self.shortest;
+            let shortest = indivisible || left == 0;
             left = left.saturating_sub(1);
             let tracks = &mut self.tracks;
             let jets: Vec<Jet> = part.over((a, b), line).collect();
-            if !shortest && !tracks.iter().zip(&jets).all(|(track, jet)| track.is_plain(jet)) {
+            let plain = tracks.iter().zip(&jets).all(|(track, jet)| track.is_plain(jet));
+            if !shortest && !plain {
                 self.pieces.extend([(middle, b), (a, middle)]);
                 continue;
             }
+            sharp += u32::from(indivisible && !plain);
+            self.noise |= sharp >= NOISE;
             for (function, (track, jet)) in tracks.iter_mut().zip(&jets).enumerate() {
                 track.pass((a, b), jet, shortest, |t, kind| {
                     self.features.push_back(Feature { t, function, kind });
@@ -176,6 +195,12 @@ impl Scan {
 }
 
 impl Track {
+    /// Whether a sign is not known yet up to a place, so that what follows may show a change before; one where the function has
+    /// been found to be sharp is no news.
+    fn is_open(&self, place: f64) -> bool {
+        self.sharp != Some(place) && (self.rate.until != place || self.bend.until != place)
+    }
+
     /// Whether a piece shows all that there is to be seen.
     fn is_plain(&self, jet: &Jet) -> bool {
         let known = (jet.rate.sign().is_some(), jet.bend.sign().is_some());
@@ -190,6 +215,7 @@ impl Track {
     /// Takes note of a piece.
     fn pass(&mut self, (a, b): (f64, f64), jet: &Jet, shortest: bool, mut found: impl FnMut(f64, Kind)) {
         if shortest && !self.is_plain(jet) {
+            self.sharp = Some(b);
             found(b, Kind::Sharp);
         }
         let Interval { lo, hi } = jet.value;

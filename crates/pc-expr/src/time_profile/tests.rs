@@ -115,3 +115,19 @@ fn a_fast_oscillation_is_known_piece_by_piece() {
     assert!(found.many.iter().all(|&t| t <= until));
     assert_eq!(profile.surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, true).until, None);
 }
+
+/// What turns faster than numbers tell times apart is said to, and looked at no closer from then on. Jumps are no such thing,
+/// however many.
+#[test]
+fn what_time_does_not_resolve_is_noise() {
+    let noise = program(|_, t, y| (1e21 * t).sin() + y);
+    let mut of_noise = profile(&noise);
+    let found = of_noise.surprises((0.0, 1.0), (&[0.0], &[0.0]), 10.0, false);
+    assert!(found.noise && found.until.is_some_and(|until| until < 1e-6), "{:?}", found.until);
+    let later = of_noise.surprises((1e-6, 1.0), (&[0.0], &[0.0]), 10.0, false);
+    assert_eq!((later.noise, later.until), (true, None));
+    assert!(later.few.len() + later.many.len() < 100);
+    let square = program(|_, t, y| (300.0 * t).sin().sign() + y);
+    let found = profile(&square).surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false);
+    assert!(!found.noise && found.many.len() > 100, "{}", found.many.len());
+}

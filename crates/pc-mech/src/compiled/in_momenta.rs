@@ -116,6 +116,9 @@ impl InMomenta {
             parameter_jacobian: (options.jacobian && options.parameter_jacobian)
                 .then(|| slopes(&parameters))
                 .transpose()?,
+            time_derivative: (options.jacobian && options.time_derivative)
+                .then(|| slopes(&[system.frame().time()]))
+                .transpose()?,
             quasi_velocities: eta.len(),
             known: vec![0.0; dim + eta.len()],
             full: Pattern::full(dim, dim),
@@ -281,26 +284,38 @@ impl InMomenta {
         y: &[f64],
         entries: &mut [f64],
     ) -> Result<(), Failure> {
-        let Some(mut slopes) = self.parameter_jacobian.take() else {
-            return Err(Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled {
-                what: "derivative by parameters",
-            })));
-        };
-        let outcome = self.parameter_jacobian_by(&mut slopes, t, y, entries);
+        let slopes = self.parameter_jacobian.take();
+        let mut slopes = slopes.ok_or_else(|| not_compiled("derivative by parameters"))?;
+        let outcome = self.slopes_by(&mut slopes, t, y, entries, Motion::parameter_jacobian);
         self.parameter_jacobian = Some(slopes);
         outcome
     }
 
-    fn parameter_jacobian_by(
+    /// ∂f/∂t, as [`jacobian`](InMomenta::jacobian).
+    pub(crate) fn time_derivative(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        derivative: &mut [f64],
+    ) -> Result<(), Failure> {
+        let mut slopes = self.time_derivative.take().ok_or_else(|| not_compiled("derivative by time"))?;
+        let outcome = self.slopes_by(&mut slopes, t, y, derivative, Motion::time_derivative);
+        self.time_derivative = Some(slopes);
+        outcome
+    }
+
+    /// The columns of ∂f/∂q for the symbols of `slopes`, by which `inner` differentiates the motion of (x, η, z).
+    fn slopes_by(
         &mut self,
         slopes: &mut Slopes,
         t: f64,
         y: &[f64],
         entries: &mut [f64],
+        inner: impl FnOnce(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         self.find_inner_jacobian(t, y)?;
         slopes.by_symbol.resize(entries.len(), 0.0);
-        self.inner.parameter_jacobian(t, &self.known[..y.len()], &mut slopes.by_symbol)?;
+        inner(&mut self.inner, t, &self.known[..y.len()], &mut slopes.by_symbol)?;
         self.change(slopes, t)?;
         entries.copy_from_slice(&slopes.columns[..entries.len()]);
         Ok(())
@@ -349,4 +364,8 @@ impl InMomenta {
         }
         Ok(())
     }
+}
+
+fn not_compiled(what: &'static str) -> Failure {
+    Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled { what }))
 }

@@ -71,9 +71,10 @@ pub(crate) struct InMomenta {
     pub(super) quasi_velocities: usize,
     /// ẏ of (t, (x, η, z, η̇)).
     pub(super) transport: Evaluator,
-    /// By x and z and, where these are asked for, by the parameters.
+    /// By x and z and, where these are asked for, by the parameters and by t.
     pub(super) jacobian: Option<Slopes>,
     pub(super) parameter_jacobian: Option<Slopes>,
+    pub(super) time_derivative: Option<Slopes>,
     /// x, η, z, then η̇.
     pub(super) known: Vec<f64>,
     pub(super) full: Pattern,

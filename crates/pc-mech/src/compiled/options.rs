@@ -29,12 +29,19 @@ pub struct CompileOptions {
     pub(crate) jacobian: bool,
     pub(crate) jvp: bool,
     pub(crate) parameter_jacobian: bool,
+    pub(crate) time_derivative: bool,
 }
 
 impl Default for CompileOptions {
     /// The fastest kernel and the Jacobian.
     fn default() -> CompileOptions {
-        CompileOptions { backend: Backend::Fastest, jacobian: true, jvp: false, parameter_jacobian: false }
+        CompileOptions {
+            backend: Backend::Fastest,
+            jacobian: true,
+            jvp: false,
+            parameter_jacobian: false,
+            time_derivative: false,
+        }
     }
 }
 
@@ -68,5 +75,11 @@ impl CompileOptions {
     #[must_use]
     pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
+    }
+
+    /// Whether to have ∂f/∂t, which Rosenbrock's methods take; under constraints in momenta with the Jacobian only.
+    #[must_use]
+    pub fn time_derivative(self, time_derivative: bool) -> CompileOptions {
+        CompileOptions { time_derivative, ..self }
     }
 }

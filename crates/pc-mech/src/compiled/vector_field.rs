@@ -201,6 +201,21 @@ impl VectorField for Motion {
 }
 
 impl Motion {
+    /// ∂f/∂t, as long as the state; of inputs that tables give as the parameters they are.
+    ///
+    /// # Errors
+    /// As [`rhs`](VectorField::rhs), and where it was not [compiled](crate::CompileOptions::time_derivative).
+    pub fn time_derivative(&mut self, t: f64, y: &[f64], derivative: &mut [f64]) -> Result<(), Failure> {
+        self.read_signals(t)?;
+        let at = Point { t, y, p: &self.parameters };
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.time_derivative(at, derivative),
+            Form::Staged(staged) => staged.time_derivative(at, derivative),
+            Form::InMomenta(motion) => return motion.time_derivative(t, y, derivative),
+        };
+        outcome.map_err(|failure| self.failure(failure, t, y))
+    }
+
     /// ẏ = f(t, y), as long as the state.
     ///
     /// # Errors

@@ -162,6 +162,7 @@ impl<'g> Assembler<'g, '_> {
             written_start,
             declared,
             events,
+            definitions: self.scope.meanings(&x_dot),
             document: self.model.shared_document(),
         })
     }

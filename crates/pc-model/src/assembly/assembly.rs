@@ -27,6 +27,9 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// What happens where, in the order in which simultaneous events are dealt with.
     pub events: Vec<Event<'g>>,
+    /// What the definitions of the text stand for, ẋ = b η + b_0 put in: those that stand for one thing wherever they are
+    /// used.
+    pub definitions: Vec<(String, Expr<'g>)>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }
@@ -53,6 +56,21 @@ impl<'g> Assembly<'g> {
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent) if the [limits](crate::Model::limit) were reached.
     pub fn within_limits(&self) -> Result<(), ModelError> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
+    }
+
+    /// Does some work on this system, unless the [limits](crate::Model::limit) are reached, before or by it: that is the error
+    /// then, and names this stage, whatever the work says.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and those of the work.
+    pub fn stage<T, E: From<ModelError>>(
+        &self,
+        name: &'static str,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.document
+            .stage(self.system.graph(), name, || Ok(work()))
+            .unwrap_or_else(|error| Err(error.into()))
     }
 
     /// That something could not be derived from this system, for a reason that has no place in the file but that of the

@@ -170,7 +170,7 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The symbols λ of the reactions with what they are in the frame of
     /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
-    /// integrable constraints are held by multipliers.
+    /// integrable constraints are held by multipliers. Where they are shorter so, the symbols of the accelerations stand in them.
     ///
     /// # Errors
     /// As there.
@@ -181,7 +181,12 @@ impl<'g> ConstraintTreatment<'g> {
         let (Some(constrained), Some(multipliers)) = (self.constrained(at)?, &self.multipliers) else {
             return Ok(Vec::new());
         };
-        let values = constrained.reactions();
+        let graph = constrained.system().graph();
+        let accelerations = constrained.equations().system().accelerations();
+        let (solved, open) = (constrained.reactions(), constrained.reactions_by(&accelerations));
+        let shorter =
+            |(solved, open)| if graph.size(&[solved]) > graph.size(&[open]) { open } else { solved };
+        let values: Vec<Expr<'g>> = solved.into_iter().zip(open).map(shorter).collect();
         // Constraints that are quasi-velocities stand in the order of these, others in their own.
         let place = |(a, constraint): (usize, &Constraint<'g>)| {
             constrained.vanishing().iter().position(|&eta| eta == constraint.expression()).unwrap_or(a)

@@ -10,6 +10,7 @@
 
 use pc_expr::parse::nearest;
 
+use crate::deep::deep;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, SECTIONS};
 use crate::diagnostics::source::Source;
@@ -23,6 +24,10 @@ impl Document {
     /// # Errors
     /// The first thing in the file that is not part of a model.
     pub fn parse(source: Source) -> Result<Self, ModelError> {
+        deep(|| Document::parsed(source))
+    }
+
+    fn parsed(source: Source) -> Result<Self, ModelError> {
         let mut document = Self::default();
         for item in Table::root(&source, &syntax::table(&source)?).items() {
             document.read(&item)?;

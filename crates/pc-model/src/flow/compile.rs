@@ -80,6 +80,7 @@ impl Model {
     fn options(&self) -> CompileOptions {
         CompileOptions::default()
             .parameter_jacobian(self.differentiates_by_parameters() || !self.external.is_empty())
+            .time_derivative(self.differentiates_by_time())
     }
 
     /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept. These are to be

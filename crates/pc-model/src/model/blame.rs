@@ -3,6 +3,7 @@
 use pc_mech::{AlgebraError, ConstraintError, ExprError, Graph, IntegralError, LagrangianError, MechError};
 use pc_nonholo::NonholoError;
 
+use crate::deep::deep;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
@@ -17,7 +18,7 @@ impl Document {
         name: &'static str,
         work: impl FnOnce() -> Result<T, ModelError>,
     ) -> Result<T, ModelError> {
-        match graph.stage(name, || Ok::<_, ExprError>(work())) {
+        match deep(|| graph.stage(name, || Ok::<_, ExprError>(work()))) {
             Ok(done) => done,
             Err(ExprError::Spent { what, stage, nodes }) => {
                 Err(self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes }))

@@ -21,6 +21,7 @@ pub struct Model {
     observes_reactions: bool,
     /// Whether motions and events are to be differentiated by parameters.
     by_parameters: bool,
+    by_time: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
     /// What its derivations may take.
@@ -61,6 +62,7 @@ impl Model {
             held_starts: Vec::new(),
             observes_reactions: false,
             by_parameters: false,
+            by_time: false,
             kept,
             budget: Budget::default(),
             external: Vec::new(),
@@ -70,6 +72,11 @@ impl Model {
     /// Limits what all further derivations of this model and its clones may take together, from now on.
     pub fn limit(&mut self, limits: Limits) {
         self.budget = Budget::new(limits);
+    }
+
+    /// Has all further derivations of this model and its clones take from a budget, which others may share.
+    pub fn within(&mut self, budget: Budget) {
+        self.budget = budget;
     }
 
     /// What is left of the limits.
@@ -186,6 +193,15 @@ impl Model {
     /// theirs by time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
+    }
+
+    /// Says that motions are compiled with [∂f/∂t](pc_mech::Motion::time_derivative).
+    pub fn differentiate_by_time(&mut self, yes: bool) {
+        self.by_time = yes;
+    }
+
+    pub(crate) fn differentiates_by_time(&self) -> bool {
+        self.by_time
     }
 
     pub(crate) fn differentiates_by_parameters(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Definitions, resolved in their order.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pc_expr::Expr;
 use pc_expr::parse::{Ast, AstKind};
@@ -17,6 +17,21 @@ impl<'g> Scope<'g, '_> {
             self.definition(place, Stage::Observation)?;
         }
         Ok(())
+    }
+
+    /// What each definition stands for, `replacements` made; those are left out that stand for different things at
+    /// different places.
+    pub(crate) fn meanings(&self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<(String, Expr<'g>)> {
+        let places: Vec<usize> = self.definitions.keys().map(|&(_, place)| place).collect();
+        let values: Vec<Expr<'g>> = self.definitions.values().copied().collect();
+        let values = self.graph.substitute(&values, replacements);
+        let mut meanings: BTreeMap<usize, Option<Expr<'g>>> = BTreeMap::new();
+        for (place, value) in places.into_iter().zip(values) {
+            let meaning = meanings.entry(place).or_insert(Some(value));
+            *meaning = meaning.filter(|known| *known == value);
+        }
+        let name = |place: usize| self.document.definitions[place].name.text.clone();
+        meanings.into_iter().filter_map(|(place, value)| Some((name(place), value?))).collect()
     }
 
     /// The definition at `place`, after those that it is made of: they stand before it, so that in this order a long chain of

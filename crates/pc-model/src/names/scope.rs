@@ -46,7 +46,7 @@ impl Branch<'_> {
 
 /// The declared names of a model as symbols of a graph.
 pub(crate) struct Scope<'g, 'd> {
-    graph: &'g Graph,
+    pub(super) graph: &'g Graph,
     pub(super) document: &'d Document,
     /// Where the expressions stand.
     source: &'d Source,

@@ -68,6 +68,11 @@ impl<'g> Constrained<'g> {
     ///
     /// of the dropped equations along the motion, functions of (t, x, free η). They are Lagrange's multipliers.
     pub fn reactions(&self) -> Vec<Expr<'g>> {
+        self.reactions_by(&self.equations.accelerations())
+    }
+
+    /// The same with these accelerations of the free η in them, such as their symbols.
+    pub fn reactions_by(&self, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (system, graph) = (&self.system, self.system.graph());
         let frame = system.frame();
         let (x, all) = (frame.coordinates(), system.quasi_velocities());
@@ -82,7 +87,7 @@ impl<'g> Constrained<'g> {
         let potential = frame.contract(&slope);
 
         let mut rates: Vec<_> = x.iter().copied().zip(self.equations.velocities().iter().copied()).collect();
-        rates.extend(all.iter().copied().zip(self.equations.accelerations()));
+        rates.extend(all.iter().copied().zip(accelerations.iter().copied()));
         rates.push((frame.time(), Expr::ONE));
         rates.extend(self.equations.system().states().iter().copied());
         let transport = graph.directional(&momenta[free..], &rates);

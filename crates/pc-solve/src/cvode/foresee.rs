@@ -11,14 +11,15 @@
 //!
 //! Where the field shows its [profile](TimeDependence::Known), these places are the turns, jumps and corners of what
 //! contains t, however close they are; a step in which nothing turns twice needs none. Where only evaluations can tell, they
-//! are places evenly spaced over the whole integration.
+//! are places evenly spaced over the whole integration. What turns faster than numbers tell times apart cannot be followed: it is
+//! an error, unless the tolerances do not feel it.
 
 use pc_expr::{Surprises, TimeDependence, TimeProfile, VectorField};
 use sundials_sys as sys;
 
 use crate::cvode::cvode::Cvode;
 use crate::cvode::foresight::Foresight;
-use crate::error::SolveError;
+use crate::error::{Reason, SolveError};
 
 /// Places at which a field that is known by its values alone is looked at, from the start to where it is to be integrated.
 const SAMPLES: f64 = 64.0;
@@ -64,7 +65,7 @@ impl<F: VectorField> Cvode<F> {
         (t, reach, end): (f64, f64, f64),
         least: f64,
     ) -> Result<Option<f64>, SolveError> {
-        let Surprises { mut many, until, .. } = match dependence {
+        let Surprises { mut many, mut until, noise, .. } = match dependence {
             TimeDependence::Absent => Surprises::default(),
             // A first step whose length is given is taken at the word.
             TimeDependence::Unknown if self.direction.is_none() && self.initial_step.is_some() => {
@@ -83,6 +84,13 @@ impl<F: VectorField> Cvode<F> {
                 places
             }
         };
+        if noise && let Some(near) = until.take() {
+            many.clear();
+            self.read_polynomial()?;
+            if self.scatters(near, (reach - t).abs()) {
+                return Err(self.failed(Reason::Unresolved { t }, None));
+            }
+        }
         for places in [&mut *few, &mut many] {
             places.retain(|place| (place - t).abs() > least);
         }
@@ -207,6 +215,35 @@ impl<F: VectorField> Cvode<F> {
         // SAFETY: as above.
         unsafe { sys::CVodeGetLastStep(self.memory.raw(), &raw mut self.foresight.last_step) };
         Ok(())
+    }
+
+    /// Whether f scatters between here and a place near by, by what a step of this length would feel: its second differences are
+    /// large, of which what is smooth has none so near.
+    fn scatters(&mut self, near: f64, length: f64) -> bool {
+        let mut before: Option<[Vec<f64>; 2]> = None;
+        let mut largest = 0.0f64;
+        for i in 0..=MOST {
+            let since = (near - self.step_time) * (i as f64 / MOST as f64);
+            self.foresight.predict(since);
+            self.foresight.evaluations += 1;
+            let Foresight { state, rates, .. } = &mut self.foresight;
+            if !self.callbacks.look(self.step_time + since, state, rates) {
+                return false; // the method will meet it
+            }
+            let rates = rates.clone();
+            if let Some([first, second]) = &before {
+                for i in 0..rates.len() {
+                    let difference = rates[i] - 2.0 * second[i] + first[i];
+                    let tolerance = self.foresight.tolerance(i, self.foresight.state[i]);
+                    largest = largest.max((0.25 * difference / tolerance).abs());
+                }
+            }
+            before = Some(match before {
+                Some([_, second]) => [second, rates],
+                None => [rates.clone(), rates],
+            });
+        }
+        length * largest > SURPRISE
     }
 
     /// Whether f does there what the polynomial does not let expect, for a step of this length.

@@ -1,5 +1,7 @@
 //! How to integrate by CVODES.
 
+use pc_expr::Deadline;
+
 use crate::cvode::linear::solver::LinearSolver;
 use crate::error::InputError;
 use crate::events::events::Accumulation;
@@ -29,6 +31,7 @@ pub struct Options {
     pub(crate) stop_time: Option<f64>,
     pub(crate) samples_per_step: u32,
     pub(crate) accumulation: Accumulation,
+    pub(crate) deadline: Option<Deadline>,
 }
 
 impl Default for Options {
@@ -60,6 +63,7 @@ impl Options {
             stop_time: None,
             samples_per_step: 4,
             accumulation: Accumulation::default(),
+            deadline: None,
         }
     }
 
@@ -133,6 +137,11 @@ impl Options {
         Options { accumulation, ..self }
     }
 
+    /// When no further step is begun, which is [an error](crate::Reason::Ended).
+    pub fn deadline(self, deadline: Deadline) -> Self {
+        Options { deadline: Some(deadline), ..self }
+    }
+
     /// What does not depend on the method.
     pub(crate) fn limits(&self) -> Limits {
         Limits {
@@ -140,6 +149,7 @@ impl Options {
             samples_per_step: self.samples_per_step,
             accumulation: self.accumulation,
             inequalities: self.inequalities.clone(),
+            deadline: self.deadline.clone(),
         }
     }
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use pc_expr::Spent;
+
 use crate::error::return_code::Code;
 
 /// Why an integration could not go on.
@@ -25,6 +27,9 @@ pub enum Reason {
         /// The length of the last one.
         last: f64,
     },
+
+    /// The [deadline](crate::Options::deadline) passed.
+    Ended(Spent),
 
     /// The integration of the adjoint equations, from the end back, could not go on; time and state reached are those of
     /// the motion there.
@@ -66,6 +71,13 @@ pub enum Reason {
     /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
     /// wall it in.
     Stalled,
+
+    /// The field turns, by its explicit dependence on time, faster than numbers tell times apart, and by more than the
+    /// tolerances.
+    Unresolved {
+        /// Where it was seen.
+        t: f64,
+    },
 
     /// The vector field could not be evaluated, by a method that has no shorter step to try.
     Rates {
@@ -130,12 +142,14 @@ impl Reason {
             Reason::Adjoint(reason) => reason.code(),
             // CVODE has a name for it, whatever the method.
             Reason::Steps { .. } => Some(Code::TooMuchWork),
-            Reason::Overflow { .. }
+            Reason::Ended(_)
+            | Reason::Overflow { .. }
             | Reason::Projection { .. }
             | Reason::Functional
             | Reason::EndsEarly { .. }
             | Reason::Collapsed { .. }
             | Reason::Stalled
+            | Reason::Unresolved { .. }
             | Reason::Rates { .. }
             | Reason::Event { .. }
             | Reason::Reset { .. }
@@ -143,6 +157,15 @@ impl Reason {
             | Reason::Grazing { .. }
             | Reason::Together { .. }
             | Reason::Saltation { .. } => None,
+        }
+    }
+
+    /// Which limit was reached, if that is the reason.
+    pub(super) fn ended(&self) -> Option<Spent> {
+        match self {
+            Reason::Ended(spent) => Some(*spent),
+            Reason::Adjoint(reason) => reason.ended(),
+            _ => None,
         }
     }
 
@@ -154,6 +177,7 @@ impl Reason {
                 f,
                 "{steps} steps did not lead to the output at t = {t}: they reached t = {time}, the last of them {last:.1e} long"
             ),
+            Reason::Ended(spent) => write!(f, "{spent}, after reaching t = {time}"),
             Reason::Adjoint(reason) => {
                 f.write_str("the adjoint equations, from the end back: ")?;
                 reason.write(time, f)
@@ -177,6 +201,10 @@ impl Reason {
                 "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
             ),
             Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+            Reason::Unresolved { t } => write!(
+                f,
+                "what depends on time explicitly turns faster near t = {t} than numbers tell times apart: no step can follow it"
+            ),
             Reason::Rates { t } => {
                 write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")
             }

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-use pc_expr::Failure;
+use pc_expr::{Failure, Spent};
 
 use crate::error::input::InputError;
 use crate::error::reason::Reason;
@@ -34,6 +34,14 @@ pub enum SolveError {
 }
 
 impl SolveError {
+    /// Which limit ended the integration, if one did.
+    pub fn ended(&self) -> Option<Spent> {
+        match self {
+            SolveError::Integration(error) => error.reason.ended(),
+            SolveError::Input(_) | SolveError::Setup { .. } => None,
+        }
+    }
+
     /// The return code of CVODES, if that is the reason.
     pub fn code(&self) -> Option<Code> {
         match self {

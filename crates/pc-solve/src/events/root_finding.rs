@@ -2,26 +2,34 @@
 
 use pc_expr::Direction;
 
+use crate::events::samples::{Look, Sample};
+
 /// Times closer than so many units of rounding are the same: events between are simultaneous.
 const SAME: f64 = 64.0 * f64::EPSILON;
 /// A passage is located between two times so many units of rounding apart.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
 
-/// All functions at a time.
-#[derive(Debug, Clone)]
-pub(crate) struct Sample {
-    pub(crate) t: f64,
-    pub(crate) values: Vec<f64>,
-}
-
 /// On which side of zero each function is.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Sides {
     directions: Vec<Direction>,
     /// 1, −1, or 0 while a function is at zero.
     sides: Vec<f64>,
     /// What a function that is or was at zero has to exceed to have left it.
     noise: Vec<f64>,
+}
+
+impl Clone for Sides {
+    fn clone(&self) -> Sides {
+        let Sides { directions, sides, noise } = self;
+        Sides { directions: directions.clone(), sides: sides.clone(), noise: noise.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Sides) {
+        self.directions.clone_from(&other.directions);
+        self.sides.clone_from(&other.sides);
+        self.noise.clone_from(&other.noise);
+    }
 }
 
 /// What is found along a step.
@@ -108,11 +116,13 @@ impl Sides {
 
     /// Takes note of values at which nothing has occurred.
     pub(crate) fn pass(&mut self, values: &[f64]) {
-        for ((side, noise), &value) in self.sides.iter_mut().zip(&mut self.noise).zip(values) {
-            if value.abs() > *noise {
-                *side = 1.0_f64.copysign(value);
-                *noise = 0.0;
-            }
+        values.iter().enumerate().for_each(|(i, &value)| self.pass_one(i, value));
+    }
+
+    fn pass_one(&mut self, i: usize, value: f64) {
+        if value.abs() > self.noise[i] {
+            self.sides[i] = 1.0_f64.copysign(value);
+            self.noise[i] = 0.0;
         }
     }
 
@@ -121,27 +131,28 @@ impl Sides {
     /// The functions are seen at the ends of `pieces` equal parts of that time, at first also near `from` while one of them
     /// is at zero, and at the vertex of the parabola through three of these values in sequence where it suggests that a
     /// function passes through zero twice.
-    pub(crate) fn first<E>(
+    pub(crate) fn first<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         from: Sample,
         to: f64,
         pieces: u32,
-        evaluate: &mut impl FnMut(f64) -> Result<Vec<f64>, E>,
+        look: &mut Look<'_, F>,
     ) -> Result<Passage, E> {
         if self.sides.is_empty() {
             return Ok(Passage::Clear(Sample { t: to, ..from }));
         }
-        let mut sample = |t: f64| Ok(Sample { t, values: evaluate(t)? });
         let mut left = from;
-        if let Some(crossing) = self.leave(&mut left, to, &mut sample)? {
+        if let Some(crossing) = self.leave(&mut left, to, look)? {
+            look.room.take_back(left);
             return Ok(Passage::Crossing(crossing));
         }
         // What is beyond a passage need not have values.
-        let (mut samples, mut fault) = (Vec::new(), None);
+        let (mut samples, mut fault) = (std::mem::take(&mut look.room.samples), None);
+        samples.clear();
         let length = to - left.t;
         for k in 1..=pieces {
             let t = if k == pieces { to } else { left.t + length * (f64::from(k) / f64::from(pieces)) };
-            match sample(t) {
+            match look.at(t) {
                 Ok(next) => samples.push(next),
                 Err(error) => {
                     fault = Some(error);
@@ -149,32 +160,44 @@ impl Sides {
                 }
             }
         }
-        let row: Vec<&Sample> = std::iter::once(&left).chain(&samples).collect();
         let mut hidden = Vec::new();
-        for three in row.windows(3) {
-            hidden.extend(self.hidden([three[0], three[1], three[2]], &mut sample)?);
+        for k in 1..samples.len() {
+            let before = if k == 1 { &left } else { &samples[k - 2] };
+            hidden.extend(self.hidden([before, &samples[k - 1], &samples[k]], look)?);
         }
-        samples.extend(hidden);
-        samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
-        for right in samples {
-            if let Some(crossing) = self.between(&mut left, right, &mut sample)? {
-                return Ok(Passage::Crossing(crossing));
+        if !hidden.is_empty() {
+            samples.extend(hidden);
+            samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
+        }
+        let mut crossing = None;
+        for right in samples.drain(..) {
+            match crossing {
+                None => crossing = self.between(&mut left, right, look)?,
+                Some(_) => look.room.take_back(right),
             }
         }
-        match fault {
-            Some(error) => Err(error),
-            None => Ok(Passage::Clear(left)),
+        look.room.samples = samples;
+        match (crossing, fault) {
+            (Some(crossing), _) => {
+                look.room.take_back(left);
+                Ok(Passage::Crossing(crossing))
+            }
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(Passage::Clear(left)),
         }
     }
 
     /// Goes from `left` on until no function is at zero, or by a small part of the way to the time `to`.
-    fn leave<E>(
+    fn leave<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
         to: f64,
-        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+        look: &mut Look<'_, F>,
     ) -> Result<Option<Crossing>, E> {
-        let (start, length) = (left.clone(), to - left.t);
+        if !self.sides.contains(&0.0) {
+            return Ok(None);
+        }
+        let (start, length) = (look.copy(left), to - left.t);
         for part in EARLY {
             if !self.sides.contains(&0.0) {
                 return Ok(None);
@@ -183,8 +206,8 @@ impl Sides {
             if (t - left.t) * length <= 0.0 {
                 continue; // there is no time between
             }
-            let early = sample(t)?;
-            if let Some(crossing) = self.between(left, early, sample)? {
+            let early = look.at(t)?;
+            if let Some(crossing) = self.between(left, early, look)? {
                 return Ok(Some(crossing));
             }
         }
@@ -196,40 +219,46 @@ impl Sides {
                 *side = 1.0_f64.copysign(moved);
             }
         }
+        look.room.take_back(start);
         Ok(None)
     }
 
     /// Goes from `left` to `right` unless there is a passage between.
-    fn between<E>(
+    fn between<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
         right: Sample,
-        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+        look: &mut Look<'_, F>,
     ) -> Result<Option<Crossing>, E> {
         let mut touches = 0;
         while self.any_crossed(&right.values) {
-            match self.locate(left.clone(), right.clone(), touches < MOST_TOUCHES, sample)? {
-                Located::Crossing(crossing) => return Ok(Some(crossing)),
-                Located::Touch(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => *left = after,
+            match self.locate(look.copy(left), look.copy(&right), touches < MOST_TOUCHES, look)? {
+                Located::Crossing(crossing) => {
+                    look.room.take_back(right);
+                    return Ok(Some(crossing));
+                }
+                Located::Touch(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => {
+                    look.room.take_back(std::mem::replace(left, after));
+                }
                 // Beyond `right`, where it touches.
                 Located::Touch(_) => break,
             }
             touches += 1;
         }
         // A function that touches zero here keeps its side.
-        let values: Vec<f64> = (0..self.sides.len())
-            .map(|i| if self.crossed(i, right.values[i]) { 0.0 } else { right.values[i] })
-            .collect();
-        self.pass(&values);
-        *left = right;
+        for (i, &value) in right.values.iter().enumerate() {
+            let value = if self.crossed(i, value) { 0.0 } else { value };
+            self.pass_one(i, value);
+        }
+        look.room.take_back(std::mem::replace(left, right));
         Ok(None)
     }
 
     /// Samples at which functions are beyond zero that are on one side of it at all three.
-    fn hidden<E>(
+    fn hidden<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         three: [&Sample; 3],
-        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+        look: &mut Look<'_, F>,
     ) -> Result<Vec<Sample>, E> {
         let mut found = Vec::new();
         for i in 0..self.sides.len() {
@@ -246,7 +275,7 @@ impl Sides {
                 if predicted > 0.25 * least {
                     break;
                 }
-                let lowest = sample(t)?;
+                let lowest = look.at(t)?;
                 let u = lowest.values[i] * side;
                 if u < 0.0 {
                     found.push(lowest);
@@ -268,12 +297,12 @@ impl Sides {
 
     /// The first passage between `a`, where there has been none, and `b`, where there has, unless it is a touch: by secants, each the earliest
     /// of those of the functions, with Illinois' weights, and by bisection where these are slow.
-    fn locate<E>(
+    fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         mut a: Sample,
         mut b: Sample,
         touches: bool,
-        sample: &mut impl FnMut(f64) -> Result<Sample, E>,
+        look: &mut Look<'_, F>,
     ) -> Result<Located, E> {
         let scale = a.t.abs().max(b.t.abs()).max(1e-3 * (b.t - a.t).abs());
         let tolerance = LOCATED * scale;
@@ -300,28 +329,30 @@ impl Sides {
                 crossed.map(secant).fold(1.0, f64::min)
             };
             let edge = 0.5 * tolerance / width.abs();
-            let middle = sample(a.t + fraction.clamp(edge, 1.0 - edge) * width)?;
+            let middle = look.at(a.t + fraction.clamp(edge, 1.0 - edge) * width)?;
             if middle.t == a.t || middle.t == b.t {
+                look.room.take_back(middle);
                 break; // there is no time between
             }
             let moves_b = sides.any_crossed(&middle.values);
             let repeated = if b_moved == Some(moves_b) { 0.5 } else { 1.0 };
             if moves_b {
                 (weight_a, weight_b) = (if repeated < 1.0 { 0.5 * weight_a } else { 1.0 }, 1.0);
-                b = middle;
+                look.room.take_back(std::mem::replace(&mut b, middle));
             } else {
                 (weight_a, weight_b) = (1.0, if repeated < 1.0 { 0.5 * weight_b } else { 1.0 });
                 sides.pass(&middle.values); // what is told from zero need not be so again
-                a = middle;
+                look.room.take_back(std::mem::replace(&mut a, middle));
             }
             b_moved = Some(moves_b);
         }
-        let after = sample(b.t + (SAME * scale).copysign(b.t - a.t))?;
+        let after = look.at(b.t + (SAME * scale).copysign(b.t - a.t))?;
         let seen = |i: usize| sides.crossed(i, b.values[i]) || sides.crossed(i, after.values[i]);
         let is_back = |i: usize| after.values[i] * sides.sides[i] > sides.noise[i];
         let events: Vec<usize> =
             (0..self.sides.len()).filter(|&i| seen(i) && !(touches && is_back(i))).collect();
         if events.is_empty() {
+            [a, b].into_iter().for_each(|sample| look.room.take_back(sample));
             return Ok(Located::Touch(after));
         }
         let noise = (0..self.sides.len()).map(|i| {
@@ -329,9 +360,10 @@ impl Sides {
             let rounding = 16.0 * near.into_iter().fold(0.0, f64::max);
             if events.contains(&i) { rounding } else { 0.0 }
         });
-        let noise = noise.collect();
+        let noise: Vec<f64> = noise.collect();
         let side = |&i: &usize| if after.values[i] == 0.0 { 0.0 } else { 1.0_f64.copysign(after.values[i]) };
         let beyond = events.iter().map(side).collect();
+        [a, after].into_iter().for_each(|sample| look.room.take_back(sample));
         Ok(Located::Crossing(Crossing { at: b, events, noise, beyond }))
     }
 }

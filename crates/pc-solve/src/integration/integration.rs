@@ -7,7 +7,8 @@ use pc_expr::{Direction, Event, Events, Failure, VectorField};
 
 use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::events::events::{Accumulation, History, NoEvents};
-use crate::events::root_finding::{Passage, Sample, Sides};
+use crate::events::root_finding::{Passage, Sides};
+use crate::events::samples::{Look, Room, Sample};
 use crate::integration::checks::{check_inequalities, check_length, finite};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
@@ -55,8 +56,11 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) front: Sample,
     pub(crate) front_state: Vec<f64>,
     pub(crate) sides: Sides,
-    /// The sides before the front moved there.
+    /// The sides before the front moved there, and room for those after the next step.
     pub(crate) sides_before: Sides,
+    pub(crate) sides_after: Sides,
+    /// Room for what is looked at along a step.
+    pub(crate) room: Room,
     /// The events that occur at the front and have yet to be dealt with.
     pub(crate) due: Vec<usize>,
     pub(crate) noise: Vec<f64>,
@@ -112,6 +116,8 @@ impl<S: Stepper> Integration<S> {
             ahead: state.clone(),
             front_state: state,
             sides_before: sides.clone(),
+            sides_after: sides.clone(),
+            room: Room::default(),
             sides,
             due: Vec::new(),
             noise: Vec::new(),
@@ -154,6 +160,8 @@ impl<S: Stepper> Integration<S> {
             ahead: state.clone(),
             front_state: state.clone(),
             sides_before: sides.clone(),
+            sides_after: sides.clone(),
+            room: Room::default(),
             sides,
             due: Vec::new(),
             noise: Vec::new(),
@@ -237,6 +245,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.statistics()
     }
 
+    /// Gives the integration as much time from now on as its [deadline](crate::Options::deadline) gave it at first, if it has one.
+    pub fn renew_deadline(&mut self) {
+        if let Some(deadline) = &mut self.engine.limits_mut().deadline {
+            deadline.renew();
+        }
+    }
+
     /// Sets a time beyond which the vector field is never evaluated, or removes it.
     ///
     /// # Errors
@@ -311,6 +326,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             if self.arrives(towards)? {
                 return Ok(());
             }
+            self.check_deadline()?;
             self.engine.step(towards)?;
             let to = self.engine.last_step().end;
             self.ahead.copy_from_slice(self.engine.end_state());
@@ -334,16 +350,19 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let pieces = self.engine.limits().samples_per_step;
         let (engine, events) = (&mut self.engine, &mut self.events);
         let mut blamed = 0;
-        let mut values = |t: f64| {
+        let evaluate = |t: f64, values: &mut [f64]| {
             let state = if t == to {
                 engine.end_state()
             } else {
                 engine.interpolate(t, 0).map_err(SearchFailure::Method)?
             };
-            values_at(events, t, state, &mut blamed).map_err(|failure| SearchFailure::Event(t, failure))
+            values_at(events, t, state, values, &mut blamed)
+                .map_err(|failure| SearchFailure::Event(t, failure))
         };
-        let mut sides = self.sides.clone();
-        let passage = match sides.first(self.front.clone(), to, pieces, &mut values) {
+        let mut look = Look { evaluate, functions: self.front.values.len(), room: &mut self.room };
+        let from = look.copy(&self.front);
+        self.sides_after.clone_from(&self.sides);
+        let passage = match self.sides_after.first(from, to, pieces, &mut look) {
             Ok(passage) => passage,
             Err(SearchFailure::Method(error)) => return Err(self.stay(error)),
             Err(SearchFailure::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
@@ -359,8 +378,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             Err(error) => return Err(self.stay(error)),
         }
         self.engine.stand_at(time);
-        self.sides_before = std::mem::replace(&mut self.sides, sides);
-        (self.front, self.noise, self.due, self.beyond) = (front, noise, due, beyond);
+        std::mem::swap(&mut self.sides_before, &mut self.sides);
+        std::mem::swap(&mut self.sides, &mut self.sides_after);
+        self.room.take_back(std::mem::replace(&mut self.front, front));
+        (self.noise, self.due, self.beyond) = (noise, due, beyond);
         Ok(())
     }
 
@@ -381,9 +402,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// The functions at a state.
     pub(crate) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let mut blamed = 0;
-        values_at(&mut self.events, t, state, &mut blamed)
-            .map_err(|failure| self.event_error(blamed, t, failure))
+        let (mut values, mut blamed) = (vec![f64::NAN; self.events.events().len()], 0);
+        match values_at(&mut self.events, t, state, &mut values, &mut blamed) {
+            Ok(()) => Ok(values),
+            Err(failure) => Err(self.event_error(blamed, t, failure)),
+        }
     }
 
     /// The error of the function of an event.
@@ -418,20 +441,21 @@ enum SearchFailure {
     Event(f64, Failure),
 }
 
-/// The functions at a state; `blamed` is the first that is not finite, or was not written before the failure.
+/// Writes the functions at a state to what is NaN before; `blamed` is the first that is not finite, or was not written before the
+/// failure.
 fn values_at(
     events: &mut impl Events,
     t: f64,
     state: &[f64],
+    values: &mut [f64],
     blamed: &mut usize,
-) -> Result<Vec<f64>, Failure> {
-    let mut values = vec![f64::NAN; events.events().len()];
-    if let Err(failure) = events.evaluate(t, state, &mut values) {
+) -> Result<(), Failure> {
+    if let Err(failure) = events.evaluate(t, state, values) {
         *blamed = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
         return Err(failure);
     }
     match values.iter().position(|value| !value.is_finite()) {
-        None => Ok(values),
+        None => Ok(()),
         Some(i) => {
             *blamed = i;
             let event = events.events()[i].name().to_owned();

@@ -1,5 +1,7 @@
 //! What an integration keeps to, whatever the method.
 
+use pc_expr::Deadline;
+
 use crate::events::events::Accumulation;
 use crate::settings::inequality::Inequality;
 
@@ -15,11 +17,19 @@ pub struct Limits {
     pub accumulation: Accumulation,
     /// Signs that components keep; empty if none does.
     pub inequalities: Vec<Inequality>,
+    /// When no further step is begun, if at any time.
+    pub deadline: Option<Deadline>,
 }
 
 impl Default for Limits {
     fn default() -> Limits {
         let accumulation = Accumulation::default();
-        Limits { max_steps: 500_000, samples_per_step: 4, accumulation, inequalities: Vec::new() }
+        Limits {
+            max_steps: 500_000,
+            samples_per_step: 4,
+            accumulation,
+            inequalities: Vec::new(),
+            deadline: None,
+        }
     }
 }

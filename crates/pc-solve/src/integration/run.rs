@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use pc_expr::Events;
+use pc_expr::{Deadline, Events};
 
 use crate::error::{InputError, Reason, SolveError};
 use crate::events::events::Occurrence;
@@ -63,6 +63,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     ) -> Result<Ending, SolveError> {
         let end = self.check_times(times)?;
         for &t in times {
+            // There may be many outputs in a step.
+            self.check_deadline()?;
             let ending = self.advance(t, end, observer)?;
             if let Some(Ending::Stopped) = ending {
                 return Ok(Ending::Stopped);
@@ -86,6 +88,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
         let last = self.statistics().last_step.abs();
         Err(self.failed(Reason::Steps { steps, t, last }, None))
+    }
+
+    /// That there is time left.
+    pub(crate) fn check_deadline(&mut self) -> Result<(), SolveError> {
+        match self.engine.limits().deadline.as_ref().and_then(Deadline::passed) {
+            None => Ok(()),
+            Some(spent) => Err(self.failed(Reason::Ended(spent), None)),
+        }
     }
 
     /// Goes to `t`, which has been checked, with steps towards `end` as far as needed.

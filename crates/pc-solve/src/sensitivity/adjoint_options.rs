@@ -62,7 +62,8 @@ impl AdjointOptions {
     /// For the adjoint equations of a field with entries of its Jacobian, or `products_only`.
     pub(crate) fn back(&self, products_only: bool) -> Options {
         let Options { method, nonlinear_solver, max_steps, .. } = self.motion;
-        let options = Options::new(method)
+        let deadline = self.motion.deadline.clone();
+        let options = Options { deadline, ..Options::new(method) }
             .nonlinear_solver(nonlinear_solver)
             .max_steps(max_steps)
             .relative_tolerance(self.relative_tolerance)

@@ -34,7 +34,7 @@ fn built(directory: &Path) -> PathBuf {
     let cc = |arguments: &[&str]| {
         printed(Command::new("cc").current_dir(directory).args(arguments));
     };
-    cc(&["-shared", "-fPIC", &soname, "small.c", "-o", "libpc.so"]);
+    cc(&["-g", "-shared", "-fPIC", &soname, "small.c", "-o", "libpc.so"]);
     cc(&["-c", "small.c", "-o", "small.o"]);
     printed(Command::new("ar").current_dir(directory).args(["rcs", "libpc.a", "small.o"]));
     directory.to_owned()
@@ -127,6 +127,29 @@ fn a_library_is_found_wherever_it_is() {
         uninstall(&places).unwrap();
         assert_eq!(left(&top).unwrap(), [] as [PathBuf; 0]);
     }
+}
+
+/// The library is small, and debuggers still find lines and functions, in the file beside it.
+#[test]
+fn what_debuggers_read_stands_beside_the_library() {
+    if !there_are(&["cc", "ar", "ld", "objcopy", "nm", "readelf", "addr2line"]) {
+        return;
+    }
+    let root = tempfile::tempdir().unwrap();
+    let built = built(root.path());
+    let places = Places::below(&root.path().join("pre fix")).unwrap();
+    place(&built, &places).unwrap();
+    let library = places.libdir.join(format!("libpc.so.{}", abi_version().unwrap()));
+    let debugging = library.with_file_name(format!("libpc.so.{}.debug", abi_version().unwrap()));
+    let sections = |file: &Path| printed(Command::new("readelf").args(["-S", "-W"]).arg(file));
+    let (of_library, beside) = (sections(&library), sections(&debugging));
+    assert!(!of_library.contains(".debug_") && of_library.contains(".gnu_debuglink"), "{of_library}");
+    assert!(beside.contains(".debug_info") && beside.contains(".symtab"), "{beside}");
+    let symbols = printed(Command::new("nm").args(["-D", "--defined-only"]).arg(&library));
+    let of_version = symbols.lines().find(|line| line.ends_with(" pc_version")).unwrap();
+    let address = of_version.split_whitespace().next().unwrap();
+    let place = printed(Command::new("addr2line").args(["-f", "-e"]).arg(&library).arg(address));
+    assert!(place.contains("pc_version") && place.contains("small.c:1"), "{place}");
 }
 
 /// A later version of the same major version will do; before 1.0, one of the same minor version.

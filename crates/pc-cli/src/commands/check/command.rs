@@ -34,6 +34,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
         Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
         outcome => outcome,
     };
+    assembly.within_limits()?;
     let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
     assembly.within_limits()?;
     print(|out| match arguments.format {

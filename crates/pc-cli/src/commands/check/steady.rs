@@ -78,6 +78,9 @@ pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
         SteadySearch::Nonlinear => {
             vec!["not looked for: a constraint is not affine in the velocities".to_owned()]
         }
+        SteadySearch::TooLarge { components } => {
+            vec![format!("not looked for: {components} components of the state are too many")]
+        }
         SteadySearch::None => vec!["none found near the start".to_owned()],
         SteadySearch::Found(steady) => motion_lines(steady, width),
     }

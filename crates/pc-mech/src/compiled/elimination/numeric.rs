@@ -27,6 +27,7 @@ pub(crate) struct Staged {
     jacobian: Option<Stage>,
     jvp: Option<Product>,
     parameter_jacobian: Option<Stage>,
+    time_derivative: Option<Stage>,
     /// Of (t, (y, w)).
     observables: Evaluator,
 }
@@ -77,6 +78,7 @@ impl Staged {
             jacobian: stage(options.jacobian, &system.state)?,
             jvp: options.jvp.then(|| Product::new(system, options.backend)).transpose()?,
             parameter_jacobian: stage(options.parameter_jacobian, &system.parameter_symbols())?,
+            time_derivative: stage(options.time_derivative, &[system.time])?,
             observables: compiled(&known, &observed, Backend::Interpreter)?,
         })
     }
@@ -189,6 +191,17 @@ impl Staged {
         let what = "derivative by parameters";
         let stage = self.parameter_jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
         stage.eval(t, &self.known, p, &mut self.solver, entries, Storage::Dense)
+    }
+
+    pub(crate) fn time_derivative(
+        &mut self,
+        Point { t, y, p }: Point<'_>,
+        derivative: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
+        self.solve(t, y, p)?;
+        let what = "derivative by time";
+        let stage = self.time_derivative.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
+        stage.eval(t, &self.known, p, &mut self.solver, derivative, Storage::Dense)
     }
 
     pub(crate) fn jvp(

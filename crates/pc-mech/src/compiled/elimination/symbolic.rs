@@ -26,6 +26,7 @@ pub(crate) struct Unrolled {
     /// y, v
     known: Vec<f64>,
     parameter_jacobian: Option<Columns>,
+    time_derivative: Option<Columns>,
     observables: Evaluator,
 }
 
@@ -59,6 +60,7 @@ impl Unrolled {
             jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
             known: vec![0.0; 2 * system.state.len()],
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
+            time_derivative: columns(options.time_derivative, &[system.time])?,
             observables: Evaluator::new(observed, Backend::Interpreter),
         })
     }
@@ -139,6 +141,16 @@ impl Unrolled {
         let what = "derivative by parameters";
         let jacobian = self.parameter_jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
         jacobian.eval(Point { t, y, p }, entries, Storage::Dense)
+    }
+
+    pub(crate) fn time_derivative(
+        &mut self,
+        Point { t, y, p }: Point<'_>,
+        derivative: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
+        let what = "derivative by time";
+        let column = self.time_derivative.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
+        column.eval(Point { t, y, p }, derivative, Storage::Dense)
     }
 
     pub(crate) fn jvp(

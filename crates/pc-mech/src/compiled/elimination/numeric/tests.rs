@@ -30,7 +30,7 @@ fn pendulum(graph: &Graph, links: usize) -> Equations<'_> {
 }
 
 fn all() -> CompileOptions {
-    CompileOptions::default().jvp(true).parameter_jacobian(true)
+    CompileOptions::default().jvp(true).parameter_jacobian(true).time_derivative(true)
 }
 
 fn forms(equations: &Equations<'_>) -> [Motion; 2] {
@@ -69,6 +69,7 @@ fn compare(equations: &Equations<'_>) {
     both(dim, &mut |motion, out| motion.jvp(0.3, &y, &v, out).unwrap());
     let parameters = equations.system().parameters().len();
     both(dim * parameters, &mut |motion, out| motion.parameter_jacobian(0.3, &y, out).unwrap());
+    both(dim, &mut |motion, out| motion.time_derivative(0.3, &y, out).unwrap());
     let observed = unrolled.observe(0.3, &y);
     assert_close(&staged.observe(0.3, &y), &observed);
 

@@ -1,0 +1,371 @@
+//! The form in which a book has expressions: short to read, whatever it costs to compute.
+//!
+//! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a cos b + sin a sin b
+//! is cos(a − b), p/d + q/d is (p + q)/d, and what all terms have in common stands before them.
+
+use rustc_hash::FxHashMap;
+
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+
+/// Sums of more terms are left as they are: nobody compares so many with each other.
+const MOST_TERMS: usize = 60;
+
+/// Powers of nodes, by ascending node.
+type Factors = Vec<(NodeId, i32)>;
+
+/// q Π nᵢ^eᵢ
+#[derive(Clone, Debug)]
+struct Term {
+    q: Number,
+    factors: Factors,
+}
+
+impl Graph {
+    /// The expressions as a book has them, in the graph of a page, symbols of the same names.
+    ///
+    /// ```
+    /// # use pc_expr::{Folding, Graph};
+    /// let (graph, page) = (Graph::new(), Graph::with_folding(Folding::Structural));
+    /// let [a, b, m, l] = graph.symbols(["a", "b", "m", "l"]);
+    /// let sum = m * a.sin() * b.cos() / l - m * a.cos() * b.sin() / l;
+    /// assert_eq!(graph.typeset(&[sum], &page)[0].to_string(), "m*sin(a - b)/l");
+    /// ```
+    pub fn typeset<'g, 'p>(&'g self, expressions: &[Expr<'g>], page: &'p Graph) -> Vec<Expr<'p>> {
+        let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
+        let set = self.with(|dag| {
+            page.with(|paper| {
+                let mut set: FxHashMap<NodeId, Atom> = FxHashMap::default();
+                for node in Cone::below(dag, roots.iter().copied()).order {
+                    let atom = match dag.node(node) {
+                        Node::Constant(c) => Atom::Constant(c),
+                        Node::Symbol(index) => Atom::Node(paper.symbol(dag.symbol_name(index))),
+                        Node::Call { function, args } => {
+                            let args: Vec<Atom> =
+                                Dag::args(function, &args).iter().map(|arg| set[arg]).collect();
+                            paper.call(function, &args)
+                        }
+                        Node::Product { factors } => {
+                            let powers: Vec<(Atom, i32)> =
+                                dag.factors(factors).iter().map(|&(n, e)| (set[&n], e)).collect();
+                            let powers: Vec<Atom> =
+                                powers.into_iter().map(|(x, e)| paper.powi(x, e)).collect();
+                            paper.product_of(Number::ONE, &powers)
+                        }
+                        Node::Sum { constant, terms } => {
+                            let terms: Vec<(Atom, Number)> =
+                                dag.terms(terms).iter().map(|&(n, q)| (set[&n], q)).collect();
+                            paper.typeset_sum(constant, &terms)
+                        }
+                    };
+                    set.insert(node, atom);
+                }
+                let atom = |root: &Atom| match root {
+                    Atom::Constant(_) => *root,
+                    Atom::Node(node) => set[node],
+                };
+                roots.iter().map(atom).collect::<Vec<Atom>>()
+            })
+        });
+        set.into_iter().map(|atom| page.expr(atom)).collect()
+    }
+}
+
+impl Dag {
+    /// c + Σ qᵢ xᵢ
+    fn typeset_sum(&mut self, constant: Number, terms: &[(Atom, Number)]) -> Atom {
+        let with_constant: Vec<(Atom, Number)> =
+            terms.iter().copied().chain([(Atom::Constant(constant), Number::ONE)]).collect();
+        let sum = self.sum_of(&with_constant);
+        self.rewritten(sum)
+    }
+
+    /// A sum rewritten, if it becomes shorter by it; anything else as it is.
+    fn rewritten(&mut self, sum: Atom) -> Atom {
+        let Some((scale, constant, mut terms)) = self.terms_of(sum) else { return sum };
+        if terms.len() < 2 && constant.is_zero() || terms.len() > MOST_TERMS {
+            return sum;
+        }
+        let other = if self.merge_angles(&mut terms) {
+            let merged = self.sum_of_terms(constant, &terms);
+            self.rewritten(merged)
+        } else if let Some(collected) = self.over_common_divisors(constant, &terms) {
+            self.rewritten(collected)
+        } else if let Some(product) = self.before_brackets(constant, &terms) {
+            product
+        } else if let Some(grouped) = self.in_groups(constant, &terms) {
+            self.rewritten(grouped)
+        } else {
+            return sum;
+        };
+        let other = self.scale(scale, other);
+        if self.columns(other) < self.columns(sum) { other } else { sum }
+    }
+
+    /// Columns of an expression in print, about: what is below `DEPTH` levels of it counts as a name.
+    fn columns(&self, atom: Atom) -> usize {
+        const DEPTH: usize = 5;
+        match atom {
+            Atom::Constant(c) => c.to_string().len(),
+            Atom::Node(node) => self.node_columns(node, DEPTH),
+        }
+    }
+
+    fn node_columns(&self, node: NodeId, depth: usize) -> usize {
+        const NAME: usize = 3;
+        if depth == 0 {
+            return NAME;
+        }
+        match self.node(node) {
+            Node::Constant(c) => c.to_string().len(),
+            Node::Symbol(index) => self.symbol_name(index).chars().count(),
+            Node::Call { function, args } => {
+                let args = Dag::args(function, &args).iter();
+                function.name().len() + args.map(|&arg| self.node_columns(arg, depth - 1) + 2).sum::<usize>()
+            }
+            Node::Product { factors } => {
+                let factor = |&(node, e): &(NodeId, i32)| {
+                    let brackets = if matches!(self.node(node), Node::Sum { .. }) { 2 } else { 0 };
+                    self.node_columns(node, depth - 1) + 1 + brackets + usize::from(e.unsigned_abs() > 1)
+                };
+                self.factors(factors).iter().map(factor).sum()
+            }
+            Node::Sum { constant, terms } => {
+                let term = |&(node, q): &(NodeId, Number)| {
+                    let is_sum = matches!(self.node(node), Node::Sum { .. });
+                    let coefficient = match q.abs().is_one() {
+                        true => 0,
+                        false => q.abs().to_string().len() + if is_sum { 3 } else { 1 },
+                    };
+                    self.node_columns(node, depth - 1) + coefficient + 3
+                };
+                let constant = if constant.is_zero() { 0 } else { constant.to_string().len() + 3 };
+                self.terms(terms).iter().map(term).sum::<usize>() + constant
+            }
+        }
+    }
+
+    /// q and the terms of a sum q (c + Σ …).
+    fn terms_of(&self, sum: Atom) -> Option<(Number, Number, Vec<Term>)> {
+        let Atom::Node(node) = sum else { return None };
+        let (node, scale) = self.split_coefficient(node, Number::ONE);
+        let Node::Sum { constant, terms } = self.node(node) else { return None };
+        let term = |&(node, q): &(NodeId, Number)| {
+            let factors = match self.node(node) {
+                Node::Product { factors } => self.factors(factors).to_vec(),
+                _ => vec![(node, 1)],
+            };
+            Term { q, factors }
+        };
+        Some((scale, constant, self.terms(terms).iter().map(term).collect()))
+    }
+
+    fn sum_of_terms(&mut self, constant: Number, terms: &[Term]) -> Atom {
+        let mut all = vec![(Atom::Constant(constant), Number::ONE)];
+        for term in terms {
+            all.push((self.product(term.q, &term.factors), Number::ONE));
+        }
+        self.sum_of(&all)
+    }
+
+    /// Puts sines and cosines of sums of angles for sums of their products, as long as there are any.
+    fn merge_angles(&mut self, terms: &mut Vec<Term>) -> bool {
+        let mut merged = false;
+        'again: loop {
+            for i in 0..terms.len() {
+                for j in i + 1..terms.len() {
+                    if let Some(term) = self.merged(&terms[i], &terms[j]) {
+                        terms[i] = term;
+                        terms.remove(j);
+                        merged = true;
+                        continue 'again;
+                    }
+                }
+            }
+            return merged;
+        }
+    }
+
+    /// q c (cos a cos b ± sin a sin b), q c (sin a cos b ± cos a sin b) or q c (cos² a ± sin² a) as one term.
+    fn merged(&mut self, one: &Term, other: &Term) -> Option<Term> {
+        let same_sign = one.q == other.q;
+        if !same_sign && one.q != -other.q {
+            return None;
+        }
+        let (common, [left, right]) = split(&one.factors, &other.factors);
+        let angle = |dag: &Dag, (node, e): (NodeId, i32), power: i32| match dag.node(node) {
+            Node::Call { function: function @ (Function::Sin | Function::Cos), args } if e == power => {
+                Some((function, args[0]))
+            }
+            _ => None,
+        };
+        let (function, angle) = match (left.as_slice(), right.as_slice()) {
+            (&[p], &[r]) => {
+                let ((f, a), (g, b)) = (angle(self, p, 2)?, angle(self, r, 2)?);
+                if a != b || f == g {
+                    return None;
+                }
+                if same_sign {
+                    return Some(Term { q: one.q, factors: common }); // cos² a + sin² a = 1
+                }
+                let twice = self.scale(Number::integer(2), Atom::Node(a));
+                let cosine = self.call(Function::Cos, &[twice]);
+                let q = if f == Function::Cos { one.q } else { other.q };
+                return self.with_factor(q, common, cosine);
+            }
+            (&[p, p2], &[r, r2]) => {
+                let (one, two) = (angle(self, p, 1)?, angle(self, p2, 1)?);
+                let (three, four) = (angle(self, r, 1)?, angle(self, r2, 1)?);
+                let is = |(f, _): (Function, NodeId), g: Function| f == g;
+                let cross = |x: (Function, NodeId), y: (Function, NodeId)| {
+                    // the same two angles, sines and cosines exchanged
+                    let other = |f: Function| if f == Function::Sin { Function::Cos } else { Function::Sin };
+                    (other(x.0), x.1) == y
+                };
+                let pairs =
+                    (cross(one, three) && cross(two, four)) || (cross(one, four) && cross(two, three));
+                if !pairs || one.1 == two.1 {
+                    return None;
+                }
+                if is(one, Function::Cos) && is(two, Function::Cos) {
+                    (Function::Cos, (one.1, two.1, if same_sign { -1 } else { 1 }))
+                } else if is(one, Function::Sin) && is(two, Function::Sin) {
+                    // the sines come first: −(cos a cos b − sin a sin b) where the signs differ
+                    let sign = if same_sign { -1 } else { 1 };
+                    let sum = self.sum_of(&[
+                        (Atom::Node(one.1), Number::ONE),
+                        (Atom::Node(two.1), Number::integer(sign)),
+                    ]);
+                    let cosine = self.call(Function::Cos, &[sum]);
+                    return self.with_factor(other.q, common, cosine);
+                } else {
+                    let (sine, cosine) = if is(one, Function::Sin) { (one.1, two.1) } else { (two.1, one.1) };
+                    (Function::Sin, (sine, cosine, if same_sign { 1 } else { -1 }))
+                }
+            }
+            _ => return None,
+        };
+        let (a, b, sign) = angle;
+        let sum = self.sum_of(&[(Atom::Node(a), Number::ONE), (Atom::Node(b), Number::integer(sign))]);
+        let call = self.call(function, &[sum]);
+        self.with_factor(one.q, common, call)
+    }
+
+    /// q x Π nᵢ^eᵢ as a term, if it is one.
+    fn with_factor(&mut self, q: Number, mut factors: Factors, x: Atom) -> Option<Term> {
+        let Atom::Node(node) = x else { return None };
+        let (node, sign) = self.split_coefficient(node, Number::ONE);
+        factors.push((node, 1));
+        Some(Term { q: q * sign, factors })
+    }
+
+    /// The sum with terms that divide by the same as one quotient, if there are such.
+    fn over_common_divisors(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
+        let mut groups: Vec<(Factors, Vec<Term>)> = Vec::new();
+        for term in terms {
+            let (divisors, factors) = term.factors.iter().partition::<Factors, _>(|(_, e)| *e < 0);
+            let numerator = Term { q: term.q, factors };
+            match groups.iter_mut().find(|(known, _)| *known == divisors) {
+                Some((_, numerators)) => numerators.push(numerator),
+                None => groups.push((divisors, vec![numerator])),
+            }
+        }
+        let is_quotient =
+            |(divisors, numerators): &(Factors, Vec<Term>)| !divisors.is_empty() && numerators.len() > 1;
+        // One quotient alone is what common factors are taken from.
+        if !groups.iter().any(is_quotient) || groups.len() == 1 && constant.is_zero() {
+            return None;
+        }
+        let mut all = vec![(Atom::Constant(constant), Number::ONE)];
+        for (divisors, numerators) in groups {
+            if numerators.len() == 1 || divisors.is_empty() {
+                for term in numerators {
+                    let factors: Factors = term.factors.into_iter().chain(divisors.iter().copied()).collect();
+                    all.push((self.product(term.q, &factors), Number::ONE));
+                }
+                continue;
+            }
+            let numerator = self.sum_of_terms(Number::ZERO, &numerators);
+            let numerator = self.rewritten(numerator);
+            let divisor = self.product(Number::ONE, &divisors);
+            all.push((self.product_of(Number::ONE, &[numerator, divisor]), Number::ONE));
+        }
+        Some(self.sum_of(&all))
+    }
+
+    /// The sum as a product of what all its terms have in common and the rest, if they have something in common.
+    fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
+        let (first, rest) = terms.split_first().filter(|_| constant.is_zero())?;
+        let common = rest.iter().fold(first.factors.clone(), |common, term| shared(&common, &term.factors));
+        if common.is_empty() {
+            return None;
+        }
+        let inverse: Factors = common.iter().map(|&(node, e)| (node, -e)).collect();
+        let mut left = Vec::with_capacity(terms.len());
+        for term in terms {
+            let factors: Factors = term.factors.iter().chain(&inverse).copied().collect();
+            left.push((self.product(term.q, &factors), Number::ONE));
+        }
+        let brackets = self.sum_of(&left);
+        let brackets = self.rewritten(brackets);
+        let common = self.product(Number::ONE, &common);
+        Some(self.product_of(Number::ONE, &[common, brackets]))
+    }
+}
+
+impl Dag {
+    /// The sum with those terms in brackets that have a function or a sum in common: the one that most terms have.
+    fn in_groups(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
+        let is_long = |node: NodeId| matches!(self.node(node), Node::Call { .. } | Node::Sum { .. });
+        let has = |term: &Term, node: NodeId| term.factors.iter().any(|&(factor, e)| factor == node && e > 0);
+        let mut best: Option<(usize, NodeId)> = None;
+        for &(node, _) in
+            terms.iter().flat_map(|term| &term.factors).filter(|(node, e)| *e > 0 && is_long(*node))
+        {
+            let count = terms.iter().filter(|term| has(term, node)).count();
+            if count > best.map_or(1, |(most, _)| most) {
+                best = Some((count, node));
+            }
+        }
+        let (_, node) = best?;
+        let (group, others): (Vec<Term>, Vec<Term>) = terms.iter().cloned().partition(|term| has(term, node));
+        let bracket = self.before_brackets(Number::ZERO, &group)?;
+        let rest = self.sum_of_terms(constant, &others);
+        Some(self.sum_of(&[(bracket, Number::ONE), (rest, Number::ONE)]))
+    }
+}
+
+/// What two products have in common, and what each has besides.
+fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
+    let common = shared(one, other);
+    let besides = |factors: &Factors| -> Factors {
+        let left = factors.iter().map(|&(node, e)| {
+            let taken = common.iter().find(|(known, _)| *known == node).map_or(0, |&(_, e)| e);
+            (node, e - taken)
+        });
+        left.filter(|&(_, e)| e != 0).collect()
+    };
+    let both = [besides(one), besides(other)];
+    (common, both)
+}
+
+/// The powers that two products have in common: of a factor in both the smaller one, if both are above or below the line.
+fn shared(one: &Factors, other: &Factors) -> Factors {
+    let power = |&(node, e): &(NodeId, i32)| {
+        let &(_, f) = other.iter().find(|(known, _)| *known == node)?;
+        let common = if e > 0 && f > 0 {
+            e.min(f)
+        } else if e < 0 && f < 0 {
+            e.max(f)
+        } else {
+            0
+        };
+        (common != 0).then_some((node, common))
+    };
+    one.iter().filter_map(power).collect()
+}

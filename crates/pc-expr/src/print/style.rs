@@ -1,0 +1,80 @@
+//! How an expression is written, and the words of each way.
+
+use crate::graph::function::Function;
+use crate::graph::number::Number;
+use crate::print::piece::{Binding, Piece, number};
+use crate::print::{book, latex};
+
+/// How an expression is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// The expression language, which the parser reads back.
+    Text,
+    /// As a book sets it, in plain characters: `½ m v² cos(θ)`.
+    Book,
+    /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
+    Latex,
+}
+
+impl Style {
+    pub(super) fn number(self, c: Number) -> Piece {
+        match self {
+            Style::Text => number(c),
+            Style::Book => book::number(c),
+            Style::Latex => latex::number(c),
+        }
+    }
+
+    /// Brackets between which a line may end.
+    pub(super) fn large_brackets(self) -> [&'static str; 2] {
+        match self {
+            Style::Text | Style::Book => ["(", ")"],
+            Style::Latex => ["\\Bigl(", "\\Bigr)"],
+        }
+    }
+
+    pub(super) fn symbol(self, name: &str) -> Piece {
+        Piece::atom(match self {
+            Style::Text | Style::Book => name.to_owned(),
+            Style::Latex => latex::symbol(name),
+        })
+    }
+
+    pub(super) fn call(self, function: Function, args: Vec<Piece>) -> Piece {
+        match self {
+            Style::Text | Style::Book => {
+                let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
+                Piece::atom(format!("{}({})", function.name(), args.join(", ")))
+            }
+            Style::Latex => latex::call(function, args),
+        }
+    }
+
+    pub(super) fn power(self, base: Piece, exponent: Piece) -> Piece {
+        let text = match self {
+            Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
+            Style::Book => book::power(base, exponent),
+            Style::Latex => latex::power(&base, &exponent.text),
+        };
+        Piece { text, binding: Binding::Power }
+    }
+
+    pub(super) fn product(self, factors: Vec<Piece>) -> String {
+        let factors: Vec<String> = factors.into_iter().map(|p| p.at_least(Binding::Product)).collect();
+        match self {
+            Style::Text => factors.join("*"),
+            Style::Book => factors.join(" "),
+            Style::Latex => latex::juxtaposed(&factors),
+        }
+    }
+
+    pub(super) fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
+        match self {
+            Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
+            _ if below.len() == 1 => {
+                format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
+            }
+            _ => format!("{}/({})", self.product(above), self.product(below)),
+        }
+    }
+}

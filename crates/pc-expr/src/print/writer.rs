@@ -1,0 +1,340 @@
+//! The text of each node below some expressions, made of the texts of its children.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::graph::dag::Dag;
+use crate::graph::function::Function;
+use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::number::Number;
+use crate::print::piece::{Binding, Piece, number};
+use crate::print::style::Style;
+
+/// Sums that open in sums that open … are opened so often.
+const DEEP: usize = 60;
+
+/// Writes nodes one by one: those below a node before it, so that no depth overflows the stack.
+pub(super) struct Writer<'d> {
+    pub(super) dag: &'d Dag,
+    style: Style,
+    /// How nodes stand in those above them: written out, or as their names.
+    pieces: FxHashMap<NodeId, Piece>,
+    named: FxHashSet<NodeId>,
+}
+
+impl<'d> Writer<'d> {
+    pub(super) fn new(dag: &'d Dag, style: Style) -> Writer<'d> {
+        Writer { dag, style, pieces: FxHashMap::default(), named: FxHashSet::default() }
+    }
+
+    /// Lets a node stand written out in those above it.
+    pub(super) fn write(&mut self, id: NodeId) {
+        let piece = self.composed(id);
+        self.pieces.insert(id, piece);
+    }
+
+    /// Lets a node stand as a name.
+    pub(super) fn name(&mut self, id: NodeId, name: &str) {
+        self.pieces.insert(id, self.style.symbol(name));
+        self.named.insert(id);
+    }
+
+    /// All that was written, as it stands.
+    pub(super) fn into_pieces(self) -> FxHashMap<NodeId, Piece> {
+        self.pieces
+    }
+
+    pub(super) fn is_named(&self, id: NodeId) -> bool {
+        self.named.contains(&id)
+    }
+
+    /// Columns of a node as it stands in those above it.
+    pub(super) fn columns(&self, id: NodeId) -> usize {
+        self.pieces.get(&id).map_or(1, Piece::columns)
+    }
+
+    /// How a node stands in those above it.
+    fn piece(&self, id: NodeId) -> Piece {
+        // The order of writing leaves none out.
+        self.pieces.get(&id).cloned().unwrap_or_else(|| Piece::atom("?"))
+    }
+
+    /// A node written out, the nodes below it as they stand.
+    pub(super) fn composed(&self, id: NodeId) -> Piece {
+        match self.dag.node(id) {
+            Node::Constant(c) => self.style.number(c),
+            Node::Symbol(index) => self.style.symbol(self.dag.symbol_name(index)),
+            Node::Call { function, args } => {
+                let mut args: Vec<Piece> =
+                    Dag::args(function, &args).iter().map(|&arg| self.piece(arg)).collect();
+                match function {
+                    Function::Pow => {
+                        let exponent = args.remove(1);
+                        self.style.power(args.remove(0), exponent)
+                    }
+                    _ => self.style.call(function, args),
+                }
+            }
+            Node::Product { .. } => self.monomial(Number::ONE, id, None),
+            Node::Sum { .. } => join(self.terms(id)),
+        }
+    }
+
+    /// The terms of a node written out, those that are subtracted marked, one that is added first.
+    pub(super) fn terms(&self, id: NodeId) -> Vec<(bool, Piece)> {
+        let Node::Sum { constant, terms } = self.dag.node(id) else {
+            return self.bracket(Number::ONE, id).unwrap_or_else(|| vec![(false, self.composed(id))]);
+        };
+        let terms = self.dag.terms(terms);
+        if let (true, &[(node, q)]) = (constant.is_zero(), terms) {
+            if let Some(bracket) = self.bracket(q, node) {
+                return bracket;
+            }
+            if let Some(turned) = self.turned(node, q) {
+                return vec![(false, turned)];
+            }
+        }
+        let mut signed = Vec::new();
+        self.signed_terms(Number::ONE, constant, terms, 0, &mut signed);
+        positive_first(signed)
+    }
+
+    /// An expression as it stands in others.
+    pub(super) fn atom(&self, atom: Atom) -> Piece {
+        match atom {
+            Atom::Constant(c) => self.style.number(c),
+            Atom::Node(id) => self.piece(id),
+        }
+    }
+
+    /// The terms of q·(c + Σ…), each with its sign taken out; a scaled sum in brackets stays one term.
+    fn signed_terms(
+        &self,
+        q: Number,
+        constant: Number,
+        terms: &[(NodeId, Number)],
+        depth: usize,
+        out: &mut Vec<(bool, Piece)>,
+    ) {
+        let mut terms: Vec<(NodeId, Number)> = terms.to_vec();
+        terms.sort_by_cached_key(|&(node, _)| order_key(self.dag, node));
+        for (node, coefficient) in terms {
+            let coefficient = coefficient * q;
+            match self.opened(node, coefficient) {
+                Some((constant, terms)) if depth < DEEP => {
+                    self.signed_terms(coefficient, constant, terms, depth + 1, out);
+                }
+                _ => out.push((coefficient.is_negative(), self.term(coefficient.abs(), node))),
+            }
+        }
+        let constant = constant * q;
+        if !constant.is_zero() {
+            out.push((constant.is_negative(), self.style.number(constant.abs())));
+        }
+    }
+
+    /// The sum that a product ends with, if a line may end between the terms in its bracket.
+    pub(super) fn bracketed(&self, product: NodeId) -> Option<NodeId> {
+        let Node::Product { factors } = self.dag.node(product) else { return None };
+        let is_sum = |&(node, _): &(NodeId, i32)| {
+            matches!(self.dag.node(node), Node::Sum { .. }) && !self.named.contains(&node)
+        };
+        let factors = self.dag.factors(factors);
+        let mut sums = factors.iter().filter(|factor| is_sum(factor));
+        let (&(sum, e), None) = (sums.next()?, sums.next()) else { return None };
+        let whole = e == 1 && factors.iter().all(|&(_, e)| e > 0) && !self.named.contains(&product);
+        (whole && self.style != Style::Text).then_some(sum)
+    }
+
+    /// The terms of q x (a + b + …), what stands before the bracket with the first.
+    fn bracket(&self, q: Number, product: NodeId) -> Option<Vec<(bool, Piece)>> {
+        let sum = self.bracketed(product)?;
+        let Node::Product { factors } = self.dag.node(product) else { return None };
+        let before: Vec<(NodeId, i32)> =
+            self.dag.factors(factors).iter().copied().filter(|&(node, _)| node != sum).collect();
+        let before = self.quotient(q.abs(), &before, None).at_least(Binding::Product);
+        let [open, close] = self.style.large_brackets();
+        let turned = q.is_negative().then(|| self.turned_sum(sum)).flatten();
+        let negative = q.is_negative() && turned.is_none();
+        let inside = signed(turned.unwrap_or_else(|| self.terms(sum)));
+        let last = inside.len() - 1;
+        let term = |(i, text): (usize, String)| {
+            let close = if i == last { close } else { "" };
+            match (i, text.split_at_checked(2)) {
+                (0, _) => (negative, Piece::product(format!("{before} {open}{text}{close}"))),
+                (_, Some((sign, text))) => (sign == "- ", Piece::product(format!("{text}{close}"))),
+                (_, None) => (false, Piece::product(format!("{text}{close}"))),
+            }
+        };
+        Some(inside.into_iter().enumerate().map(term).collect())
+    }
+
+    /// q x (a − b) with q < 0 as −q x (b − a).
+    fn turned(&self, node: NodeId, q: Number) -> Option<Piece> {
+        let Node::Product { factors } = self.dag.node(node) else { return None };
+        if !q.is_negative() || self.named.contains(&node) {
+            return None;
+        }
+        let turned = |&(factor, e): &(NodeId, i32)| {
+            let terms = (e == 1).then(|| self.turned_sum(factor)).flatten()?;
+            Some((factor, join(terms)))
+        };
+        let given = self.dag.factors(factors).iter().find_map(turned)?;
+        Some(self.monomial(q.abs(), node, Some(&given)))
+    }
+
+    /// The terms of the negative of a sum that subtracts something.
+    fn turned_sum(&self, sum: NodeId) -> Option<Vec<(bool, Piece)>> {
+        let Node::Sum { constant, terms } = self.dag.node(sum) else { return None };
+        let terms = self.dag.terms(terms);
+        let subtracts = constant.is_negative() || terms.iter().any(|(_, q)| q.is_negative());
+        if !subtracts || self.named.contains(&sum) {
+            return None;
+        }
+        let mut signed = Vec::new();
+        self.signed_terms(Number::MINUS_ONE, constant, terms, 0, &mut signed);
+        Some(positive_first(signed))
+    }
+
+    /// The sum that q·n is written as, if that is shorter.
+    pub(super) fn opened(&self, node: NodeId, q: Number) -> Option<(Number, &'d [(NodeId, Number)])> {
+        match self.dag.node(node) {
+            Node::Sum { constant, terms } if !self.named.contains(&node) => {
+                let terms = self.dag.terms(terms);
+                opens(q, constant, terms).then_some((constant, terms))
+            }
+            _ => None,
+        }
+    }
+
+    /// q·n as it stands in a sum.
+    fn term(&self, q: Number, node: NodeId) -> Piece {
+        match self.dag.node(node) {
+            Node::Product { .. } if !self.named.contains(&node) => self.monomial(q, node, None),
+            _ => self.quotient(q, &[(node, 1)], None),
+        }
+    }
+
+    /// q·n of a product n, one of its factors perhaps written as given.
+    fn monomial(&self, q: Number, node: NodeId, given: Option<&(NodeId, Piece)>) -> Piece {
+        match self.dag.node(node) {
+            Node::Product { factors } => self.quotient(q, self.dag.factors(factors), given),
+            _ => self.quotient(q, &[(node, 1)], given),
+        }
+    }
+
+    /// q Π nᵢ^eᵢ as a product of factors over a product of divisors.
+    fn quotient(&self, q: Number, factors: &[(NodeId, i32)], given: Option<&(NodeId, Piece)>) -> Piece {
+        let mut factors = factors.to_vec();
+        factors.sort_by_cached_key(|&(factor, _)| factor_key(self.dag, factor));
+        let power = |factor: NodeId, e: i32| {
+            let other = given.filter(|(known, _)| *known == factor);
+            let base = other.map_or_else(|| self.piece(factor), |(_, piece)| piece.clone());
+            if e == 1 && matches!(self.dag.node(factor), Node::Sum { .. }) {
+                let alone = factors.len() == 1 && q.is_one();
+                if alone { base } else { Piece::atom(base.at_least(Binding::Power)) }
+            } else if e == 1 {
+                base
+            } else {
+                self.style.power(base, Piece::atom(e.to_string()))
+            }
+        };
+        let collect = |sign: i32| -> Vec<Piece> {
+            factors
+                .iter()
+                .filter(|(_, e)| e.signum() == sign)
+                .map(|&(factor, e)| power(factor, e.abs()))
+                .collect()
+        };
+        let (mut above, mut below) = (collect(1), collect(-1));
+        let mut front = q;
+        if let Number::Rational { num, den } = q
+            && !below.is_empty()
+            && number(q).binding == Binding::Product
+        {
+            front = Number::ratio(num, 1);
+            below.insert(0, self.style.number(Number::ratio(den, 1)));
+        }
+        if !front.is_one() || above.is_empty() {
+            above.insert(0, self.style.number(front));
+        }
+        if above.len() == 1 && below.is_empty() {
+            return above.remove(0);
+        }
+        let text =
+            if below.is_empty() { self.style.product(above) } else { self.style.quotient(above, below) };
+        Piece { text, binding: Binding::Product }
+    }
+}
+
+/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, +(a − b) is a − b, and (2·a − 1)/2 is a − 1/2.
+fn opens(q: Number, constant: Number, terms: &[(NodeId, Number)]) -> bool {
+    let whole = |c: Number| matches!(c, Number::Rational { num, den: 1 } if num != 0);
+    let fraction = matches!(q, Number::Rational { den, .. } if den > 1);
+    let becomes_whole = || whole(q * constant) || terms.iter().any(|&(_, c)| whole(q * c));
+    let several = terms.len() > 1 || !constant.is_zero();
+    q.abs().is_one() || fraction && several && becomes_whole()
+}
+
+fn positive_first(mut signed: Vec<(bool, Piece)>) -> Vec<(bool, Piece)> {
+    if let Some(first_positive) = signed.iter().position(|(negative, _)| !negative) {
+        signed[..=first_positive].rotate_right(1);
+    }
+    signed
+}
+
+/// Terms side by side.
+fn join(terms: Vec<(bool, Piece)>) -> Piece {
+    match terms.as_slice() {
+        [(false, piece)] => piece.clone(),
+        _ => Piece { text: signed(terms).join(" "), binding: Binding::Sum },
+    }
+}
+
+/// Terms that stand side by side, all but the first with their sign and a space before them.
+pub(super) fn signed(terms: Vec<(bool, Piece)>) -> Vec<String> {
+    let alone = terms.len() == 1;
+    let term = |(i, (negative, piece)): (usize, (bool, Piece))| {
+        let sign = match (i, negative) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => "+ ",
+            (_, true) => "- ",
+        };
+        let text = if alone && !negative { piece.text } else { piece.at_least(Binding::Product) };
+        format!("{sign}{text}")
+    };
+    terms.into_iter().enumerate().map(term).collect()
+}
+
+/// Symbols in the order of their making, then calls, then sums.
+fn factor_key(dag: &Dag, id: NodeId) -> (u8, u32) {
+    match dag.node(id) {
+        Node::Constant(_) => (0, 0),
+        Node::Symbol(index) => (1, index),
+        Node::Call { .. } => (2, id.0),
+        Node::Product { .. } => (3, id.0),
+        Node::Sum { .. } => (4, id.0),
+    }
+}
+
+/// Terms are ordered as their lists of factors are.
+fn order_key(dag: &Dag, id: NodeId) -> Vec<(u8, u32, i32)> {
+    match dag.node(id) {
+        Node::Product { factors } => {
+            let mut key: Vec<(u8, u32, i32)> = dag
+                .factors(factors)
+                .iter()
+                .map(|&(factor, e)| {
+                    let (class, index) = factor_key(dag, factor);
+                    (class, index, -e)
+                })
+                .collect();
+            key.sort_unstable();
+            key
+        }
+        _ => {
+            let (class, index) = factor_key(dag, id);
+            vec![(class, index, -1)]
+        }
+    }
+}

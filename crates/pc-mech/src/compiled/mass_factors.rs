@@ -1,0 +1,69 @@
+//! A mass matrix in numbers, to be solved with.
+
+use pc_expr::Pattern;
+
+use crate::compiled::elimination::dense_ldl::DenseLdl;
+use crate::compiled::failure::EvaluationFailure;
+
+/// The factors of a symmetric matrix, M = L D Lᵀ, with pivoting where that meets a vanishing minor of a regular M.
+///
+/// ```
+/// let mut factors = pc_mech::MassFactors::new(2);
+/// factors.factorise(&[2.0, 1.0, 1.0, 1.0])?;
+/// let mut right = [3.0, 2.0];
+/// factors.solve(&mut right);
+/// assert_eq!(right, [1.0, 1.0]);
+/// # Ok::<(), pc_mech::SingularMatrix>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MassFactors {
+    factors: DenseLdl,
+    lower: Pattern,
+    /// What stands on and below the diagonal.
+    values: Vec<f64>,
+}
+
+/// A matrix has no inverse, as far as its numbers tell.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the matrix is singular: its pivot number {index} (from 0) is {pivot}")]
+pub struct SingularMatrix {
+    /// The row of the pivot that vanishes; the first that is not finite where one is.
+    pub index: usize,
+    /// The pivot.
+    pub pivot: f64,
+}
+
+impl MassFactors {
+    /// Room for those of a k × k matrix.
+    pub fn new(k: usize) -> MassFactors {
+        let lower = Pattern::from_columns(k, (0..k).map(|j| j..k));
+        MassFactors { factors: DenseLdl::new(k), values: vec![0.0; lower.len()], lower }
+    }
+
+    /// Factorises a matrix, given whole.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`]
+    ///
+    /// # Panics
+    /// Unless there are k² numbers.
+    pub fn factorise(&mut self, matrix: &[f64]) -> Result<(), SingularMatrix> {
+        let k = self.lower.rows();
+        assert_eq!(matrix.len(), k * k, "a square matrix");
+        for (value, (i, j)) in self.values.iter_mut().zip(self.lower.entries()) {
+            *value = matrix[i * k + j];
+            if !value.is_finite() {
+                return Err(SingularMatrix { index: i, pivot: *value });
+            }
+        }
+        self.factors.factorise(&self.lower, &self.values).map_err(|failure| match failure {
+            EvaluationFailure::Pivot { index, pivot } => SingularMatrix { index, pivot },
+            _ => SingularMatrix { index: 0, pivot: f64::NAN }, // there is no other failure
+        })
+    }
+
+    /// Replaces v by M⁻¹ v, and so each of several columns.
+    pub fn solve(&mut self, columns: &mut [f64]) {
+        self.factors.solve(columns);
+    }
+}

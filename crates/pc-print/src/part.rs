@@ -1,0 +1,214 @@
+//! A page in parts with headings, the same for people and for a paper.
+
+use pc_expr::{Given, Names, Side};
+use pc_mech::{Expr, Graph};
+use pc_nonholo::Kind;
+
+use crate::layout::Layout;
+use crate::sheet::{Balance, Bracket, Sheet};
+
+/// What stands under a heading.
+#[derive(Clone, Debug)]
+pub(crate) struct Part<'p> {
+    pub(crate) heading: Heading,
+    pub(crate) rows: Vec<Row<'p>>,
+}
+
+/// What a part is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Heading {
+    Constraints,
+    Kinematics,
+    Brackets,
+    MassMatrix,
+    Momenta,
+    QuasiVelocities,
+    Hamiltonian,
+    Equations,
+    States,
+    Energy,
+    Reactions,
+}
+
+impl Heading {
+    pub(crate) fn text(self) -> &'static str {
+        match self {
+            Heading::Constraints => "Constraints",
+            Heading::Kinematics => "Kinematics",
+            Heading::Brackets => "Brackets",
+            Heading::MassMatrix => "Mass matrix",
+            Heading::Momenta => "Momenta",
+            Heading::QuasiVelocities => "Quasi-velocities",
+            Heading::Hamiltonian => "Hamiltonian",
+            Heading::Equations => "Equations",
+            Heading::States => "States",
+            Heading::Energy => "Energy",
+            Heading::Reactions => "Reactions",
+        }
+    }
+}
+
+/// What is said in one go.
+#[derive(Clone, Debug)]
+pub(crate) enum Row<'p> {
+    /// `name: left = 0 (kind)`
+    Constraint { name: String, left: Expr<'p>, kind: Kind },
+    /// left = right
+    Equation { left: Expr<'p>, right: Expr<'p> },
+    /// [X_r, X_s] = Σ c X_m
+    Bracket(Bracket<'p>),
+    /// An entry M_rs.
+    Entry { place: [usize; 2], value: Expr<'p> },
+    /// A function with its letter.
+    Function { letter: &'static str, value: Expr<'p> },
+}
+
+impl<'p> Row<'p> {
+    /// What is written in this row.
+    fn sides(&self) -> Vec<Side<'p>> {
+        match self {
+            Row::Constraint { left, .. } => vec![Side::Sum(*left)],
+            Row::Equation { left, right } => vec![Side::Sum(*left), Side::Sum(*right)],
+            Row::Bracket(bracket) => bracket.components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
+            Row::Entry { value, .. } | Row::Function { value, .. } => vec![Side::Sum(*value)],
+        }
+    }
+}
+
+/// The parts of a page with the names that are needed.
+pub(crate) struct Parts<'p> {
+    pub(crate) parts: Vec<Part<'p>>,
+    pub(crate) names: Names<'p>,
+    /// The number of the first line of each part.
+    starts: Vec<usize>,
+}
+
+impl<'p> Parts<'p> {
+    /// The parts of a sheet, and names for what is long in them; with its `entries` a mass matrix is a part, by which left sides
+    /// become short.
+    pub(crate) fn new(sheet: &Sheet<'p>, layout: &Layout, page: &'p Graph, entries: bool) -> Parts<'p> {
+        let mut given: Vec<Given<'p>> = if layout.inline { Vec::new() } else { sheet.definitions.clone() };
+        let mut parts = sheet.parts(page, entries);
+        if entries {
+            given.extend(sheet.entry_names());
+        }
+        given.extend(sheet.velocity_names());
+        let mut named = names(&parts, &given, layout, page);
+        let velocities: Vec<Row<'p>> = sheet
+            .velocity_names()
+            .into_iter()
+            .filter(|velocity| named.list().iter().any(|name| name.shorthand && name.name == velocity.name))
+            // Those that are velocities are in the kinematics.
+            .filter(|velocity| !sheet.rates.iter().any(|(rate, _)| rate.to_string() == velocity.name))
+            .map(|velocity| Row::Equation { left: page.symbol(&velocity.name), right: velocity.value })
+            .collect();
+        if !velocities.is_empty() {
+            // Where they are used, they are said before.
+            parts.insert(1, Part { heading: Heading::QuasiVelocities, rows: velocities });
+            parts.sort_by_key(|part| part.heading != Heading::QuasiVelocities);
+            named = names(&parts, &given, layout, page);
+        }
+        parts.retain(|part| !part.rows.is_empty() || part.heading == Heading::Brackets);
+        let starts = parts.iter().scan(0, |next, part| {
+            let start = *next;
+            *next += part.rows.iter().map(|row| row.sides().len()).sum::<usize>();
+            Some(start)
+        });
+        let starts = starts.collect();
+        Parts { parts, names: named, starts }
+    }
+
+    /// The parts, each with the numbers of the names that are first needed there.
+    pub(crate) fn with_names(&self) -> impl Iterator<Item = (&Part<'p>, Vec<usize>)> {
+        self.parts.iter().enumerate().map(|(i, part)| {
+            let end = self.starts.get(i + 1).copied().unwrap_or(usize::MAX);
+            let here = |&(_, name): &(usize, &pc_expr::Name<'p>)| {
+                !name.shorthand && (self.starts[i]..end).contains(&name.line)
+            };
+            (part, self.names.list().iter().enumerate().filter(here).map(|(number, _)| number).collect())
+        })
+    }
+}
+
+fn names<'p>(parts: &[Part<'p>], given: &[Given<'p>], layout: &Layout, page: &'p Graph) -> Names<'p> {
+    let sides: Vec<Side<'p>> = parts.iter().flat_map(|part| &part.rows).flat_map(Row::sides).collect();
+    page.names(&sides, given, layout.room())
+}
+
+/// What an entry of the mass matrix is called.
+pub(crate) fn entry_name(sheet: &Sheet<'_>, [r, s]: [usize; 2]) -> String {
+    format!("M({}, {})", sheet.quasi_velocities[r], sheet.quasi_velocities[s])
+}
+
+impl<'p> Sheet<'p> {
+    fn parts(&self, page: &'p Graph, entries: bool) -> Vec<Part<'p>> {
+        let part = |heading, rows| Part { heading, rows };
+        let equations = |sides: &[(Expr<'p>, Expr<'p>)]| -> Vec<Row<'p>> {
+            let different = sides.iter().filter(|(left, right)| left != right);
+            different.map(|&(left, right)| Row::Equation { left, right }).collect()
+        };
+        let zip = |left: &[Expr<'p>], right: &[Expr<'p>]| -> Vec<(Expr<'p>, Expr<'p>)> {
+            left.iter().copied().zip(right.iter().copied()).collect()
+        };
+        let constraints = self.constraints.iter().map(|(name, left, kind)| {
+            let (name, left, kind) = (name.clone(), *left, *kind);
+            Row::Constraint { name, left, kind }
+        });
+        let brackets = self.brackets.nonzero.iter();
+        let brackets = brackets.map(|bracket| Row::Bracket(bracket.clone()));
+        let mut parts = vec![
+            part(Heading::Constraints, constraints.collect()),
+            part(Heading::Kinematics, equations(&self.rates)),
+            part(Heading::Brackets, brackets.collect()),
+        ];
+        match &self.balance {
+            Balance::Velocities { mass, accelerations, written, .. } => {
+                if entries {
+                    parts.push(part(Heading::MassMatrix, entry_rows(mass)));
+                }
+                let left =
+                    mass.iter().map(|row| page.dot(row.iter().copied(), accelerations.iter().copied()));
+                parts.push(part(Heading::Equations, equations(&zip(&left.collect::<Vec<_>>(), written))));
+                parts.push(part(Heading::States, equations(&self.states)));
+                parts.push(part(Heading::Energy, vec![Row::Function { letter: "E", value: self.energy }]));
+                parts.push(part(Heading::Reactions, equations(&self.reactions)));
+            }
+            Balance::Momenta { momenta, rates, of_velocities, written, .. } => {
+                parts.push(part(Heading::Momenta, equations(&zip(momenta, of_velocities))));
+                parts.push(part(
+                    Heading::Hamiltonian,
+                    vec![Row::Function { letter: "H", value: self.energy }],
+                ));
+                parts.push(part(Heading::Equations, equations(&zip(rates, written))));
+                parts.push(part(Heading::States, equations(&self.states)));
+            }
+        }
+        parts
+    }
+
+    /// Names for the entries of the mass matrix, which are printed.
+    fn entry_names(&self) -> Vec<Given<'p>> {
+        let Balance::Velocities { mass, .. } = &self.balance else { return Vec::new() };
+        let entries = entry_rows(mass).into_iter().filter_map(|row| match row {
+            Row::Entry { place, value } => {
+                Some(Given { name: entry_name(self, place), value, shorthand: true })
+            }
+            _ => None,
+        });
+        entries.collect()
+    }
+
+    /// Names for the quasi-velocities as functions of the momenta.
+    fn velocity_names(&self) -> Vec<Given<'p>> {
+        let Balance::Momenta { velocities: Some(values), .. } = &self.balance else { return Vec::new() };
+        let names = self.quasi_velocities.iter().map(Expr::to_string);
+        names.zip(values).map(|(name, &value)| Given { name, value, shorthand: true }).collect()
+    }
+}
+
+/// The entries of a symmetric matrix that are not zero, those on and below its diagonal.
+fn entry_rows<'p>(mass: &[Vec<Expr<'p>>]) -> Vec<Row<'p>> {
+    let places = (0..mass.len()).flat_map(|r| (0..=r).map(move |s| [r, s]));
+    let rows = places.map(|place @ [r, s]| Row::Entry { place, value: mass[r][s] });
+    rows.filter(|row| !matches!(row, Row::Entry { value, .. } if value.is_zero())).collect()
+}

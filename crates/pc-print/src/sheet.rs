@@ -1,0 +1,273 @@
+//! All that is printed of some equations, as expressions in the graph of a page.
+//!
+//! A page has a graph of its own, in which what is written stays as it is written: there nothing is merged back to the form
+//! that costs a computer least.
+
+use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
+use pc_expr::{Given, Graph};
+use pc_mech::{Canonical, Equations, Expr, System};
+use pc_model::Assembly;
+use pc_nonholo::Kind;
+
+use crate::derived::Derived;
+
+/// Equations of so many nodes are multiplied out whatever that makes of them.
+const SMALL: usize = 60;
+
+/// What is printed of equations of motion.
+#[derive(Clone, Debug)]
+pub struct Sheet<'p> {
+    /// Parameters with their numbers.
+    pub parameters: Vec<(String, f64)>,
+    /// Coordinates x.
+    pub coordinates: Vec<Expr<'p>>,
+    /// Independent quasi-velocities η, those of the equations.
+    pub quasi_velocities: Vec<Expr<'p>>,
+    /// What vanishes, by the names of the constraints.
+    pub constraints: Vec<(String, Expr<'p>, Kind)>,
+    /// The matrix b and the column b_0 of ẋ = b η + b_0 (3).
+    pub frame: (Vec<Vec<Expr<'p>>>, Vec<Expr<'p>>),
+    /// Each ẋ_i with what it is equal to.
+    pub rates: Vec<(Expr<'p>, Expr<'p>)>,
+    /// The brackets that are not zero.
+    pub brackets: Brackets<'p>,
+    /// The equations themselves.
+    pub balance: Balance<'p>,
+    /// Each ż_j with what it is equal to.
+    pub states: Vec<(Expr<'p>, Expr<'p>)>,
+    /// The energy, or Hamilton's function.
+    pub energy: Expr<'p>,
+    /// What is to be known of the energy.
+    pub energy_remark: Option<&'static str>,
+    /// Each reaction with what it is equal to.
+    pub reactions: Vec<(Expr<'p>, Expr<'p>)>,
+    /// The definitions of the model.
+    pub definitions: Vec<Given<'p>>,
+}
+
+/// The equations of motion in one of two kinds of variables.
+#[derive(Clone, Debug)]
+pub enum Balance<'p> {
+    /// M η̇ = r.
+    Velocities {
+        /// M by rows.
+        mass: Vec<Vec<Expr<'p>>>,
+        /// η̇
+        accelerations: Vec<Expr<'p>>,
+        /// r as it is computed.
+        right: Vec<Expr<'p>>,
+        /// r as sums of products of quasi-velocities, where it is a polynomial.
+        written: Vec<Expr<'p>>,
+    },
+    /// ẏ = r.
+    Momenta {
+        /// y
+        momenta: Vec<Expr<'p>>,
+        /// ẏ
+        rates: Vec<Expr<'p>>,
+        /// y = ∂L/∂η as functions of η.
+        of_velocities: Vec<Expr<'p>>,
+        /// η as functions of y; none where the equations are not closed, and η in them stands for the solution of y = ∂L/∂η.
+        velocities: Option<Vec<Expr<'p>>>,
+        /// r as it is computed.
+        right: Vec<Expr<'p>>,
+        /// r as sums of products of momenta, where it is a polynomial.
+        written: Vec<Expr<'p>>,
+    },
+}
+
+/// Brackets [X_r, X_s] = c_rs^m X_m of the free operators and X_0, those of time.
+#[derive(Clone, Debug)]
+pub struct Brackets<'p> {
+    /// Names of X_1, …: the free quasi-velocities, then those that vanish.
+    pub operators: Vec<String>,
+    /// Those that are not zero.
+    pub nonzero: Vec<Bracket<'p>>,
+    /// Whether the free operators commute.
+    pub commute: bool,
+    /// The name of their algebra, if it is a known one.
+    pub algebra: Option<&'static str>,
+}
+
+/// One bracket.
+#[derive(Clone, Debug)]
+pub struct Bracket<'p> {
+    /// r < s
+    pub pair: [usize; 2],
+    /// The m and c_rs^m that are not zero.
+    pub components: Vec<(usize, Expr<'p>)>,
+}
+
+impl<'p> Sheet<'p> {
+    /// The sheet of equations in velocities, in the graph of a page.
+    pub fn of_velocities(assembly: &Assembly<'_>, derived: &Derived<'_>, page: &'p Graph) -> Sheet<'p> {
+        let equations: &Equations<'_> = &derived.equations;
+        let system = equations.system();
+        let writing = Writing::new(system, system.quasi_velocities(), page);
+        let right = writing.all(equations.right_hand_side());
+        let written = writing.multiplied_out(&right, equations.written(page));
+        let balance = Balance::Velocities {
+            mass: writing.rows(&equations.mass_matrix().to_rows()),
+            accelerations: system.quasi_velocities().iter().map(|eta| writing.rate(eta)).collect(),
+            written,
+            right,
+        };
+        let rates = system.states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>();
+        let parts = Parts {
+            vanishing: &derived.vanishing,
+            velocities: equations.velocities(),
+            states: &rates,
+            energy: equations.energy(),
+        };
+        writing.sheet(assembly, derived, &parts, balance)
+    }
+
+    /// The sheet of canonical equations, in the graph of a page.
+    pub fn of_momenta(
+        assembly: &Assembly<'_>,
+        derived: &Derived<'_>,
+        equations: &Canonical<'_>,
+        page: &'p Graph,
+    ) -> Sheet<'p> {
+        let system = equations.system();
+        let moving = [system.quasi_velocities(), equations.momenta()].concat();
+        let writing = Writing::new(system, &moving, page);
+        let right = writing.all(equations.right_hand_side());
+        let written = writing.multiplied_out(&right, equations.written(page));
+        let balance = Balance::Momenta {
+            momenta: writing.all(equations.momenta()),
+            rates: equations.momenta().iter().map(|y| writing.rate(y)).collect(),
+            of_velocities: writing.all(equations.momenta_of_velocities()),
+            velocities: equations.is_closed().then(|| writing.all(equations.quasi_velocities())),
+            written,
+            right,
+        };
+        let parts = Parts {
+            vanishing: &[],
+            velocities: equations.velocities(),
+            states: equations.state_rates(),
+            energy: equations.hamiltonian(),
+        };
+        let derived = Derived { reactions: Vec::new(), ..derived.clone() };
+        writing.sheet(assembly, &derived, &parts, balance)
+    }
+}
+
+/// Parts of the equations that have other names in other forms.
+struct Parts<'a, 'g> {
+    vanishing: &'a [Expr<'g>],
+    velocities: &'a [Expr<'g>],
+    states: &'a [Expr<'g>],
+    energy: Expr<'g>,
+}
+
+/// The expressions of a system rebuilt in the graph of a page.
+struct Writing<'a, 'g, 'p> {
+    system: &'a System<'g>,
+    page: &'p Graph,
+}
+
+impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
+    /// Symbols in the order of a book: parameters, coordinates, then what moves.
+    fn new(system: &'a System<'g>, moving: &[Expr<'g>], page: &'p Graph) -> Writing<'a, 'g, 'p> {
+        let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
+        for symbol in parameters.chain(system.frame().coordinates()).chain(moving) {
+            page.symbol(&symbol.symbol_name().unwrap_or_default());
+        }
+        Writing { system, page }
+    }
+
+    fn all(&self, expressions: &[Expr<'g>]) -> Vec<Expr<'p>> {
+        self.system.graph().typeset(expressions, self.page)
+    }
+
+    fn one(&self, expression: Expr<'g>) -> Expr<'p> {
+        self.all(&[expression])[0]
+    }
+
+    fn rows(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'p>>> {
+        rows.iter().map(|row| self.all(row)).collect()
+    }
+
+    /// Right sides as sums of products where they are polynomials, unless they are much longer so.
+    fn multiplied_out(&self, right: &[Expr<'p>], written: Vec<Option<Expr<'p>>>) -> Vec<Expr<'p>> {
+        let products: Vec<Expr<'p>> =
+            written.into_iter().zip(right).map(|(written, &right)| written.unwrap_or(right)).collect();
+        let longest = self.page.size(right) * 3 / 2 + SMALL;
+        if self.page.size(&products) > longest { right.to_vec() } else { products }
+    }
+
+    /// The symbol of a rate.
+    fn rate(&self, x: &Expr<'g>) -> Expr<'p> {
+        self.page.symbol(&format!("{x}'"))
+    }
+
+    fn sheet(
+        &self,
+        assembly: &Assembly<'g>,
+        derived: &Derived<'g>,
+        parts: &Parts<'_, 'g>,
+        balance: Balance<'p>,
+    ) -> Sheet<'p> {
+        let system = self.system;
+        let frame = system.frame();
+        let with_rates = |symbols: &[Expr<'g>], values: &[Expr<'g>]| -> Vec<(Expr<'p>, Expr<'p>)> {
+            symbols.iter().map(|x| self.rate(x)).zip(self.all(values)).collect()
+        };
+        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
+        let constraints = derived.constraints.iter();
+        let constraints = constraints
+            .map(|(constraint, kind)| {
+                (constraint.name().to_owned(), self.one(derived.vanishing(constraint)), *kind)
+            })
+            .collect();
+        let reactions = derived.reactions.iter().map(|&(name, value)| (self.one(name), self.one(value)));
+        let definitions = assembly.definitions.iter();
+        let definitions = definitions
+            .map(|(name, value)| Given { name: name.clone(), value: self.one(*value), shorthand: false })
+            .collect();
+        Sheet {
+            parameters: system
+                .parameters()
+                .iter()
+                .map(|(symbol, value)| (symbol.to_string(), *value))
+                .collect(),
+            coordinates: self.all(frame.coordinates()),
+            quasi_velocities: self.all(system.quasi_velocities()),
+            constraints,
+            frame: (self.rows(&frame.b().to_rows()), self.all(frame.b0())),
+            rates: with_rates(frame.coordinates(), parts.velocities),
+            brackets: self.brackets(parts.vanishing),
+            balance,
+            states: with_rates(&states, parts.states),
+            energy: self.one(parts.energy),
+            energy_remark: derived.energy_remark,
+            reactions: reactions.collect(),
+            definitions,
+        }
+    }
+
+    fn brackets(&self, vanishing: &[Expr<'g>]) -> Brackets<'p> {
+        let (structure, free) = (self.system.structure(), self.system.quasi_velocities());
+        let operators: Vec<String> = free.iter().chain(vanishing).map(Expr::to_string).collect();
+        let nonzero: Vec<_> =
+            structure.nonzero().filter(|&(_, s, m, _)| s <= free.len() && m <= operators.len()).collect();
+        let pairs = nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(|pair| {
+            let components = pair.iter().map(|&(_, _, m, c)| (m, self.one(c))).collect();
+            Bracket { pair: [pair[0].0, pair[0].1], components }
+        });
+        Brackets {
+            operators,
+            nonzero: pairs.collect(),
+            commute: nonzero.is_empty() && self.system.frame().restricted(free.len()).commutes(),
+            algebra: recognised(structure).filter(|_| vanishing.is_empty()),
+        }
+    }
+}
+
+/// The name of the algebra, if the structure coefficients are those of one in the catalogue.
+pub fn recognised(structure: &StructureCoefficients<'_>) -> Option<&'static str> {
+    let algebra = structure.lie_algebra().filter(|_| structure.nonzero().all(|(r, ..)| r > 0))?;
+    let known = CATALOGUE.iter().find(|entry| LieAlgebra::named(entry.name).as_ref() == Ok(&algebra));
+    known.map(|entry| entry.name)
+}
