@@ -172,6 +172,25 @@ typedef enum {
    * Chetaev's canonical equations, of momenta.
    */
   PC_CANONICAL = 1,
+  /**
+   * Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
+   * left; the state has fewer coordinates. Where multipliers hold constraints,
+   * PC_INCONSISTENT_MODEL, as with all that follow, unless pc_model_add_independent says which
+   * velocities are independent.
+   */
+  PC_REDUCED = 2,
+  /**
+   * The same in momenta: Lie–Poisson equations.
+   */
+  PC_LIE_POISSON = 3,
+  /**
+   * Poincaré's of quasi-velocities that are orthonormal in the kinetic metric.
+   */
+  PC_ORTHONORMAL = 4,
+  /**
+   * Hamel's, of the quasi-velocities that pc_model_give_quasi_velocity gives.
+   */
+  PC_HAMEL = 5,
 } pc_form;
 
 /**
@@ -738,7 +757,8 @@ pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
  * text that these wrote; lines and columns of errors are counted in it. What no text says is not
  * in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
  * pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
- * pc_model_differentiate, pc_model_add_external_force.
+ * pc_model_differentiate, pc_model_add_external_force, pc_model_give_quasi_velocity,
+ * pc_model_add_independent.
  */
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
@@ -1305,6 +1325,26 @@ pc_status pc_system_set_force(pc_system *system,
                               pc_error **error);
 
 /**
+ * Gives a quasi-velocity beside those of the model, for systems of the form PC_HAMEL: a linear
+ * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where those
+ * given are fewer than the independent ones, quasi-velocities of the model complete them. Each
+ * is an output too. What is wrong with it is found by pc_model_check and pc_system_new.
+ */
+pc_status pc_model_give_quasi_velocity(pc_model *model,
+                                       const char *name,
+                                       const char *definition,
+                                       pc_error **error);
+
+/**
+ * Asks for a velocity as one of the independent ones, as many as the constraints leave free:
+ * where multipliers would hold these, systems then have the equations in which they are
+ * eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
+ * equations in print and in source are those of the velocities that make them shortest. A wrong
+ * choice is found by pc_system_new.
+ */
+pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
+
+/**
  * Writes the rate f(t, y) of the state to ydot.
  *
  * After the first call it takes no lock where f is one piece of machine code: where no function
@@ -1684,11 +1724,12 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
  * and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
  * other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
  * `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
- * energy, the integrals and the outputs of independent quasi-velocities, whatever the form of
- * the system, and says at its head how it is used. External forces are parameters of it, after
- * the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
- * set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
- * integrates from the start of the model to that time. Free both texts with pc_string_free.
+ * energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
+ * where the system has these, and says at its head how it is used. External forces are
+ * parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and stay
+ * zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+ * capitals) to a program that integrates from the start of the model to that time. Free both
+ * texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,

@@ -127,6 +127,15 @@ public:
     {
         return say(pc_model_add_force, on.c_str(), expression.c_str());
     }
+    /// Gives a quasi-velocity by a linear form in velocities, for PC_HAMEL.
+    model &give_quasi_velocity(const std::string &name, const std::string &definition)
+    {
+        return say(pc_model_give_quasi_velocity, name.c_str(), definition.c_str());
+    }
+
+    /// Asks for a velocity as one of the independent ones.
+    model &independent(const std::string &name) { return say(pc_model_add_independent, name.c_str()); }
+
     /// A force that a function will compute: system::set_force.
     model &external_force(const std::string &on) { return say(pc_model_add_external_force, on.c_str()); }
 

@@ -86,6 +86,11 @@ fn they_are_those_of_the_definition() {
         let graph = Graph::new();
         let (system, vanishing) = whole(&model, &graph);
         let eta = system.quasi_velocities();
+        // Which equations are shortest is another matter without folding: there they are those of the same velocities.
+        let mut model = model;
+        if model.assemble(&graph).unwrap().constraints.held().is_some() && vanishing > 0 {
+            model.choose_independent(eta[..eta.len() - vanishing].iter().map(Expr::to_string));
+        }
         let state = [system.frame().coordinates(), &eta[..eta.len() - vanishing]].concat();
         let names: Vec<String> = state.iter().map(Expr::to_string).collect();
         let columns = reference(name).unwrap();

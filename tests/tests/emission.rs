@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use pc_expr::{Inputs, Interpreter, Kernel, Program};
 use pc_mech::{Backend, EmitOptions, Equations, Expr, Graph, Language, System, VectorField};
-use pc_model::{Builtin, Model};
+use pc_model::{Builtin, Document, Model, Source};
 use pc_tests::classical::{MODELS, SplitMix64, sample};
 use pc_tests::emitted::{self, Emitted, Routine, execute, fresh_directory, rustc, write_files};
 use pc_tests::reference::reference;
@@ -384,4 +384,125 @@ fn start_states_have_the_length_of_the_state() {
     let options = EmitOptions::new(Language::C, "top").start(0.0, &[1.0], 2.0);
     let message = equations.emit(&options).unwrap_err().to_string();
     assert_eq!(message, "the start state has 1 entries where 3 are needed");
+}
+
+/// The Whipple bicycle in independent velocities: its right-hand side to the last bit, and what goes through the table of its
+/// operations, the Jacobian, the mass matrix and the energy, to the rounding of some thousand operations.
+fn bicycle() -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("mechanisms/whipple-bicycle.toml");
+    let source = Source::new("bicycle", fs::read_to_string(path).unwrap());
+    let model = Model::new(Document::parse(source).unwrap());
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap_or_else(|e| panic!("{e}"));
+    let equations = assembly.equations().unwrap();
+    let start = assembly.start_of(&equations.system().state());
+    let options =
+        |language| EmitOptions::new(language, "bicycle").title("Whipple bicycle").start(0.0, &start, 1.0);
+    let mut random = SplitMix64::new(5);
+    let start = start.clone();
+    let states = (0..STATES / 4).map(|_| {
+        let y = start.iter().map(|y| y + 0.2 * random.uniform(-1.0, 1.0)).collect();
+        let p = model.parameters().map(|(_, value)| value * (1.0 + random.uniform(0.0, 0.05))).collect();
+        (0.0, y, p)
+    });
+    Case::new(&equations, options, false, states.collect::<Vec<_>>().into_iter())
+}
+
+/// What is found is near what is expected: the rates the same.
+fn compare_long(program: &Path, case: &Case, language: &str) {
+    let found = emitted::run(program, std::iter::once((&case.emitted, &case.inputs[..])));
+    let dimension = case.emitted.routines[0].outputs.unwrap();
+    for (found, (values, jacobian)) in found.into_iter().flatten().zip(&case.expected) {
+        let (found_values, found_jacobian) = found.split_at(values.len());
+        if SAME_LIBRARY {
+            assert_eq!(found_values[..dimension], values[..dimension], "the rates in {language}");
+        }
+        for (found, expected) in [(found_values, values), (found_jacobian, jacobian)] {
+            let size = expected.iter().fold(1.0f64, |size, v| size.max(v.abs()));
+            for (i, (f, e)) in found.iter().zip(expected).enumerate() {
+                assert!((f - e).abs() <= 1e-10 * size, "number {i} in {language} is {f:e}, not {e:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bicycle_is_short_source_with_its_jacobian() {
+    let case = bicycle();
+    for (suffix, most) in [(".c", 150_000), (".rs", 150_000)] {
+        let size = case.emitted.file(suffix).unwrap().text.len();
+        assert!(size < most, "{suffix} has {size} bytes");
+    }
+    for file in &case.emitted.files {
+        let longest = file.text.lines().map(|line| line.chars().count()).max();
+        assert!(longest <= Some(160), "{}: a line of {longest:?} characters", file.name);
+    }
+    let cases = [case];
+    let program = emitted::compile_c(&directory("bicycle-c"), "cc", C_FLAGS, &sources(&cases));
+    compare_long(&program, &cases[0], "C");
+    let program = emitted::compile_rust(&directory("bicycle-rust"), &[], &sources(&cases));
+    compare_long(&program, &cases[0], "Rust");
+}
+
+#[test]
+fn a_jacobian_is_left_out_if_it_is_not_wanted() {
+    let model = Model::new(Builtin::named("heavy-top-euler").unwrap().document().unwrap());
+    let graph = Graph::new();
+    let equations = model.assemble(&graph).unwrap().equations().unwrap();
+    for language in [Language::C, Language::Rust] {
+        for (jacobian, there) in [(true, true), (false, false)] {
+            let files = equations.emit(&EmitOptions::new(language, "top").jacobian(jacobian)).unwrap();
+            assert!(files.iter().all(|file| file.text.contains("jacobian(") == there), "{language:?}");
+        }
+    }
+}
+
+/// Thirty masses, on each of which all functions that have a rule of differentiation act.
+fn long() -> Case {
+    const MASSES: usize = 30;
+    let graph = Graph::new();
+    let names: Vec<String> = (0..MASSES).map(|i| format!("x{i}")).collect();
+    let k = graph.symbol("k");
+    let system = System::builder(&graph)
+        .coordinates(&names)
+        .parameter(k, 0.7)
+        .lagrangian(|_, x, v| {
+            let kinetic = v.iter().zip(x).map(|(&v, &x)| (2.0 + x.cos()) * v.square() / 2.0);
+            graph.sum(kinetic.collect::<Vec<_>>())
+        })
+        .forces(|_, x, v| {
+            let of = |i: usize, j: usize| (x[(i + j) % MASSES] + k * v[(i + 2 * j) % MASSES]) / 9.0;
+            (0..MASSES)
+                .map(|i| {
+                    let smooth =
+                        [of(i, 1).sin(), of(i, 2).cos(), of(i, 3).asin(), of(i, 4).acos(), of(i, 5).atan()];
+                    let hyperbolic = [of(i, 6).sinh(), of(i, 7).cosh(), of(i, 8).tanh(), of(i, 9).exp()];
+                    let others =
+                        [(of(i, 10).square() + 1.0).log(), (of(i, 11).square() + 2.0).sqrt(), -of(i, 12)];
+                    graph.sum(smooth.into_iter().chain(hyperbolic).chain(others).collect::<Vec<_>>())
+                })
+                .collect::<Vec<_>>()
+        })
+        .build()
+        .unwrap();
+    let mut random = SplitMix64::new(8);
+    let states: Vec<_> = (0..STATES / 4)
+        .map(|_| (0.0, (0..2 * MASSES).map(|_| random.uniform(-2.0, 2.0)).collect(), vec![0.7]))
+        .collect();
+    Case::new(
+        &system.poincare().unwrap(),
+        |language| EmitOptions::new(language, "masses"),
+        false,
+        states.into_iter(),
+    )
+}
+
+#[test]
+fn the_chain_rule_knows_all_its_functions() {
+    let cases = [long()];
+    assert!(cases[0].emitted.file(".c").unwrap().text.contains("masses_code[]"), "it goes through a table");
+    let program = emitted::compile_c(&directory("long-c"), "cc", C_FLAGS, &sources(&cases));
+    compare_long(&program, &cases[0], "C");
+    let program = emitted::compile_rust(&directory("long-rust"), &[], &sources(&cases));
+    compare_long(&program, &cases[0], "Rust");
 }

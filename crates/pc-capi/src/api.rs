@@ -29,5 +29,6 @@ pub(crate) mod solver;
 pub(crate) mod source;
 pub(crate) mod statistics;
 pub(crate) mod system;
+pub(crate) mod velocities;
 pub(crate) mod verify;
 pub(crate) mod version;

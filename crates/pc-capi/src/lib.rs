@@ -40,6 +40,7 @@ pub use api::solver::*;
 pub use api::source::*;
 pub use api::statistics::*;
 pub use api::system::*;
+pub use api::velocities::*;
 pub use api::verify::*;
 pub use api::version::*;
 pub use ffi::error::*;

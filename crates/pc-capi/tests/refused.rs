@@ -231,7 +231,7 @@ fn options_are_checked() {
     for (size, form, reserved, time_limit) in [
         (0, 0, 0, 0.0),
         (17 + size_of::<pc_system_options>(), 0, 0, 0.0),
-        (16, 2, 0, 0.0),
+        (16, 6, 0, 0.0),
         (16, -1, 0, 0.0),
         (16, 0, 1, 0.0),
         (usual.size, 0, -1, 0.0),

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use pc_cli::args::options::RunForm;
+use pc_cli::args::forms::RunForm;
 use pc_cli::commands::run::integrate;
 use pc_cli::motion::plan::Plan;
 use pc_cli::motion::run::Run;

@@ -50,6 +50,12 @@ pub enum CliError {
     /// `--keep` of something that has no start value.
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
+    /// Quasi-velocities that are given and not asked for.
+    #[error("`{name}` is given, which is for --form hamel only; behind the model stand no other names")]
+    Definitions {
+        /// The first of them.
+        name: String,
+    },
     /// Two `--set` of one parameter.
     #[error("--set: `{name}` is given two values; leave one out")]
     SetTwice {
@@ -206,6 +212,7 @@ impl CliError {
             | CliError::Sensitivities(_)
             | CliError::UnknownStart(_)
             | CliError::SetTwice { .. }
+            | CliError::Definitions { .. }
             | CliError::BadValue { .. }
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }

@@ -69,7 +69,7 @@ Charged particle in a pulsating magnetic field
   start              ρ = 1, φ = 0, η1 = 0.5, η2 = 1
   rates there        finite at t = 0, the largest 2
   operations         parameters free   16 = 1 add + 1 cos + 1 div + 3 fma + 8 mul + 1 neg + 1 sin
-                     parameters bound  15 = 2 add + 1 cos + 1 div + 3 fma + 6 mul + 1 neg + 1 sin
+                     parameters bound  14 = 1 add + 1 cos + 1 div + 3 fma + 6 mul + 1 neg + 1 sin
   second derivation  agrees at 100 states
   integrals          momentum  conserved (proved)
                      energy    dE/dt = -½ B0 ε ρ η2 cos(t), -0.25 at the start

@@ -45,6 +45,7 @@ mod random;
 mod time_profile;
 
 pub use calculus::collect::Polynomial;
+pub use codegen::chain::{Chain, ChainLayout};
 pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
 pub use graph::budget::Budget;

@@ -2,9 +2,10 @@
 //!
 //! In go expressions and the order of their inputs, out comes a [`Program`](program::Program). Read `program` first. A
 //! tape is made by `sharing` (which factors products have in common), `angle_addition` (sines of sums from those of the
-//! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and counts; `digest` tells tapes apart.
+//! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and counts; `bind` puts parameters in as numbers, and `digest` tells tapes apart.
 
 pub(crate) mod angle_addition;
+pub(crate) mod bind;
 pub(crate) mod digest;
 pub(crate) mod fuse;
 pub(crate) mod lower;

@@ -1,10 +1,11 @@
 //! Systems whose coordinates or velocities are subject to conditions.
 //!
 //! A `constraint` is one condition; `multipliers` keeps all coordinates and adds the reactions, M η̇ = r + Cᵀ λ;
-//! `independent_velocities` solves for some velocities instead (14)–(16); `explicit_reactions` puts λ in as functions of
+//! `independent_velocities` solves for some velocities instead (14)–(16), and `choice` says for which; `explicit_reactions` puts λ in as functions of
 //! the state, and `body_reactions` says what they are as forces and torques on bodies.
 
 pub(crate) mod body_reactions;
+pub(crate) mod choice;
 pub(crate) mod constraint;
 pub(crate) mod explicit_reactions;
 pub(crate) mod independent_velocities;

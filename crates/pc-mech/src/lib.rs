@@ -254,4 +254,5 @@ pub use system::builder::SystemBuilder;
 pub use system::external_force::{ExternalForce, difference_quotients};
 pub use system::signals::{Interpolation, OutsideTable, Signals, Table, TableError};
 pub use system::system::System;
+pub use transform::quasi_velocities::QuasiVelocityChange;
 pub use transform::velocities::VelocityTransform;

@@ -3,7 +3,7 @@
 //! In goes a [`Model`](crate::Model), out comes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`, what
 //! its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`, `frame`,
 //! `definitions`, `start`, `bodies` and `external_force`, `brackets`, `constraints` with `constraint_treatment`,
-//! `body_reactions` and the names of a `resultant`, `event` and `events`; `trial` and `definite` look whether the start
+//! `body_reactions` and the names of a `resultant`, `event` and `events`, and quasi-velocities that are `given` beside the text; `trial` and `definite` look whether the start
 //! makes sense. A `function` is put together alone, when it is asked for.
 
 pub(crate) mod assemble;
@@ -21,6 +21,7 @@ pub(crate) mod events;
 pub(crate) mod external_force;
 pub(crate) mod frame;
 pub(crate) mod function;
+pub(crate) mod given;
 pub(crate) mod parameters;
 pub(crate) mod resultant;
 pub(crate) mod start;

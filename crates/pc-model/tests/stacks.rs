@@ -22,8 +22,16 @@ fn on_small_stack(text: String, again: bool) {
         for variables in [Variables::QuasiVelocities, Variables::Momenta] {
             Flow::new(&model, &assembly, variables).unwrap();
         }
-        pc_model::deep(|| pc_print::page(pc_print::Form::Poincare, pc_print::Page::Text, "deep", &assembly))
-            .unwrap();
+        pc_model::deep(|| {
+            pc_print::page(
+                pc_print::Form::Poincare,
+                pc_print::Page::Text,
+                &pc_print::Layout::default(),
+                "deep",
+                &assembly,
+            )
+        })
+        .unwrap();
         if again {
             verify(&model, &Options { states: 3, ..Options::default() }).unwrap();
         }

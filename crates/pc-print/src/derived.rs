@@ -1,7 +1,7 @@
 //! Equations of motion in one of their forms, with what belongs to them.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
-use pc_model::{Assembly, ConstraintFormulation, ModelError};
+use pc_model::{Assembly, ConstraintFormulation, ModelError, Variables};
 use pc_nonholo::{Kind, NonholoError, Voronets};
 
 use crate::form::Form;
@@ -17,6 +17,8 @@ pub struct Derived<'g> {
     pub constraints: Vec<(Constraint<'g>, Kind)>,
     /// What the quasi-velocities that vanish are in velocities, where that is known.
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The quasi-velocities that are not those of the model, each with what it is.
+    pub quasi_velocities: Vec<(Expr<'g>, Expr<'g>)>,
     /// The reactions with what they are equal to.
     pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
     /// What is to be known of the energy.
@@ -29,7 +31,47 @@ impl<'g> Derived<'g> {
     /// # Errors
     /// [`ModelError`] if there are none.
     pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), ModelError> {
-        assembly.placed(Derived::of(form, assembly))
+        match form {
+            Form::Reduced | Form::LiePoisson => Derived::in_free_form(form, Variables::Reduced, assembly),
+            Form::Orthonormal => Derived::in_free_form(form, Variables::Orthonormal, assembly),
+            Form::Hamel => Derived::in_free_form(form, Variables::Given, assembly),
+            Form::Poincare | Form::Canonical | Form::Lagrange | Form::Voronets => {
+                assembly.placed(Derived::of(form, assembly))
+            }
+        }
+    }
+
+    /// Poincaré's equations of the independent quasi-velocities in other coordinates and quasi-velocities.
+    fn in_free_form(
+        form: Form,
+        variables: Variables,
+        assembly: &Assembly<'g>,
+    ) -> Result<(&'static str, Derived<'g>), ModelError> {
+        let free = assembly.free_form(variables)?;
+        let left = free.system.frame().coordinates();
+        let name = match form {
+            Form::Orthonormal => "Poincaré's equations in an orthonormal frame",
+            Form::Hamel => "Hamel's equations",
+            Form::LiePoisson if left.is_empty() => "Lie–Poisson equations",
+            Form::LiePoisson => "canonical equations, reduced",
+            _ if left.is_empty() => "Euler–Poincaré equations",
+            _ => "Poincaré's equations, reduced",
+        };
+        let (_, plain) = assembly.placed(Derived::of(Form::Canonical, assembly))?;
+        let gone = |c: &Constraint<'g>| {
+            let x = assembly.system.frame().coordinates().iter().filter(|x| !left.contains(x));
+            x.clone().any(|&x| c.expression().depends_on(x))
+        };
+        Ok((
+            name,
+            Derived {
+                equations: assembly.placed(free.system.poincare())?,
+                quasi_velocities: free.defined(),
+                reactions: Vec::new(),
+                constraints: plain.constraints.into_iter().filter(|(c, _)| !gone(c)).collect(),
+                ..plain
+            },
+        ))
     }
 
     fn of(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), NonholoError> {
@@ -42,6 +84,7 @@ impl<'g> Derived<'g> {
             vanishing: Vec::new(),
             constraints: constraints.iter().cloned().zip(kinds.clone()).collect(),
             definitions: Vec::new(),
+            quasi_velocities: Vec::new(),
             reactions: Vec::new(),
             energy_remark: energy_remark(assembly),
         };
@@ -67,7 +110,10 @@ impl<'g> Derived<'g> {
                 let lagrange = held.equations().system();
                 let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
                 at.push((lagrange.frame().time(), assembly.t_start));
-                let voronets = Voronets::new(&held, &at)?;
+                let voronets = match bound.asked_for() {
+                    [] => Voronets::shortest(&held, &at)?,
+                    independent => Voronets::new(&held.with_independent(independent, &at)?, &at)?,
+                };
                 let name =
                     if voronets.is_chaplygin() { "Chaplygin's equations" } else { "Voronets' equations" };
                 (name, with(voronets.system()?.poincare()?, &held))
@@ -78,7 +124,7 @@ impl<'g> Derived<'g> {
                 let name = "Poincaré's equations with multipliers";
                 (name, Derived { reactions, ..with(system.poincare()?, held) })
             }
-            (Form::Poincare | Form::Canonical, _) => {
+            (_, _) => {
                 let reduced = bound.constrained(&assembly.at_start())?;
                 let name = "Poincaré's equations";
                 match (reduced, multipliers) {

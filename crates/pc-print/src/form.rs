@@ -1,5 +1,7 @@
 //! The forms of the equations of motion.
 
+use pc_model::Variables;
+
 /// Form of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -11,4 +13,49 @@ pub enum Form {
     Lagrange,
     /// Equations for independent velocities.
     Voronets,
+    /// Equations for the quasi-velocities without coordinates that nothing depends on: Euler–Poincaré.
+    Reduced,
+    /// Those for the momenta: Lie–Poisson.
+    LiePoisson,
+    /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Equations for quasi-velocities given beside the text.
+    Hamel,
+}
+
+impl Form {
+    /// The variables of its state; none of the forms in velocities, which are only printed.
+    pub fn variables(self) -> Option<Variables> {
+        Some(match self {
+            Form::Poincare => Variables::QuasiVelocities,
+            Form::Canonical => Variables::Momenta,
+            Form::Reduced => Variables::Reduced,
+            Form::LiePoisson => Variables::ReducedMomenta,
+            Form::Orthonormal => Variables::Orthonormal,
+            Form::Hamel => Variables::Given,
+            Form::Lagrange | Form::Voronets => return None,
+        })
+    }
+
+    /// What it is called on a command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Lagrange => "lagrange",
+            Form::Voronets => "voronets",
+            other => other.variables().map_or("", Variables::name),
+        }
+    }
+}
+
+impl From<Variables> for Form {
+    fn from(variables: Variables) -> Form {
+        match variables {
+            Variables::QuasiVelocities => Form::Poincare,
+            Variables::Momenta => Form::Canonical,
+            Variables::Reduced => Form::Reduced,
+            Variables::ReducedMomenta => Form::LiePoisson,
+            Variables::Orthonormal => Form::Orthonormal,
+            Variables::Given => Form::Hamel,
+        }
+    }
 }

@@ -42,6 +42,10 @@ pub(crate) fn page(
         let states = sheet.states.iter().map(|(rate, value)| (name(rate), text.line(*value)));
         put("states", Value::Object(states.collect()));
     }
+    if !sheet.changed.is_empty() {
+        let changed = sheet.changed.iter().map(|(eta, value)| (eta.to_string(), text.line(*value)));
+        put("quasi_velocity_definitions", Value::Object(changed.collect()));
+    }
     if !sheet.constraints.is_empty() {
         let constraint = |(name, left, kind): &(String, Expr<'_>, _)| json!({ "name": name, "expression": text.line(*left), "kind": kind_in_words(*kind) });
         put("constraints", sheet.constraints.iter().map(constraint).collect());
@@ -132,6 +136,7 @@ impl<'p> Sheet<'p> {
             self.brackets.nonzero.iter().flat_map(|bracket| bracket.components.iter().map(|&(_, c)| c));
         let mut all: Vec<Expr<'p>> = [b.concat(), b_0.clone(), structure.collect()].concat();
         all.extend(second(&self.states));
+        all.extend(second(&self.changed));
         all.extend(self.constraints.iter().map(|&(_, left, _)| left));
         match &self.balance {
             Balance::Velocities { mass, right, .. } => {

@@ -49,13 +49,17 @@ impl Operations {
         // Parameters, and what else stands in the equations: external forces, reactions.
         let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
         let inputs = Inputs { time: Some(time), parameters: others.collect(), state };
-        let numbers: Vec<_> =
-            system.parameters().iter().map(|&(symbol, value)| (symbol, value.into())).collect();
-        let bound = graph.substitute(rates, &numbers);
-        Ok(Operations {
-            free: Program::new(graph, &inputs, rates)?.cost(),
-            bound: Program::new(graph, &inputs, &bound)?.cost(),
-        })
+        let numbers = system.parameters();
+        let free = Program::new(graph, &inputs, rates)?;
+        // What is left of the free program is shorter where numbers multiplied out make more sums than there are with parameters.
+        let folded = free.bound_where(|name| {
+            let number = numbers.iter().find(|(symbol, _)| symbol.symbol_name().as_deref() == Some(name));
+            number.map(|&(_, value)| value)
+        });
+        let substituted: Vec<_> = numbers.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
+        let substituted = Program::new(graph, &inputs, &graph.substitute(rates, &substituted))?;
+        let bound = [substituted.cost(), folded.cost()].into_iter().min_by_key(Cost::total);
+        Ok(Operations { bound: bound.unwrap_or_default(), free: free.cost() })
     }
 }
 

@@ -36,13 +36,14 @@ pub fn page(
 ) -> Result<String, ModelError> {
     let (name, derived) = Derived::new(form, assembly)?;
     let paper = assembly.system.graph().page(Folding::Structural);
-    let (name, sheet, operations) = match form {
-        Form::Canonical => {
-            let equations = assembly.placed(assembly.free_system()?.canonical())?;
+    let (name, sheet, operations) = match form.variables().filter(|variables| variables.has_momenta()) {
+        Some(variables) => {
+            let equations = assembly.placed(assembly.free_form(variables)?.system.canonical())?;
             let sheet = Sheet::of_momenta(assembly, &derived, &equations, &paper);
-            ("canonical equations", sheet, Operations::of_canonical(&equations))
+            let name = if form == Form::Canonical { "canonical equations" } else { name };
+            (name, sheet, Operations::of_canonical(&equations))
         }
-        _ => {
+        None => {
             let sheet = Sheet::of_velocities(assembly, &derived, &paper);
             (name, sheet, Operations::of(&derived.equations))
         }

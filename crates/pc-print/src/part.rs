@@ -104,8 +104,7 @@ impl<'p> Parts<'p> {
             .collect();
         if !velocities.is_empty() {
             // Where they are used, they are said before.
-            parts.insert(1, Part { heading: Heading::QuasiVelocities, rows: velocities });
-            parts.sort_by_key(|part| part.heading != Heading::QuasiVelocities);
+            parts.insert(0, Part { heading: Heading::QuasiVelocities, rows: velocities });
             named = names(&parts, &given, layout, page);
         }
         parts.retain(|part| !part.rows.is_empty() || part.heading == Heading::Brackets);
@@ -158,6 +157,7 @@ impl<'p> Sheet<'p> {
         let brackets = brackets.map(|bracket| Row::Bracket(bracket.clone()));
         let mut parts = vec![
             part(Heading::Constraints, constraints.collect()),
+            part(Heading::QuasiVelocities, equations(&self.changed)),
             part(Heading::Kinematics, equations(&self.rates)),
             part(Heading::Brackets, brackets.collect()),
         ];

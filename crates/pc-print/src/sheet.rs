@@ -23,6 +23,8 @@ pub struct Sheet<'p> {
     pub coordinates: Vec<Expr<'p>>,
     /// Independent quasi-velocities η, those of the equations.
     pub quasi_velocities: Vec<Expr<'p>>,
+    /// The quasi-velocities that are not those of the model, each with what it is.
+    pub changed: Vec<(Expr<'p>, Expr<'p>)>,
     /// What vanishes, by the names of the constraints.
     pub constraints: Vec<(String, Expr<'p>, Kind)>,
     /// The matrix b and the column b_0 of ẋ = b η + b_0 (3).
@@ -222,6 +224,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             })
             .collect();
         let reactions = derived.reactions.iter().map(|&(name, value)| (self.one(name), self.one(value)));
+        let changed = derived.quasi_velocities.iter().map(|&(eta, value)| (self.one(eta), self.one(value)));
         let definitions = assembly.definitions.iter();
         let definitions = definitions
             .map(|(name, value)| Given { name: name.clone(), value: self.one(*value), shorthand: false })
@@ -234,6 +237,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
                 .collect(),
             coordinates: self.all(frame.coordinates()),
             quasi_velocities: self.all(system.quasi_velocities()),
+            changed: changed.collect(),
             constraints,
             frame: (self.rows(&frame.b().to_rows()), self.all(frame.b0())),
             rates: with_rates(frame.coordinates(), parts.velocities),

@@ -2,6 +2,7 @@
 
 use pc_mech::{Folding, Graph};
 use pc_model::{Assembly, Flow, Model, Variables};
+use pc_print::Form;
 
 use crate::agreement::{Agreement, Passed};
 use crate::equations::Derived;
@@ -9,7 +10,7 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::first::First;
 use crate::here::Here;
 use crate::place::Place;
-use crate::printed::{FORMS, printed_name};
+use crate::printed::{FORMS, is_reduced, printed_name};
 use crate::projected::Layout;
 use crate::quantity::Quantity;
 use crate::rounding::{Rounding, UNIT, within};
@@ -114,17 +115,44 @@ fn others<'g>(
         Ok(flow) => firsts.push(First::flow("canonical", flow, second, assembly, agreement)),
         Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
     }
+    let changed = [Variables::Reduced, Variables::ReducedMomenta, Variables::Orthonormal, Variables::Given];
+    for variables in changed {
+        if assembly.constraints.held().is_some()
+            || second.too_large_for(variables.into(), plain).is_some()
+            || !has_form(variables, assembly)
+        {
+            continue;
+        }
+        match Flow::new(observed, assembly, variables) {
+            Ok(flow) => firsts.push(First::flow(variables.name(), flow, second, assembly, agreement)),
+            Err(error) => agreement.leave_out(variables.name(), &error.diagnostic().message),
+        }
+    }
     match First::emitted(plain, second, agreement) {
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }
     for form in FORMS {
         match second.too_large_for(form, plain) {
-            Some(reason) => agreement.leave_out(&printed_name(form), reason),
+            // Forms that no run has by itself are compared where that is soon done.
+            Some(reason) if form.variables().is_none_or(Variables::are_own) || form == Form::Hamel => {
+                agreement.leave_out(&printed_name(form), reason);
+            }
+            Some(_) => {}
             None => firsts.extend(First::printed(form, plain, second, page, agreement)),
         }
     }
     firsts
+}
+
+/// Whether equations in these variables are others than those compared already.
+fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
+    match variables {
+        Variables::Reduced | Variables::ReducedMomenta => is_reduced(assembly) && assembly.events.is_empty(),
+        Variables::Given => !assembly.given.is_empty(),
+        Variables::Orthonormal => assembly.free_form(variables).is_ok(),
+        Variables::QuasiVelocities | Variables::Momenta => true,
+    }
 }
 
 /// A large model in quasi-velocities.
@@ -188,11 +216,10 @@ impl Second {
         state: &[f64],
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
-        if self.cost() > LONG && !flow.has_momenta() {
+        if self.cost() > LONG && !self.is_long(&flow) {
             return self.agrees_projected(form, flow, t, state, agreement);
         }
-        let mut row = flow.row(t, state);
-        row.truncate(flow.names.len());
+        let row = self.row(&mut flow, t, state);
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
         let compared = self.place(t, &row).map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
@@ -211,8 +238,7 @@ impl Second {
         state: &[f64],
         mut agreement: Agreement,
     ) -> Result<Agreement, VerifyError> {
-        let mut row = flow.row(t, state);
-        row.truncate(flow.names.len());
+        let row = self.row(&mut flow, t, state);
         let layout = Layout::of(&flow, &self.columns);
         let mut large = Projection { flow, layout };
         let place = self.place(t, &row).map_err(Passed::from);

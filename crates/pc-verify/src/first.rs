@@ -36,7 +36,7 @@ enum Values<'g> {
     /// The expressions that are printed.
     Printed(Box<Printed<'g>>),
     /// What is integrated, with what each quasi-velocity of the system is.
-    Flow { flow: Box<Flow>, quasi_velocities: Vec<Option<Free>> },
+    Flow { flow: Box<Flow>, coordinates: Vec<usize>, quasi_velocities: Vec<Option<Free>> },
     /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
     /// state.
     Emitted {
@@ -79,11 +79,15 @@ impl<'g> First<'g> {
         let quasi_velocities = names.iter().map(|name| second.free(name)).collect();
         let n = flow.motion.coordinates();
         let state = flow.motion.names();
-        let canonical = flow.has_momenta();
+        let place = |name: &String| second.derivation.text.names.coordinates.iter().position(|x| x == name);
+        let coordinates = state[..n].iter().filter_map(place).collect();
+        let (canonical, is_changed) = (flow.has_momenta(), !flow.has_own_variables());
         let columns = flow.free_quasi_velocities().iter().map(|&s| second.free(&names[s]));
         let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
         let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
         let moving = n..state.len() - flow.motion.states();
+        // Quasi-velocities that the model does not have, and their rates, are compared as those that it has.
+        let is_strange = |i: &usize| is_changed && moving.contains(i);
         for (i, name) in state.iter().enumerate() {
             let momentum = (canonical && moving.contains(&i)).then(|| {
                 let known = free.is_some();
@@ -93,7 +97,11 @@ impl<'g> First<'g> {
         }
         for (i, name) in state.iter().enumerate() {
             let momentum = || free.is_some().then(|| Quantity::MomentumRate(i - n));
-            let rate = if canonical && moving.contains(&i) { momentum() } else { second.rate(name) };
+            let rate = match canonical && moving.contains(&i) {
+                true => momentum(),
+                false if is_strange(&i) => Some(Quantity::Zero),
+                false => second.rate(name),
+            };
             candidates.push((format!("the rate of {name}"), rate));
         }
         let shown = flow.names.len() - flow.motion.states();
@@ -105,15 +113,19 @@ impl<'g> First<'g> {
         candidates.extend(
             flow.motion.observable_names().iter().map(|name| (name.clone(), second.observable(name))),
         );
+        if is_changed {
+            candidates.extend(names.iter().map(|name| (format!("the rate of {name}"), second.rate(name))));
+        }
         // What is given to it: coordinates, first-order states, and the quasi-velocities where these are its state.
         let (dim, columns) = (state.len(), 2 * state.len());
         let inputs = [
             0..if canonical { n } else { dim },
             moving.end..dim,
+            if is_changed { dim + n..dim + moving.end } else { 0..0 },
             columns..columns + n,
             columns + shown..columns + flow.names.len(),
         ];
-        let source = Values::Flow { flow: Box::new(flow), quasi_velocities };
+        let source = Values::Flow { flow: Box::new(flow), coordinates, quasi_velocities };
         First::comparing(form, candidates, &inputs, free, source, agreement)
     }
 
@@ -221,9 +233,9 @@ impl<'g> First<'g> {
         let velocity = |free: &Free| here.velocity(*free);
         let refused = |message: String| Irregular::Refused { form: form.clone(), message };
         let values = match &mut self.source {
-            Values::Printed(printed) => printed.values(second, here, free.unwrap_or_default())?,
-            Values::Flow { flow, quasi_velocities } => {
-                let mut all = at.x.clone();
+            Values::Printed(printed) => printed.values(second, here, free.unwrap_or_default(), rounding)?,
+            Values::Flow { flow, coordinates, quasi_velocities } => {
+                let mut all: Vec<f64> = coordinates.iter().map(|&i| at.x[i]).collect();
                 all.extend(quasi_velocities.iter().map(|free| free.as_ref().map_or(0.0, velocity)));
                 all.extend(&at.z);
                 let mut state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
@@ -235,7 +247,8 @@ impl<'g> First<'g> {
                 let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
                 evaluated.map_err(|failure| refused(failure.to_string()))?;
                 let row = flow.row(at.t, &state);
-                [state, rates, row].concat()
+                let own = flow.rates_of_quasi_velocities(at.t, &state, &rates).unwrap_or_default();
+                [state, rates, row, own].concat()
             }
             Values::Emitted { motion, free, energy_rate, tables } => {
                 for (place, table) in tables {

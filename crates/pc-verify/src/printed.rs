@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
 use pc_mech::{Canonical, Expr, Graph};
-use pc_model::Assembly;
+use pc_model::{Assembly, FreeForm, Variables};
 use pc_print::{Balance, Derived, Form, Sheet};
 
 use crate::derivation::Derivation;
@@ -15,17 +15,20 @@ use crate::rounding::Rounding;
 use crate::second::Second;
 
 /// The forms that are printed.
-pub(crate) const FORMS: [Form; 4] = [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Voronets];
+pub(crate) const FORMS: [Form; 8] = [
+    Form::Poincare,
+    Form::Canonical,
+    Form::Lagrange,
+    Form::Voronets,
+    Form::Reduced,
+    Form::LiePoisson,
+    Form::Orthonormal,
+    Form::Hamel,
+];
 
 /// What a printed form is called.
 pub(crate) fn printed_name(form: Form) -> String {
-    let form = match form {
-        Form::Poincare => "poincare",
-        Form::Canonical => "canonical",
-        Form::Lagrange => "lagrange",
-        Form::Voronets => "voronets",
-    };
-    format!("{form} as printed")
+    format!("{} as printed", form.name())
 }
 
 /// What is compared, with its name.
@@ -42,6 +45,19 @@ pub(crate) struct Printed<'g> {
     direct: Vec<(Side, Expr<'g>)>,
     /// The symbols, with what they stand for.
     inputs: Vec<(Expr<'g>, Input)>,
+    /// Where the quasi-velocities are not those of the model.
+    change: Option<Change<'g>>,
+}
+
+/// Quasi-velocities that are not those of the model, on the page.
+struct Change<'g> {
+    /// They and their rates.
+    symbols: Vec<Expr<'g>>,
+    accelerations: Vec<Expr<'g>>,
+    /// What they are in terms of the independent ones of the model.
+    definitions: Vec<Expr<'g>>,
+    /// The rates of these in terms of them.
+    rates: Vec<Expr<'g>>,
 }
 
 /// A left side.
@@ -98,13 +114,24 @@ impl<'g> Printed<'g> {
         let sheet = match form {
             // The same as Lagrange's.
             Form::Voronets if assembly.constraints.multipliers().is_none() => return None,
-            Form::Canonical => {
-                let equations: Canonical<'g> = assembly.free_system().ok()?.canonical().ok()?;
+            Form::Hamel if assembly.given.is_empty() => return None,
+            Form::Reduced | Form::LiePoisson if !is_reduced(assembly) => return None,
+            _ if form.variables().is_some_and(Variables::has_momenta) => {
+                let free = assembly.free_form(form.variables()?).ok()?;
+                let equations: Canonical<'g> = free.system.canonical().ok()?;
                 Sheet::of_momenta(assembly, &derived, &equations, page)
             }
             _ => Sheet::of_velocities(assembly, &derived, page),
         };
-        let quasi_velocities: Vec<String> = sheet.quasi_velocities.iter().map(Expr::to_string).collect();
+        let change = match form {
+            Form::Orthonormal | Form::Hamel => Some(assembly.free_form(form.variables()?).ok()?),
+            _ => None,
+        };
+        let quasi_velocities: Vec<String> = match &change {
+            Some(change) => change.independent.iter().map(Expr::to_string).collect(),
+            None => sheet.quasi_velocities.iter().map(Expr::to_string).collect(),
+        };
+        let change = change.map(|change| Change::of(&change, page));
         let rate = |&(rate, value): &(Expr<'g>, Expr<'g>)| {
             (Side::Rate(rate.to_string().trim_end_matches('\'').to_owned()), value)
         };
@@ -117,7 +144,7 @@ impl<'g> Printed<'g> {
             let solved = quasi_velocities.iter().zip(solved);
             direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
         }
-        Some(Printed { form, page, sheet, quasi_velocities, direct, inputs: Vec::new() })
+        Some(Printed { form, page, sheet, quasi_velocities, direct, inputs: Vec::new(), change })
     }
 
     /// The name of the form.
@@ -146,6 +173,9 @@ impl<'g> Printed<'g> {
             {
                 continue; // an acceleration, by the equations themselves
             }
+            if self.change.as_ref().is_some_and(|change| change.has(symbol)) {
+                continue; // it follows from the definitions
+            }
             let momentum = momenta.iter().position(|y| *y == name).map(Input::Momentum);
             let outside = || external.contains(&name).then_some(Input::External);
             let input = momentum.or_else(|| second.input(&name)).or_else(outside);
@@ -159,7 +189,7 @@ impl<'g> Printed<'g> {
         });
         let mut candidates: Candidates = direct.collect();
         for way in ["", ", multiplied out"] {
-            if self.form == Form::Canonical {
+            if self.has_momenta() {
                 let rates = (0..).zip(&momenta);
                 candidates.extend(
                     rates.map(|(s, y)| (format!("the rate of {y}{way}"), Some(Quantity::MomentumRate(s)))),
@@ -198,7 +228,13 @@ impl<'g> Printed<'g> {
         let (mass, [right, written]) = self.balance();
         let direct = self.direct.iter().map(|&(_, value)| value);
         let reactions = self.sheet.reactions.iter().map(|&(_, value)| value);
-        direct.chain(mass).chain(right.to_vec()).chain(written.to_vec()).chain(reactions).collect()
+        let change = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
+        let own = direct.chain(mass).chain(right.to_vec()).chain(written.to_vec()).chain(reactions);
+        own.chain(change.copied()).collect()
+    }
+
+    fn has_momenta(&self) -> bool {
+        self.form.variables().is_some_and(Variables::has_momenta)
     }
 
     /// The right sides of what is printed, M η̇ = r being solved, with the momenta of the second derivation where these are the
@@ -208,6 +244,7 @@ impl<'g> Printed<'g> {
         second: &Derivation,
         here: &Here,
         free: &[Free],
+        rounding: &Rounding,
     ) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
         let wanted: Vec<Quantity> = (0..self.momenta().len()).map(Quantity::Momentum).collect();
@@ -219,7 +256,8 @@ impl<'g> Printed<'g> {
             Input::State(j) => here.derived.place.z[j],
             Input::Parameter(j) => still.parameter(j),
             Input::Velocity(free) => here.velocity(free),
-            Input::Momentum(s) => momenta[s].value,
+            // Momenta are rounded as well, and much of the velocities may be in their last digits.
+            Input::Momentum(s) => rounding.of(momenta[s].value),
             Input::Reaction(a) => {
                 let place = second.kept.iter().position(|&kept| kept == a);
                 place.map_or(0.0, |place| here.derived.reactions[place])
@@ -230,6 +268,10 @@ impl<'g> Printed<'g> {
         let refused = |error: ExprError| Irregular::Refused { form: self.name(), message: error.to_string() };
         let evaluate =
             |list: &[Expr<'g>], at: &[(Expr<'g>, f64)]| self.page.evaluate(list, at).map_err(refused);
+        if let Some(change) = &self.change {
+            let values = evaluate(&change.definitions, &at)?;
+            at.extend(change.symbols.iter().copied().zip(values));
+        }
         let direct: Vec<Expr<'g>> = self.direct.iter().map(|&(_, value)| value).collect();
         let mut values = evaluate(&direct, &at)?;
         let (mass, ways) = self.balance();
@@ -237,16 +279,26 @@ impl<'g> Printed<'g> {
         let mut rates = Vec::new();
         for right in ways {
             let right = evaluate(right, &at)?;
-            rates = if self.form == Form::Canonical {
+            rates = if self.has_momenta() {
                 right
             } else {
                 let k = right.len();
                 let mass = DMatrix::from_fn(k, k, |r, s| mass[r * k + s]);
                 solve(&mass, &right, &right)?.values
             };
-            values.extend(&rates);
+            match &self.change {
+                None => values.extend(&rates),
+                Some(change) => {
+                    let moving = change.accelerations.iter().copied().zip(rates.iter().copied());
+                    values.extend(evaluate(
+                        &change.rates,
+                        &at.iter().copied().chain(moving).collect::<Vec<_>>(),
+                    )?);
+                }
+            }
         }
-        let accelerations = self.quasi_velocities.iter().map(|eta| self.page.symbol(&format!("{eta}'")));
+        let accelerations = self.sheet.quasi_velocities.iter();
+        let accelerations = accelerations.map(|eta| self.page.symbol(&format!("{eta}'")));
         at.extend(accelerations.zip(rates));
         let reactions: Vec<Expr<'g>> = self.sheet.reactions.iter().map(|&(_, value)| value).collect();
         values.extend(evaluate(&reactions, &at)?);
@@ -255,4 +307,34 @@ impl<'g> Printed<'g> {
             false => Err(Irregular::NotFinite { what: "what is printed" }),
         }
     }
+}
+
+impl<'g> Change<'g> {
+    fn of(form: &FreeForm<'g>, page: &'g Graph) -> Change<'g> {
+        let (system, graph) = (&form.system, form.system.graph());
+        let (eta, frame, accelerations) = (system.quasi_velocities(), system.frame(), system.accelerations());
+        let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
+            .chain(eta.iter().copied().zip(accelerations.iter().copied()))
+            .chain([(frame.time(), 1.into())])
+            .collect();
+        Change {
+            symbols: graph.transcribe(eta, page),
+            rates: graph.transcribe(&graph.directional(&form.values, &along), page),
+            definitions: graph.transcribe(&form.definitions, page),
+            accelerations: graph.transcribe(&accelerations, page),
+        }
+    }
+
+    /// Whether a symbol is one of them, and none of the model, or the rate of one.
+    fn has(&self, symbol: Expr<'g>) -> bool {
+        let place = self.symbols.iter().position(|&eta| eta == symbol);
+        place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)
+    }
+}
+
+/// Whether there are coordinates that nothing depends on.
+pub(crate) fn is_reduced(assembly: &Assembly<'_>) -> bool {
+    let left = assembly.free_form(Variables::Reduced);
+    let all = assembly.system.frame().coordinates().len();
+    left.is_ok_and(|left| left.system.frame().coordinates().len() < all)
 }

@@ -34,6 +34,9 @@ const FEWEST: usize = 3;
 /// a second, and ten times that with each two more.
 const MOST_INVERTED: usize = 9;
 
+/// Velocities up to which an orthonormal frame is made to be compared: its roots stand within roots.
+const MOST_ORTHONORMAL: usize = 3;
+
 /// The second derivation of a model.
 #[derive(Clone, Debug)]
 pub struct Second {
@@ -218,7 +221,8 @@ impl Second {
 
     /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
     pub fn is_long(&self, flow: &Flow) -> bool {
-        self.cost() > LONG && flow.has_momenta()
+        let is_own = flow.has_own_variables() && flow.motion.coordinates() == self.start.x.len();
+        self.cost() > LONG && (flow.has_momenta() || !is_own)
     }
 
     /// Why a printed form is not derived only to be compared.
@@ -226,10 +230,30 @@ impl Second {
         if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
             return None; // the same as Lagrange's, and not derived
         }
-        if form == Form::Canonical && assembly.system.quasi_velocities().len() > MOST_INVERTED {
-            return Some("the mass matrix would be inverted in symbols");
+        let quasi_velocities = assembly.system.quasi_velocities().len();
+        if form == Form::Hamel && assembly.given.is_empty() {
+            return None; // not derived
+        }
+        let inverted = matches!(form, Form::Canonical | Form::LiePoisson | Form::Hamel);
+        if inverted && quasi_velocities > MOST_INVERTED {
+            return Some("a matrix would be inverted in symbols");
+        }
+        if form == Form::Orthonormal && quasi_velocities > MOST_ORTHONORMAL {
+            return Some("the mass matrix would be factorised in symbols");
         }
         (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
+    }
+
+    /// The row of coordinates, columns and first-order states of what a flow shows; coordinates that it does without are as at the
+    /// start.
+    pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
+        let shown = flow.row(t, state);
+        let names = &self.derivation.text.names;
+        let known = |name: &String| Some(shown[flow.names.iter().position(|shown| shown == name)?]);
+        let coordinates = names.coordinates.iter().zip(&self.start.x);
+        let coordinates = coordinates.map(|(name, &start)| known(name).unwrap_or(start));
+        let others = self.columns.iter().chain(&names.states).map(|name| known(name).unwrap_or(f64::NAN));
+        coordinates.chain(others).collect()
     }
 
     /// At how many of so many states all equations are compared.

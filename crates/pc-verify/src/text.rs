@@ -106,8 +106,11 @@ impl Text {
         let part = |part: Option<&Expression>| part.map(term).transpose();
         let tables = model.parameter_values().tables();
         let observed = document.integrals.iter().chain(&document.outputs);
+        let observed = observed.map(|observed| (observed.name.text.clone(), &observed.expression));
+        let given = model.given_quasi_velocities().iter();
+        let given = given.map(|given| (given.name().to_owned(), given.expression()));
         let observed =
-            observed.filter_map(|o| Some((o.name.text.clone(), term(&o.expression).ok()?))).collect();
+            observed.chain(given).filter_map(|(name, value)| Some((name, term(value).ok()?))).collect();
         let bodies = document.bodies.iter().map(|body| {
             Ok(Body {
                 mass: term(&body.mass)?,

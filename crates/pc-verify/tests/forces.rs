@@ -32,8 +32,9 @@ w = "x*u"
 fn forces_of_every_kind_are_derived_alike_by_both_routes() {
     let model = Model::new(Document::parse(Source::new("forces.toml", MODEL)).unwrap());
     let agreement = verify(&model, &Options::default()).unwrap();
-    let printed = ["poincare as printed", "canonical as printed", "lagrange as printed"];
-    let forms = [&["poincare", "canonical", "emit"][..], &printed].concat();
+    let printed =
+        ["poincare as printed", "canonical as printed", "lagrange as printed", "orthonormal as printed"];
+    let forms = [&["poincare", "canonical", "orthonormal", "emit"][..], &printed].concat();
     assert_eq!((agreement.states, agreement.forms.join(", ")), (100, forms.join(", ")), "{agreement:?}");
     assert!(agreement.error < 1e-13 && agreement.not_compared.is_empty(), "{agreement:?}");
 }

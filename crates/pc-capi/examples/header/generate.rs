@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 31] = [
+const FILES: [&str; 32] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -64,6 +64,7 @@ const FILES: [&str; 31] = [
     "api/system.rs",
     "api/names.rs",
     "api/force.rs",
+    "api/velocities.rs",
     "api/rates.rs",
     "api/observe.rs",
     "api/events.rs",

@@ -40,7 +40,7 @@ pub unsafe extern "C" fn pc_system_bracket(
         let (y, value) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         // SAFETY: null or text, as the preamble demands.
         let (f, g) = unsafe { (text(f, "f")?, text(g, "g")?) };
-        let mut bracket = inventory.derive(|model| derived(&model, f, g))?;
+        let mut bracket = inventory.derive(|model| derived(inventory, &model, f, g))?;
         inner.read_quasi_velocities(inventory, t, y)?;
         evaluate(&mut bracket, (t, &inner.room.state, inner.field.parameters()), value)
     };
@@ -49,11 +49,15 @@ pub unsafe extern "C" fn pc_system_bracket(
 }
 
 /// (f, g) as a function of t and (x, η), η those of the state.
-fn derived(model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
+fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     if assembly.constraints.nonlinear().is_some() {
         let why = "a constraint is not affine in the velocities";
+        return Err(CallError::Unsupported { what: "a bracket", why });
+    }
+    if !inventory.variables.are_own() {
+        let why = "the system is in other coordinates and quasi-velocities than those of the model";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }
     let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
@@ -72,7 +76,7 @@ fn derived(model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
     let value = placed(&assembly, bracket.of(in_momenta(f)?, in_momenta(g)?))?;
     let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
     let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = assembly.equations_in()?;
+    let equations = assembly.equations_in(::pc_model::Variables::QuasiVelocities)?;
     Ok(assembly.placed(compile(&equations, &[value], &[]))?)
 }
 

@@ -1,6 +1,5 @@
 //! The parts of the equations: mass matrix, structure coefficients, residual.
 
-use ::pc_model::Variables;
 use pc_mech::{EvaluationError, MassFactors, MechError, SingularMatrix, VectorField};
 
 use crate::api::rates::{State, Target, slices};
@@ -34,8 +33,8 @@ impl Inner {
         y: &[f64],
     ) -> Result<(), CallError> {
         match inventory.variables {
-            Variables::QuasiVelocities => self.room.state.copy_from_slice(y),
-            Variables::Momenta => {
+            variables if !variables.has_momenta() => self.room.state.copy_from_slice(y),
+            _ => {
                 self.derive_legendre(inventory)?;
                 if let Some(transform) = &mut self.legendre {
                     transform.to_quasi_velocities_in(t, y, &mut self.room.state)?;
@@ -226,7 +225,7 @@ pub unsafe extern "C" fn pc_system_residual(
             for (rate, right) in rates.iter_mut().zip(&*residual) {
                 *rate -= right;
             }
-            if inventory.variables == Variables::Momenta {
+            if inventory.variables.has_momenta() {
                 residual.copy_from_slice(rates);
                 return Ok(());
             }

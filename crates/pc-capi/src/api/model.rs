@@ -26,6 +26,10 @@ pub(crate) struct Contents {
     kept: Vec<String>,
     /// On what external forces act.
     pub(crate) external: Vec<String>,
+    /// Quasi-velocities beside those of the model, with their definitions.
+    pub(crate) given: Vec<(String, String)>,
+    /// Independent velocities that are asked for.
+    pub(crate) independent: Vec<String>,
     projects_start: bool,
     /// What a start that is moved keeps.
     held: Vec<String>,
@@ -52,6 +56,10 @@ impl Contents {
         for on in &self.external {
             model.external_force(on)?;
         }
+        for (name, definition) in &self.given {
+            model.give_quasi_velocity(name, definition)?;
+        }
+        model.choose_independent(self.independent.iter());
         model.project_start(self.projects_start);
         for name in &self.held {
             model.hold_start(name)?;
@@ -67,6 +75,8 @@ pub(crate) fn boxed(origin: Origin) -> *mut pc_model {
         origin,
         kept: Vec::new(),
         external: Vec::new(),
+        given: Vec::new(),
+        independent: Vec::new(),
         projects_start: false,
         held: Vec::new(),
         observes_reactions: false,
@@ -314,7 +324,8 @@ pub unsafe extern "C" fn pc_model_differentiate(
 /// text that these wrote; lines and columns of errors are counted in it. What no text says is not
 /// in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
 /// pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
-/// pc_model_differentiate, pc_model_add_external_force.
+/// pc_model_differentiate, pc_model_add_external_force, pc_model_give_quasi_velocity,
+/// pc_model_add_independent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

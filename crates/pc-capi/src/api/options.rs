@@ -19,6 +19,17 @@ pub enum pc_form {
     PC_POINCARE = 0,
     /// Chetaev's canonical equations, of momenta.
     PC_CANONICAL = 1,
+    /// Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
+    /// left; the state has fewer coordinates. Where multipliers hold constraints,
+    /// PC_INCONSISTENT_MODEL, as with all that follow, unless pc_model_add_independent says which
+    /// velocities are independent.
+    PC_REDUCED = 2,
+    /// The same in momenta: Lie–Poisson equations.
+    PC_LIE_POISSON = 3,
+    /// Poincaré's of quasi-velocities that are orthonormal in the kinetic metric.
+    PC_ORTHONORMAL = 4,
+    /// Hamel's, of the quasi-velocities that pc_model_give_quasi_velocity gives.
+    PC_HAMEL = 5,
 }
 
 /// What to derive. Set it up with pc_system_options_init.
@@ -62,6 +73,10 @@ impl pc_system_options {
         match self.form {
             0 => Ok(Variables::QuasiVelocities),
             1 => Ok(Variables::Momenta),
+            2 => Ok(Variables::Reduced),
+            3 => Ok(Variables::ReducedMomenta),
+            4 => Ok(Variables::Orthonormal),
+            5 => Ok(Variables::Given),
             value => Err(CallError::Choice { what: "pc_form", value: value.into() }),
         }
     }

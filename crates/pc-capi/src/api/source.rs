@@ -59,10 +59,7 @@ pub unsafe extern "C" fn pc_system_print(
 fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    let form = match inventory.variables {
-        Variables::QuasiVelocities => Form::Poincare,
-        Variables::Momenta => Form::Canonical,
-    };
+    let form = Form::from(inventory.variables);
     Ok(pc_print::page(form, page, &Layout::default(), model.title(), &assembly)?)
 }
 
@@ -70,11 +67,12 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
 /// and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
 /// other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
 /// `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
-/// energy, the integrals and the outputs of independent quasi-velocities, whatever the form of
-/// the system, and says at its head how it is used. External forces are parameters of it, after
-/// the others, called `Q_` and the name of their quasi-velocity, and stay zero until they are
-/// set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
-/// integrates from the start of the model to that time. Free both texts with pc_string_free.
+/// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
+/// where the system has these, and says at its head how it is used. External forces are
+/// parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and stay
+/// zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
+/// capitals) to a program that integrates from the start of the model to that time. Free both
+/// texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,
@@ -91,7 +89,8 @@ pub unsafe extern "C" fn pc_system_emit_c(
         let name = unsafe { text(name, "name") }?;
         // SAFETY: as the preamble demands.
         let inventory = &unsafe { handle(system, "system") }?.inventory;
-        let [written_header, written_source] = inventory.derive(|model| emitted(&model, name, t_end))?;
+        let [written_header, written_source] =
+            inventory.derive(|model| emitted(inventory, &model, name, t_end))?;
         // SAFETY: as the preamble demands; neither is null, so that both texts are handed over.
         unsafe {
             write(header, give(&written_header), "header")?;
@@ -102,10 +101,16 @@ pub unsafe extern "C" fn pc_system_emit_c(
     unsafe { entry(error, emit) }
 }
 
-fn emitted(model: &Model, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
+fn emitted(inventory: &Inventory, model: &Model, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    let equations = assembly.equations()?;
+    // Source is in quasi-velocities.
+    let variables = match inventory.variables {
+        Variables::Momenta => Variables::QuasiVelocities,
+        Variables::ReducedMomenta => Variables::Reduced,
+        other => other,
+    };
+    let (equations, form) = assembly.equations_of(variables)?;
     let mut options = EmitOptions::new(Language::C, name);
     if let Some(title) = &model.document().model.name {
         options = options.title(title.value.clone());
@@ -118,8 +123,7 @@ fn emitted(model: &Model, name: &str, t_end: f64) -> Result<[String; 2], CallErr
     }
     // A motion with the inputs of the start would be another.
     if t_end.is_finite() && !has_tables {
-        let state = equations.system().state();
-        options = options.start(assembly.t_start, &assembly.start_of(&state), t_end);
+        options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end);
     }
     let files = assembly.placed(equations.emit(&options))?;
     let mut texts = files.into_iter().map(|file| file.text);

@@ -24,7 +24,7 @@ impl Mechanics {
     pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
         let graph = model.graph();
         let assembly = model.assemble(&graph)?;
-        let equations = assembly.equations_in()?;
+        let equations = assembly.equations_in(variables)?;
         let structure = equations.system().structure();
         let operators = structure.operators();
         let all = || 0..=operators;
@@ -32,8 +32,7 @@ impl Mechanics {
         let coefficients = pairs.flat_map(|(r, s)| (1..=operators).map(move |m| structure.get(r, s, m)));
         let of_states: Vec<Expr<'_>> = equations.system().states().iter().map(|&(_, rate)| rate).collect();
         let right = [equations.velocities(), equations.right_hand_side(), &of_states].concat();
-        let held =
-            matches!(assembly.constraints.formulation(), ::pc_model::ConstraintFormulation::Multipliers(_));
+        let held = assembly.constraints.held().is_some();
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
         let compiled =
@@ -43,7 +42,7 @@ impl Mechanics {
             structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,
             operators,
             right: compiled(&right, &forces)?,
-            complete: variables == Variables::QuasiVelocities && !held,
+            complete: !variables.has_momenta() && !held,
         })
     }
 }

@@ -9,7 +9,7 @@ use pc_mech::{Equations, Graph};
 use pc_model::document::{read_bounded, read_file_bounded};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
 
-use crate::args::options::{ModelArguments, Setting};
+use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
 
 /// The model that the command line names, its parameters set.
@@ -38,6 +38,26 @@ pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
             }
         }
     }
+    Ok(model)
+}
+
+/// The same with the velocities that its equations are to be written in; `is_hamel` says whether they are in those given.
+///
+/// # Errors
+/// As [`open`], and [`CliError::Definitions`] where velocities are given and not asked for.
+pub fn open_in(
+    arguments: &ModelArguments,
+    velocities: &VelocityArguments,
+    is_hamel: bool,
+) -> Result<Model, CliError> {
+    let mut model = open(arguments)?;
+    if !is_hamel && let Some(definition) = velocities.definitions.first() {
+        return Err(CliError::Definitions { name: definition.name.clone() });
+    }
+    for Setting { name, value } in &velocities.definitions {
+        model.give_quasi_velocity(name, value)?;
+    }
+    model.choose_independent(velocities.independent.iter().map(|name| name.trim()));
     Ok(model)
 }
 

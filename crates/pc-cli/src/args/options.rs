@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use pc_model::Variables;
 use pc_model::document::MOST_SAMPLES;
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_form};
 
 /// The model and the values of its parameters.
 #[derive(Clone, Debug, Args)]
@@ -30,6 +30,19 @@ pub struct ModelArguments {
     /// How many seconds all work on the model may take, from its derivation to the end of a motion; no limit unless given
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_time: Option<Duration>,
+}
+
+/// Which velocities the equations are written in.
+#[derive(Clone, Debug, Default, Args)]
+pub struct VelocityArguments {
+    /// With --form hamel: quasi-velocities by linear forms in the velocities x' or the quasi-velocities of the model; those of the
+    /// model complete them
+    #[arg(value_name = "NAME=EXPR", value_parser = definition)]
+    pub definitions: Vec<Setting>,
+    /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many quasi-velocities as the
+    /// constraints leave free, velocities x' with --form voronets; else those whose equations are shortest
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub independent: Vec<String>,
 }
 
 /// A number of bytes: `500M` are 500·2²⁰.
@@ -84,8 +97,13 @@ pub struct DeriveArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
     /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
-    /// are constraints) or voronets (constraints solved for velocities)
+    /// are constraints), voronets (constraints solved for velocities), reduced (without coordinates that nothing depends on:
+    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is so in the kinetic metric) or hamel (in
+    /// the quasi-velocities NAME=EXPR)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = form)]
     pub form: Form,
     /// How to print
@@ -121,6 +139,9 @@ pub struct RunArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
     /// End time; else that of the file
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     pub t_end: Option<f64>,
@@ -142,7 +163,9 @@ pub struct RunArguments {
     /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
-    /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
+    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
+    /// of the file, else poincare. Columns stay the same, but for coordinates that reduced and lie-poisson are without, and NAME of
+    /// hamel behind the outputs
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
     /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
@@ -180,6 +203,15 @@ pub struct EmitArguments {
     /// Language of the source
     #[arg(long)]
     pub lang: Lang,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
+    /// Form of the equations: poincare, reduced, orthonormal or hamel (see `pc derive --help`)
+    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
+    pub form: EmitForm,
+    /// Leave the Jacobian out
+    #[arg(long)]
+    pub no_jacobian: bool,
     /// Directory to write into; it is made if it is not there
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -225,36 +257,12 @@ pub enum Page {
     Json,
 }
 
-/// Form of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Form {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-    /// Equations for the velocities.
-    Lagrange,
-    /// Equations for independent velocities.
-    Voronets,
-}
-
 impl From<Page> for pc_print::Page {
     fn from(page: Page) -> Self {
         match page {
             Page::Text => pc_print::Page::Text,
             Page::Latex => pc_print::Page::Latex,
             Page::Json => pc_print::Page::Json,
-        }
-    }
-}
-
-impl From<Form> for pc_print::Form {
-    fn from(form: Form) -> Self {
-        match form {
-            Form::Poincare => pc_print::Form::Poincare,
-            Form::Canonical => pc_print::Form::Canonical,
-            Form::Lagrange => pc_print::Form::Lagrange,
-            Form::Voronets => pc_print::Form::Voronets,
         }
     }
 }
@@ -266,24 +274,6 @@ pub enum Outputs {
     Reactions,
 }
 
-/// Form of the equations that are integrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RunForm {
-    /// Equations for the quasi-velocities.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-}
-
-impl From<RunForm> for Variables {
-    fn from(form: RunForm) -> Variables {
-        match form {
-            RunForm::Poincare => Variables::QuasiVelocities,
-            RunForm::Canonical => Variables::Momenta,
-        }
-    }
-}
-
 /// Integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
@@ -293,35 +283,12 @@ pub enum Method {
     Bdf,
 }
 
-fn form(text: &str) -> Result<Form, String> {
-    choice(text, &[])
-}
-
-pub(crate) fn run_form(text: &str) -> Result<RunForm, String> {
-    choice(text, &["lagrange", "voronets"])
-}
-
 pub(crate) fn method(text: &str) -> Result<Method, String> {
     choice(text, &["auto", "taylor", "dop853"])
 }
 
-/// One of the values of `T`; those of `later` are known and cannot be had yet.
-fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
-    T::from_str(text, false).map_err(|_| {
-        let names: Vec<String> = T::value_variants()
-            .iter()
-            .filter_map(|variant| variant.to_possible_value().map(|value| value.get_name().to_owned()))
-            .collect();
-        let names = match names.split_last() {
-            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-            _ => names.concat(),
-        };
-        if later.contains(&text) {
-            format!("`{text}` is not supported yet; use {names}")
-        } else {
-            format!("use {names}")
-        }
-    })
+fn definition(text: &str) -> Result<Setting, String> {
+    setting(text).map_err(|_| "write NAME=EXPR, as in `\"v=r*φ'\"`".to_owned())
 }
 
 fn setting(text: &str) -> Result<Setting, String> {

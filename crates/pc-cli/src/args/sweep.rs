@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
-use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, RunForm};
+use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, VelocityArguments};
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -65,7 +66,7 @@ pub struct SweepArguments {
     #[arg(long, value_name = "METHOD", value_parser = options::method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
-    #[arg(long, value_name = "FORM", value_parser = options::run_form)]
+    #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
     /// Bring each motion back to the value of an integral, or of energy, after each step (repeatable)
     #[arg(long, value_name = "NAME")]
@@ -79,6 +80,7 @@ impl SweepArguments {
     /// What `pc run` would be told for one member.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {
+            velocities: VelocityArguments::default(),
             sensitivities: Vec::new(),
             model: self.model.clone(),
             t_end: self.t_end,

@@ -2,6 +2,7 @@
 
 use pc_print::{Layout, page};
 
+use crate::args::forms::Form;
 use crate::args::input;
 use crate::args::options::DeriveArguments;
 use crate::error::CliError;
@@ -13,7 +14,7 @@ use crate::report::notes::{say_dropped, say_moved};
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
-    let model = input::open(&arguments.model)?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Form::Hamel)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);

@@ -7,6 +7,7 @@ use std::path::Path;
 use pc_mech::{EmitOptions, Language};
 use pc_print::energy_remark;
 
+use crate::args::forms::EmitForm;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
@@ -25,19 +26,20 @@ const NO_TABLES: &str = "The tables of inputs are not part of this source: their
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
-    let model = input::open(&arguments.model)?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == EmitForm::Hamel)?;
     let graph = model.graph();
-    let (assembly, equations) = input::derive(&model, &graph)?;
+    let assembly = model.assemble(&graph)?;
+    let (equations, form) = assembly.equations_of(arguments.form.into())?;
     let language = match arguments.lang {
         Lang::C => Language::C,
         Lang::Rust => Language::Rust,
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
-    options = options.title(model.title());
+    options = options.title(model.title()).jacobian(!arguments.no_jacobian);
     say_dropped(&assembly);
     say_moved(&assembly);
     let mut remarks = Vec::new();
-    if let Some(remark) = choice(&assembly, equations.system()) {
+    if let Some(remark) = choice(&assembly, &form.independent) {
         say_choice(&remark);
         remarks.push(remark);
         remarks.extend(energy_remark(&assembly).map(str::to_owned));
@@ -56,8 +58,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     }
     // A motion with the inputs of the start would be another.
     if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
-        let system = equations.system();
-        options = options.start(assembly.t_start, &assembly.start_of(&system.state()), t_end.value);
+        options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);
     }
     let files = assembly.placed(equations.emit(&options))?;
 

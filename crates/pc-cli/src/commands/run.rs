@@ -4,12 +4,14 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use pc_mech::Expr;
-use pc_model::{Assembly, Flow, Model};
+use pc_model::{Assembly, Flow, Model, Variables};
+use pc_print::energy_remark;
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::RunForm;
 use crate::args::input;
-use crate::args::options::{Outputs, RunArguments, RunForm};
+use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::follow::follow;
@@ -24,7 +26,7 @@ use crate::motion::table::Table;
 use crate::output::destination::Destination;
 use crate::output::stream::Stream;
 use crate::plot::picture::Picture;
-use crate::report::notes::{dropped, say_moved, say_negative_energy, say_undetermined};
+use crate::report::notes::{choice, dropped, say_choice, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
 
@@ -35,7 +37,8 @@ use crate::report::{summary, text};
 pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
     let picture = Destination::plot(arguments.plot.as_deref())?;
-    let mut model = input::open(&arguments.model)?;
+    let is_hamel = arguments.form == Some(RunForm::Hamel);
+    let mut model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
     model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
     if arguments.outputs.is_some() && model.document().constraints.is_empty() {
         text::say(format_args!("note: there are no constraints, and so no reactions\n"));
@@ -108,6 +111,13 @@ fn integrate_into(
     let assembly = model.assemble(&graph)?;
     say_moved(&assembly);
     say_negative_energy(&assembly);
+    if assembly.constraints.held().is_none() && assembly.has_multipliers() {
+        let (_, free) = assembly.equations_of(Variables::QuasiVelocities)?;
+        if let Some(remark) = choice(&assembly, &free.independent) {
+            say_choice(&remark);
+        }
+        energy_remark(&assembly).into_iter().for_each(say_choice);
+    }
     say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;

@@ -11,7 +11,7 @@ use pc_model::{Flow, Model};
 use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, solve_checkpointed};
 
 use crate::args::checkpoint::CheckpointArguments;
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::error::CliError;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;

@@ -4,7 +4,7 @@
 use pc_model::Model;
 use pc_solve::Accumulation;
 
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::motion::plan::Plan;
 
 /// Names and values in the order of their importance.
@@ -36,6 +36,11 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         entry("--form", format!("{form:?}").to_lowercase()),
         entry("text of the model", format!("{}\n", model.document().source.text())),
     ]);
+    let given = model.given_quasi_velocities().iter();
+    identity
+        .extend(given.map(|given| entry(&format!("{} =", given.name()), given.expression().text.clone())));
+    let independent = model.independent();
+    identity.extend((!independent.is_empty()).then(|| entry("--independent", independent.join(","))));
     let held = model.held_start_names();
     identity.extend((!held.is_empty()).then(|| entry("--keep", held.join(","))));
     identity

@@ -4,8 +4,9 @@ use pc_model::Model;
 use pc_model::document;
 use pc_solve::{Accumulation, Deadline, Method, Options};
 
+use crate::args::forms::RunForm;
 use crate::args::options;
-use crate::args::options::{RunArguments, RunForm};
+use crate::args::options::RunArguments;
 use crate::error::CliError;
 use crate::motion::sensitivities;
 

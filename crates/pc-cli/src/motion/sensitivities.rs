@@ -7,7 +7,7 @@ use pc_solve::{
     Options, Sensitivities, SensitivitySolution, Solution, SolveError, solve_with_sensitivities_and_events,
 };
 
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::error::CliError;
 
 /// The parameters of these names, by their numbers.

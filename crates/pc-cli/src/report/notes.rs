@@ -1,6 +1,6 @@
 //! What is said of constraints beside the equations.
 
-use pc_mech::{Constraint, Expr, System};
+use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation};
 
 use crate::report::text::{say, short, wrapped};
@@ -24,7 +24,7 @@ pub fn say_dropped(assembly: &Assembly<'_>) {
 
 /// What is to be known of equations in the `free` velocities chosen from those that constraints bind, or in all where
 /// they bind none of them to others; nothing where there is no choice.
-pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
+pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
     if let Some(held) = assembly.constraints.nonlinear() {
         let names: Vec<&str> = held.constraints().iter().map(Constraint::name).collect();
@@ -35,19 +35,19 @@ pub fn choice(assembly: &Assembly<'_>, free: &System<'_>) -> Option<String> {
             names.join(", ")
         ));
     }
-    let free = free.quasi_velocities();
     let all = assembly.system.quasi_velocities().iter();
     let others: Vec<String> = all.filter(|eta| !free.contains(eta)).map(Expr::to_string).collect();
     let free: Vec<String> = free.iter().map(Expr::to_string).collect();
     let follow = if others.len() == 1 { "follows" } else { "follow" };
     let declared = &assembly.system.quasi_velocities()[..assembly.declared];
     let choice = match declared.iter().all(|eta| free.contains(&eta.to_string())) {
+        _ if !assembly.constraints.asked_for().is_empty() => "These are the ones that are asked for.",
         true => "These are the quasi-velocities of the model.",
-        false => "This choice is the best at the start.",
+        false => "This choice is regular at the start, and makes them short.",
     };
     Some(format!(
         "The equations are in {}; {} {follow} from the constraints.\n\
-         {choice} Where it fails the equations are singular,\n\
+         {choice} Where this choice fails the equations are singular,\n\
          and nothing takes errors of the integration back to the constraints.",
         free.join(", "),
         others.join(", ")

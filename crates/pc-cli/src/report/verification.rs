@@ -1,11 +1,11 @@
 //! What a second derivation says of the equations.
 
-use pc_model::{Assembly, Flow, Model};
+use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::columns;
 use pc_verify::{Agreement, Second, VerifyError};
 use serde_json::{Value, json};
 
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::error::CliError;
 
 /// The comparison of a motion with a second derivation, at some of its states.
@@ -20,10 +20,7 @@ pub struct Verification {
 impl Verification {
     /// Of the equations of a model in a form, not compared anywhere yet.
     pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Verification {
-        let form = match form {
-            RunForm::Poincare => "poincare",
-            RunForm::Canonical => "canonical",
-        };
+        let form = Variables::from(form).name();
         Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
     }
 

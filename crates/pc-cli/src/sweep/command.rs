@@ -15,8 +15,8 @@ use pc_model::{Category, Model};
 use pc_print::one_line;
 use pc_solve::{Ending, Ensemble};
 
+use crate::args::forms::RunForm;
 use crate::args::input;
-use crate::args::options::RunForm;
 use crate::args::sweep::{Law, Random, SweepArguments, Vary};
 use crate::error::CliError;
 use crate::motion::identity;

@@ -10,7 +10,7 @@ use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
-use crate::args::options::RunForm;
+use crate::args::forms::RunForm;
 use crate::motion::follow::follow;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;

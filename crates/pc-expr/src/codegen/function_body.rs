@@ -11,6 +11,10 @@ use crate::program::program::{Instruction, Program, Register};
 const LONG: usize = 80;
 /// A sum may become this long, in several lines, before its beginning is given a name.
 const LONG_SUM: usize = 320;
+/// In functions of more operations the words of declarations are a tenth of the text.
+const MANY: usize = 2000;
+/// Comments are cut there.
+const LONGEST_COMMENT: usize = 60;
 /// Brackets within brackets within brackets are enough.
 const DEEP: u32 = 3;
 /// Lines are broken where they would be longer.
@@ -208,7 +212,7 @@ impl<'a> Printer<'a> {
             }
             line += term;
         }
-        self.statements.push(line + tail, self.language.comment(comment));
+        self.statements.push(line + tail, shortened(self.language.comment(comment)));
     }
 
     fn piece(&mut self, instruction: Instruction) -> Piece {
@@ -316,6 +320,7 @@ impl<'a> Printer<'a> {
     fn named(&mut self, register: usize, instruction: Instruction, piece: &Piece) -> Piece {
         let name = self.local(register, instruction);
         let head = match self.language {
+            Language::C if self.program.code().len() > MANY => format!("double {name} = "),
             Language::C => format!("const double {name} = "),
             Language::Rust => format!("let {name} = "),
         };
@@ -359,7 +364,8 @@ impl<'a> Printer<'a> {
             arguments[array].1 = true;
             let from = format!("{}[{index}]", arguments[array].0);
             let symbol = &self.program.input_names()[i + 1];
-            let comment = if symbol == name { String::new() } else { self.language.comment(symbol) };
+            let comment =
+                if symbol == name { String::new() } else { shortened(self.language.comment(symbol)) };
             match self.language {
                 Language::C => lines.push(format!("const double {name} = {from};"), comment),
                 Language::Rust => lines.push(format!("let {name} = {from};"), comment),
@@ -385,6 +391,14 @@ impl Piece {
         } else {
             self.and('+', term)
         }
+    }
+}
+
+/// A comment of bounded length: names may have hundreds of letters.
+fn shortened(comment: String) -> String {
+    match comment.char_indices().nth(LONGEST_COMMENT) {
+        Some((end, _)) => format!("{}...", comment[..end].trim_end()),
+        None => comment,
     }
 }
 

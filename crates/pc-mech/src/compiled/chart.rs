@@ -1,7 +1,7 @@
 //! Where quasi-velocities that are defined by velocities determine these.
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
@@ -20,6 +20,9 @@ pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
+    /// Rows of the matrix, and whether its columns belong to ẋ.
+    size: usize,
+    of_velocities: bool,
     room: Vec<f64>,
 }
 
@@ -29,8 +32,39 @@ impl Chart {
     /// # Errors
     /// [`MechError`] for a symbol without a value.
     pub(crate) fn of(system: &System<'_>) -> Result<Option<Chart>, MechError> {
+        match system.frame().definition_matrix() {
+            Some(a) => Chart::watching(system, a, true),
+            None => Ok(None),
+        }
+    }
+
+    /// That of a system whose quasi-velocities, all of them in their order, are changed by the matrix A: det A a where they are
+    /// defined by ẋ, else det A.
+    ///
+    /// # Errors
+    /// [`MechError`] for a symbol without a value.
+    pub(crate) fn of_change<'g>(
+        system: &System<'g>,
+        change: &Matrix<Expr<'g>>,
+    ) -> Result<Option<Chart>, MechError> {
+        let (graph, frame) = (system.graph(), system.frame());
+        let Some(a) = frame.definition_matrix() else {
+            let of_velocities = frame.velocities(system.quasi_velocities()) == system.quasi_velocities();
+            return Chart::watching(system, change, of_velocities);
+        };
+        let product = Matrix::from_fn(change.rows(), a.columns(), |u, i| {
+            graph.dot(change.row(u).iter().copied(), a.column(i))
+        });
+        Chart::watching(system, &product, true)
+    }
+
+    /// The sign of the determinant of a square matrix; none where it is constant.
+    pub(crate) fn watching<'g>(
+        system: &System<'g>,
+        a: &Matrix<Expr<'g>>,
+        of_velocities: bool,
+    ) -> Result<Option<Chart>, MechError> {
         let frame = system.frame();
-        let Some(a) = frame.definition_matrix() else { return Ok(None) };
         let moving = || frame.coordinates().iter().copied().chain([frame.time()]);
         if !moving().any(|symbol| a.entries().iter().any(|entry| entry.depends_on(symbol))) {
             return Ok(None);
@@ -43,8 +77,9 @@ impl Chart {
         let entries =
             Evaluator::new(Program::new(system.graph(), &inputs, a.entries())?, Backend::Interpreter);
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
-        let room = vec![0.0; coordinates * coordinates];
-        Ok(Some(Chart { coordinates, parameters, entries, room }))
+        let size = a.rows();
+        let room = vec![0.0; size * size];
+        Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room }))
     }
 
     /// a at (t, y), row after row.
@@ -55,15 +90,18 @@ impl Chart {
 
     /// Whether det a has another sign at the end of a step than at its start.
     pub(crate) fn is_left(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> bool {
-        let n = self.coordinates;
+        let n = self.size;
         let mut sign = |(t, y): (f64, &[f64])| sign_of_determinant(self.matrix(t, y, parameters), n);
         sign(from) * sign(to) < 0.0
     }
 
     /// Whether a motion with these velocities does not move along the direction in which a is nearest to singular: then it needs
-    /// no quasi-velocity to say how it does.
+    /// no quasi-velocity to say how it does. Said of no motion where the directions are not those of ẋ.
     pub(crate) fn rests(&mut self, (t, y): (f64, &[f64]), velocities: &[f64], parameters: &[f64]) -> bool {
-        let n = self.coordinates;
+        let n = self.size;
+        if !self.of_velocities {
+            return false;
+        }
         let entries = self.matrix(t, y, parameters);
         let a = Matrix::from_fn(n, n, |i, j| entries[i * n + j]);
         let Ok(SingularValues { right, .. }) = SingularValues::of(&a) else {

@@ -1,5 +1,6 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
 
+use pc_algebra::Matrix;
 use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::chart::Chart;
@@ -43,8 +44,8 @@ pub struct Motion {
     pub(super) surface: Option<Box<Surface>>,
     pub(super) kept: Option<Box<KeptIntegrals>>,
     pub(super) signals: Signals,
-    /// Where its quasi-velocities determine velocities.
-    pub(super) chart: Option<Box<Chart>>,
+    /// Where its state determines velocities.
+    pub(super) charts: Vec<Chart>,
 }
 
 /// How f is computed.
@@ -151,7 +152,7 @@ impl FirstOrder<'_> {
             surface: None,
             kept: None,
             signals: Signals::default(),
-            chart: None,
+            charts: Vec::new(),
         })
     }
 }
@@ -298,7 +299,34 @@ impl Motion {
     /// # Errors
     /// [`MechError`] if a definition contains a symbol that is no coordinate or parameter.
     pub fn within_chart(self, system: &System<'_>) -> Result<Motion, MechError> {
-        Ok(Motion { chart: Chart::of(system)?.map(Box::new), ..self })
+        Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
+    }
+
+    /// The same of a motion in other quasi-velocities η' = A η + A_0 than those of the system, with A for all of these in their
+    /// order: neither past a place where η' do not determine η.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn within_chart_of_change<'g>(
+        self,
+        system: &System<'g>,
+        change: &Matrix<Expr<'g>>,
+    ) -> Result<Motion, MechError> {
+        Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
+    }
+
+    /// The same of a motion in independent quasi-velocities of a system: neither past a place where this square matrix, with
+    /// which constraints determine the others, is singular.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn within_choice<'g>(
+        mut self,
+        system: &System<'g>,
+        square: &Matrix<Expr<'g>>,
+    ) -> Result<Motion, MechError> {
+        self.charts.extend(Chart::watching(system, square, false)?);
+        Ok(self)
     }
 
     /// The same in momenta of these names.
@@ -316,7 +344,7 @@ impl Motion {
             quasi_velocities: inner.quasi_velocities.clone(),
             parameters: Vec::new(),
             signals: Signals::default(),
-            chart: None,
+            charts: Vec::new(),
             options: inner.options,
             observable_names: inner.observable_names.clone(),
             conserved: inner.conserved,

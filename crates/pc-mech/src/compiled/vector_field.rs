@@ -179,15 +179,18 @@ impl VectorField for Motion {
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
-        let Some(mut chart) = self.chart.take() else { return Ok(()) };
-        let is_left = chart.is_left(from, to, self.parameters());
-        let rests = is_left && {
+        let mut charts = std::mem::take(&mut self.charts);
+        let undetermined = charts.iter_mut().any(|chart| {
+            if !chart.is_left(from, to, self.parameters()) {
+                return false;
+            }
             let mut rates = vec![f64::NAN; to.1.len()];
             let outcome = self.rhs(to.0, to.1, &mut rates);
-            outcome.is_ok() && chart.rests(to, &rates[..self.coordinates], self.parameters())
-        };
-        self.chart = Some(chart);
-        match is_left && !rests {
+            let velocities = &rates[..self.coordinates];
+            !(outcome.is_ok() && chart.rests(to, velocities, self.parameters()))
+        });
+        self.charts = charts;
+        match undetermined {
             true => {
                 Err(Failure::fatal(MechError::Frame(FrameError::Undetermined { from: from.0, to: to.0 })))
             }

@@ -153,7 +153,7 @@ impl<'g> Multipliers<'g> {
     }
 
     /// Whether C_D, rows of C counted as of length one, is far from singular at these values.
-    fn determines(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> Result<bool, MechError> {
+    pub(super) fn determines(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> Result<bool, MechError> {
         let (system, c) = (self.equations().system(), self.coefficients());
         let values = system.graph().evaluate(c.entries(), &[system.parameters(), at].concat())?;
         let row = |a: usize| &values[a * c.columns()..(a + 1) * c.columns()];

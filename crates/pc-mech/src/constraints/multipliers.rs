@@ -334,6 +334,18 @@ impl<'g> Multipliers<'g> {
         })
     }
 
+    /// The indices of the quasi-velocities that are taken for dependent ones wherever the others determine them; none where no
+    /// choice was made.
+    pub fn dependent(&self) -> &[usize] {
+        self.dependent.as_deref().unwrap_or_default()
+    }
+
+    /// The same with the quasi-velocities of these m indices for the dependent ones wherever the others determine them.
+    #[must_use]
+    pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {
+        Multipliers { dependent: Some(dependent), ..self.clone() }
+    }
+
     fn graph(&self) -> &'g pc_expr::Graph {
         self.equations.system.graph()
     }

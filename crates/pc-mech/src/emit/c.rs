@@ -168,6 +168,7 @@ fn body(source: &Source<'_>) -> String {
         }
         text += "\n";
     }
+    text += source.shared.as_ref().map_or("", |shared| &shared.support);
     for routine in &source.routines {
         let _ = write!(text, "\n{}\n{{\n{}", declaration(source, routine), routine.body.inputs);
         if !routine.body.inputs.is_empty() {

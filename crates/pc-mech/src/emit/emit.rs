@@ -1,6 +1,6 @@
 //! Equations of motion as C or Rust source that depends on nothing of this library.
 
-use pc_expr::{Expr, Language, Layout, Place, Program, Slot};
+use pc_expr::{Chain, ChainLayout, Expr, FunctionBody, Language, Layout, Place, Program, Slot};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Linearised};
@@ -9,12 +9,18 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
+/// A right-hand side of so many operations times the length of the state has a Jacobian of some ten thousand operations, which is no
+/// text to be read, and takes compilers minutes.
+const LONG_JACOBIAN: usize = 30_000;
+
 /// Equations longer than this are not shown in the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
 
 impl<'g> Equations<'g> {
     /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
-    /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments.
+    /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments. Of a right-hand side so
+    /// long that its Jacobian would have some ten thousand operations, that, the mass matrix and the energy go through a table of
+    /// its operations instead, the Jacobian by the chain rule.
     ///
     /// C comes as a header and a source file, Rust as one file. Both say at their head how they are used. The same
     /// system in a new graph gives the same text. Its operations are those of a [`Program`] of the
@@ -61,6 +67,9 @@ impl<'g> Equations<'g> {
             let (found, expected) = (start.state.len(), state.len());
             return Err(ShapeError { what: "the start state", found, expected }.into());
         }
+        let writer = Writer::new(self.first_order(), options);
+        let solved = Solved::new(self, &writer.system);
+        let shared = self.shared(&writer, &solved)?;
         Ok(Source {
             options,
             name: options.language.identifiers(&[&options.name], &[]).remove(0),
@@ -75,7 +84,8 @@ impl<'g> Equations<'g> {
             integrals: of(&system.integrals),
             outputs: of(&system.outputs),
             equations: self.equations_as_text(),
-            routines: self.routines(options)?,
+            routines: self.routines(&writer, &solved, shared.as_ref())?,
+            shared: shared.map(|(chain, _)| chain),
         })
     }
 
@@ -93,21 +103,54 @@ impl<'g> Equations<'g> {
         if short { lines } else { Vec::new() }
     }
 
-    fn routines(&self, options: &EmitOptions) -> Result<Vec<Routine>, MechError> {
+    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those of the mass matrix
+    /// and of the energy.
+    fn shared(
+        &self,
+        writer: &Writer<'_, 'g>,
+        solved: &Solved<'g>,
+    ) -> Result<Option<(Chain, Program)>, MechError> {
+        let (graph, inputs) = (self.system.graph(), writer.system.inputs(&[]));
+        let operations = Program::new(graph, &inputs, &solved.motion)?.code().len();
+        if !writer.options.jacobian
+            || writer.options.fused
+            || operations * inputs.state.len() <= LONG_JACOBIAN
+        {
+            return Ok(None);
+        }
+        let columns = (0..self.mass.rows()).flat_map(|s| self.mass.column(s));
+        let outputs: Vec<Expr<'g>> =
+            solved.motion.iter().copied().chain(columns).chain([self.energy]).collect();
+        let program = Program::new(graph, &inputs, &outputs)?;
+        let layout = match writer.options.language {
+            Language::C => {
+                let capitals = writer.prefix.to_uppercase();
+                let (dim, parameters) = (format!("{capitals}DIM"), format!("{capitals}PARAMETERS"));
+                ChainLayout { prefix: writer.prefix.clone(), dim, parameters }
+            }
+            Language::Rust => {
+                let (dim, parameters) = ("DIM".to_owned(), "PARAMETERS".to_owned());
+                ChainLayout { prefix: String::new(), dim, parameters }
+            }
+        };
+        Ok(program.chain(writer.options.language, layout).map(|chain| (chain, program)))
+    }
+
+    fn routines(
+        &self,
+        writer: &Writer<'_, 'g>,
+        solved: &Solved<'g>,
+        shared: Option<&(Chain, Program)>,
+    ) -> Result<Vec<Routine>, MechError> {
         let system = &self.system;
         let graph = system.graph();
         let k = system.quasi_velocities.len();
-        let writer = Writer::new(self.first_order(), options);
         let state: Vec<String> = writer.system.state.iter().map(Expr::to_string).collect();
         let dim = state.len();
         let rates: Vec<String> = state.iter().map(|name| format!("{name}'")).collect();
+        let Solved { factors, accelerations, motion } = solved;
+        let of_chain = |statements: String| FunctionBody { statements, ..FunctionBody::default() };
 
-        let factors = Factors::of(graph, &self.mass);
-        let accelerations = writer.system.solve(&factors);
-        let linearised = Linearised::new(&writer.system, &factors, &accelerations);
-        let of_states = system.states.iter().map(|(_, rate)| rate);
-        let motion: Vec<Expr<'g>> =
-            self.velocities.iter().chain(&accelerations).chain(of_states).copied().collect();
         let mut routines = vec![writer.routine(
             "rhs",
             match system.states.as_slice() {
@@ -116,37 +159,57 @@ impl<'g> Equations<'g> {
                     .to_owned(),
             },
             ("ydot", Extent::State),
-            &motion,
+            motion,
             |i| (format!("[{i}]"), rates[i].clone()),
         )?];
-        let mut jacobian = vec![Expr::ZERO; dim * dim];
-        for (j, column) in linearised.columns(&writer.system.state).into_iter().enumerate() {
-            column.into_iter().for_each(|(i, entry)| jacobian[i + dim * j] = entry);
+        if writer.options.jacobian {
+            let purpose =
+                format!("the Jacobian of `rhs`, column after column: `jac[i + {dim}*j] = ∂ydot[i]/∂y[j]`");
+            routines.push(match shared {
+                Some((chain, program)) => {
+                    let body = of_chain(chain.jacobian(program, "jac"));
+                    Routine {
+                        name: "jacobian",
+                        purpose,
+                        array: "jac",
+                        extent: Extent::StateSquared,
+                        sparse: false,
+                        body,
+                    }
+                }
+                None => {
+                    let linearised = Linearised::new(&writer.system, factors, accelerations);
+                    let mut jacobian = vec![Expr::ZERO; dim * dim];
+                    for (j, column) in linearised.columns(&writer.system.state).into_iter().enumerate() {
+                        column.into_iter().for_each(|(i, entry)| jacobian[i + dim * j] = entry);
+                    }
+                    let slot = |e: usize| {
+                        let (i, j) = (e % dim, e / dim);
+                        (format!("[{i} + {dim}*{j}]"), format!("∂{}/∂{}", rates[i], state[j]))
+                    };
+                    writer.routine("jacobian", purpose, ("jac", Extent::StateSquared), &jacobian, slot)?
+                }
+            });
         }
-        routines.push(writer.routine(
-            "jacobian",
-            format!("the Jacobian of `rhs`, column after column: `jac[i + {dim}*j] = ∂ydot[i]/∂y[j]`"),
-            ("jac", Extent::StateSquared),
-            &jacobian,
-            |e| {
-                let (i, j) = (e % dim, e / dim);
-                (format!("[{i} + {dim}*{j}]"), format!("∂{}/∂{}", rates[i], state[j]))
-            },
-        )?);
-        let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass.column(s)).collect();
-        routines.push(writer.routine(
-            "mass_matrix",
-            format!(
-                "the symmetric mass matrix of the quasi-velocities, row r of column s in `mass[r + {k}*s]`"
-            ),
-            ("mass", Extent::QuasiVelocitiesSquared),
-            &columns,
-            |e| (format!("[{} + {k}*{}]", e % k, e / k), String::new()),
-        )?);
-        let energy = "the energy, sum of quasi-velocities times momenta less the Lagrangian".to_owned();
-        routines.push(
-            writer.routine("energy", energy, ("", Extent::One), &[self.energy], |_| Default::default())?,
+        let purpose = format!(
+            "the symmetric mass matrix of the quasi-velocities, row r of column s in `mass[r + {k}*s]`"
         );
+        let energy = "the energy, sum of quasi-velocities times momenta less the Lagrangian".to_owned();
+        if let Some((chain, _)) = shared {
+            let (array, extent, sparse) = ("mass", Extent::QuasiVelocitiesSquared, false);
+            let body = of_chain(chain.values(array, dim, k * k));
+            routines.push(Routine { name: "mass_matrix", purpose, array, extent, sparse, body });
+            let body = of_chain(chain.value(dim + k * k));
+            let (array, extent) = ("", Extent::One);
+            routines.push(Routine { name: "energy", purpose: energy, array, extent, sparse, body });
+        } else {
+            let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass.column(s)).collect();
+            let slot = |e: usize| (format!("[{} + {k}*{}]", e % k, e / k), String::new());
+            let extent = Extent::QuasiVelocitiesSquared;
+            routines.push(writer.routine("mass_matrix", purpose, ("mass", extent), &columns, slot)?);
+            let slot = |_| Default::default();
+            routines.push(writer.routine("energy", energy, ("", Extent::One), &[self.energy], slot)?);
+        }
         let watched = [
             ("integrals", "integrals", Extent::Integrals, &system.integrals),
             ("outputs", "outputs", Extent::Outputs, &system.outputs),
@@ -167,6 +230,25 @@ impl<'g> Equations<'g> {
             )?);
         }
         Ok(routines)
+    }
+}
+
+/// The motion solved for its accelerations.
+struct Solved<'g> {
+    factors: Factors<'g>,
+    accelerations: Vec<Expr<'g>>,
+    /// ẋ, η̇, ż
+    motion: Vec<Expr<'g>>,
+}
+
+impl<'g> Solved<'g> {
+    fn new(equations: &Equations<'g>, first_order: &FirstOrder<'g>) -> Solved<'g> {
+        let system = &equations.system;
+        let factors = Factors::of(system.graph(), &equations.mass);
+        let accelerations = first_order.solve(&factors);
+        let of_states = system.states.iter().map(|(_, rate)| rate);
+        let motion = equations.velocities.iter().chain(&accelerations).chain(of_states).copied().collect();
+        Solved { factors, accelerations, motion }
     }
 }
 

@@ -21,6 +21,9 @@ pub(super) const CONSTANTS: &[&str] = &[
     "START",
     "T_START",
     "T_END",
+    "CODE",
+    "PLACES",
+    "NUMBERS",
 ];
 
 pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
@@ -32,6 +35,7 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     }
     text += "\n#![allow(clippy::all, dead_code, non_snake_case, unexpected_cfgs)]\n\n";
     constants(source, &mut text);
+    text += source.shared.as_ref().map_or("", |shared| &shared.support);
     for routine in &source.routines {
         function(source, routine, &mut text);
     }

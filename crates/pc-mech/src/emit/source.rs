@@ -1,6 +1,9 @@
 //! What is written, before it is written in a language.
 
-use pc_expr::{Calls, FunctionBody, Language};
+use pc_expr::{Calls, Chain, FunctionBody, Language};
+
+/// Lists are broken there.
+const WIDTH: usize = 106;
 
 /// What source to write.
 #[derive(Clone, Debug)]
@@ -11,6 +14,7 @@ pub struct EmitOptions {
     remark: String,
     pub(super) start: Option<Start>,
     pub(super) fused: bool,
+    pub(super) jacobian: bool,
 }
 
 /// A motion to be tried.
@@ -25,7 +29,15 @@ impl EmitOptions {
     /// Source in `language`; files and functions are called `name`, spelt as an identifier where it is none.
     pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
         let name = name.into();
-        EmitOptions { language, title: name.clone(), name, remark: String::new(), start: None, fused: false }
+        EmitOptions {
+            language,
+            title: name.clone(),
+            name,
+            remark: String::new(),
+            start: None,
+            fused: false,
+            jacobian: true,
+        }
     }
 
     /// The title of the system, for the first line; without it the name.
@@ -47,6 +59,13 @@ impl EmitOptions {
     #[must_use]
     pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
         self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
+        self
+    }
+
+    /// Writes the Jacobian of the right-hand side, as is usual.
+    #[must_use]
+    pub fn jacobian(mut self, jacobian: bool) -> EmitOptions {
+        self.jacobian = jacobian;
         self
     }
 
@@ -110,12 +129,15 @@ pub(super) struct Source<'a> {
     /// The equations as text, unless they are long.
     pub(super) equations: Vec<String>,
     pub(super) routines: Vec<Routine>,
+    /// What these share: the table of operations of a long right-hand side.
+    pub(super) shared: Option<Chain>,
 }
 
 impl Source<'_> {
     /// What all routines call.
     pub(super) fn calls(&self) -> Calls {
-        self.routines.iter().fold(Calls::default(), |calls, routine| calls.and(&routine.body.calls))
+        let shared = self.shared.iter().fold(Calls::default(), |calls, chain| calls.and(&chain.calls));
+        self.routines.iter().fold(shared, |calls, routine| calls.and(&routine.body.calls))
     }
 
     /// The comment at the head: title, equations, state and parameters, line by line.
@@ -167,10 +189,25 @@ impl Source<'_> {
     }
 
     pub(super) fn constants(&self, values: impl Iterator<Item = f64>) -> String {
-        values.map(|value| self.options.language.constant(value)).collect::<Vec<_>>().join(", ")
+        listed(values.map(|value| self.options.language.constant(value)))
     }
 
     pub(super) fn strings<'s>(&self, texts: impl Iterator<Item = &'s String>) -> String {
-        texts.map(|text| self.options.language.string(text)).collect::<Vec<_>>().join(", ")
+        listed(texts.map(|text| self.options.language.string(text)))
     }
+}
+
+/// A list of entries, on lines of bounded length.
+fn listed(entries: impl Iterator<Item = String>) -> String {
+    let (mut text, mut width) = (String::new(), 0);
+    for entry in entries {
+        let length = entry.chars().count() + 2;
+        if !text.is_empty() {
+            text += if width + length > WIDTH { ",\n    " } else { ", " };
+            width = if width + length > WIDTH { 0 } else { width };
+        }
+        width += length;
+        text += &entry;
+    }
+    text
 }

@@ -52,6 +52,14 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Quasi-velocities that were chosen to be independent and are not those that the constraints leave free.
+    #[error("{} cannot be taken for the independent quasi-velocities: {why}", quoted(chosen))]
+    NotIndependent {
+        /// Those chosen.
+        chosen: Vec<String>,
+        /// Why not.
+        why: String,
+    },
     /// A state from which no way was found to where the constraints are satisfied.
     #[error(
         "no state that satisfies the constraints {} was found near t = {t}{}",

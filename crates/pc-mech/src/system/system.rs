@@ -226,6 +226,12 @@ impl<'g> System<'g> {
         System { integrals: Vec::new(), outputs: Vec::new(), ..self.clone() }
     }
 
+    /// The same system with the integrals and outputs of another of the same state.
+    #[must_use]
+    pub fn observing(&self, other: &System<'g>) -> System<'g> {
+        System { integrals: other.integrals.clone(), outputs: other.outputs.clone(), ..self.clone() }
+    }
+
     /// The same system with symbols in its integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {

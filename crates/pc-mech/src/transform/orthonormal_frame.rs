@@ -7,6 +7,7 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::equations::legendre::not_quadratic_in;
 use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
+use crate::transform::quasi_velocities::QuasiVelocityChange;
 
 impl<'g> System<'g> {
     /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ, so
@@ -37,6 +38,17 @@ impl<'g> System<'g> {
         &self,
         names: impl IntoIterator<Item = S>,
     ) -> Result<System<'g>, MechError> {
+        Ok(self.orthonormal_change(names)?.system().clone())
+    }
+
+    /// The same with what the new quasi-velocities are, and what the old ones are in terms of them.
+    ///
+    /// # Errors
+    /// Those of [`in_orthonormal_frame`](System::in_orthonormal_frame).
+    pub fn orthonormal_change<S: AsRef<str>>(
+        &self,
+        names: impl IntoIterator<Item = S>,
+    ) -> Result<QuasiVelocityChange<'g>, MechError> {
         let (graph, eta) = (self.graph(), &self.quasi_velocities);
         let names: Vec<String> = names.into_iter().map(|name| name.as_ref().to_owned()).collect();
         let free = names.len();
@@ -62,6 +74,6 @@ impl<'g> System<'g> {
         let made = (0..free).map(|s| factors.orthonormal(graph, s, &eta[..free]));
         let definitions: Vec<Expr<'g>> = made.chain(eta[free..].iter().copied()).collect();
         let names = names.into_iter().chain(eta[free..].iter().map(Expr::to_string));
-        self.in_quasi_velocities(names, &definitions)
+        self.quasi_velocity_change(names, &definitions)
     }
 }

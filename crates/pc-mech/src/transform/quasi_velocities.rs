@@ -6,6 +6,38 @@ use pc_expr::Expr;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
+/// A system in other quasi-velocities η' = A η + A_0, with what these are in terms of the old ones, and these in terms of
+/// them.
+#[derive(Clone, Debug)]
+pub struct QuasiVelocityChange<'g> {
+    system: System<'g>,
+    matrix: Matrix<Expr<'g>>,
+    definitions: Vec<Expr<'g>>,
+    old: Vec<Expr<'g>>,
+}
+
+impl<'g> QuasiVelocityChange<'g> {
+    /// The system in the new quasi-velocities.
+    pub fn system(&self) -> &System<'g> {
+        &self.system
+    }
+
+    /// A, k × k, which is singular where the new quasi-velocities do not determine the old ones.
+    pub fn matrix(&self) -> &Matrix<Expr<'g>> {
+        &self.matrix
+    }
+
+    /// η' as functions of (t, x, η), length k.
+    pub fn definitions(&self) -> &[Expr<'g>] {
+        &self.definitions
+    }
+
+    /// η as functions of (t, x, η'), length k.
+    pub fn old_quasi_velocities(&self) -> &[Expr<'g>] {
+        &self.old
+    }
+}
+
 impl<'g> System<'g> {
     /// The same system in the quasi-velocities η' = A η + A_0, given by their names and their expressions in the old
     /// ones. A name may be that of an old one.
@@ -39,6 +71,18 @@ impl<'g> System<'g> {
         names: impl IntoIterator<Item = S>,
         definitions: &[Expr<'g>],
     ) -> Result<System<'g>, MechError> {
+        Ok(self.quasi_velocity_change(names, definitions)?.system)
+    }
+
+    /// The same with what the new quasi-velocities are, and what the old ones are in terms of them.
+    ///
+    /// # Errors
+    /// Those of [`in_quasi_velocities`](System::in_quasi_velocities).
+    pub fn quasi_velocity_change<S: AsRef<str>>(
+        &self,
+        names: impl IntoIterator<Item = S>,
+        definitions: &[Expr<'g>],
+    ) -> Result<QuasiVelocityChange<'g>, MechError> {
         let graph = self.graph();
         let symbols: Vec<Expr<'g>> = names.into_iter().map(|name| graph.symbol(name.as_ref())).collect();
         let (what, expected) = ("the list of new quasi-velocities", self.quasi_velocities.len());
@@ -46,7 +90,12 @@ impl<'g> System<'g> {
         shape(what, definitions.len(), expected)?;
         let change = self.change(definitions)?;
         let structure = change.structure_coefficients(&self.structure)?;
-        self.changed(symbols, &change, change.frame().clone(), structure)
+        Ok(QuasiVelocityChange {
+            matrix: change.matrix().clone(),
+            definitions: change.quasi_velocities(&self.quasi_velocities),
+            old: change.old_quasi_velocities(&symbols),
+            system: self.changed(symbols, &change, change.frame().clone(), structure)?,
+        })
     }
 
     /// The change to quasi-velocities given by their expressions in the old ones.

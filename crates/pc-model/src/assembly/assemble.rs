@@ -97,6 +97,7 @@ impl<'g> Assembler<'g, '_> {
             outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
         }
 
+        let given = self.given_quasi_velocities(&eta, &x_dot)?;
         let crossings = self.crossings(&x_dot)?;
 
         let states = self.scope.states();
@@ -127,9 +128,9 @@ impl<'g> Assembler<'g, '_> {
         if let Some(acceleration) = gravity {
             builder = builder.gravity(|_| acceleration);
         }
-        let given = self.model.parameter_values();
+        let values_of = self.model.parameter_values();
         for (place, (symbol, value)) in parameters.into_iter().enumerate() {
-            builder = match given.is_table(place) {
+            builder = match values_of.is_table(place) {
                 true => builder.signal(symbol, value),
                 false => builder.parameter(symbol, value),
             };
@@ -139,6 +140,9 @@ impl<'g> Assembler<'g, '_> {
         }
         for (name, value) in outputs {
             builder = builder.output(name, |_, _, _| value);
+        }
+        for &(symbol, definition) in &given {
+            builder = builder.output(symbol.to_string(), |_, _, _| definition);
         }
         if let Some(structure) = self.structure(&eta)? {
             builder = builder.structure(structure);
@@ -151,6 +155,8 @@ impl<'g> Assembler<'g, '_> {
         let prescribed = if completing.is_empty() { 0 } else { declared };
         let constraints =
             self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
+        let independent = self.model.independent().iter().map(|name| self.graph.symbol(name)).collect();
+        let constraints = constraints.with_independent(independent);
         let events =
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
         self.scope.look_at_unused()?;
@@ -163,6 +169,7 @@ impl<'g> Assembler<'g, '_> {
             declared,
             events,
             definitions: self.scope.meanings(&x_dot),
+            given,
             document: self.model.shared_document(),
         })
     }

@@ -30,6 +30,8 @@ pub struct Assembly<'g> {
     /// What the definitions of the text stand for, ẋ = b η + b_0 put in: those that stand for one thing wherever they are
     /// used.
     pub definitions: Vec<(String, Expr<'g>)>,
+    /// The quasi-velocities given beside those of the text, as linear forms in those of the system.
+    pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }

@@ -1,6 +1,8 @@
 //! How constraints bind a system, and its equations of motion under them.
 
-use pc_mech::{Constraint, Equations, Expr, Multipliers, System};
+use std::cell::OnceCell;
+
+use pc_mech::{Constraint, ConstraintError, Equations, Expr, MechError, Multipliers, System};
 use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
 
 /// What a constraint does.
@@ -21,6 +23,16 @@ pub struct ConstraintTreatment<'g> {
     combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
+    /// The velocities that are asked for as independent ones; none where the choice is free.
+    independent: Vec<Expr<'g>>,
+    chosen: OnceCell<Chosen>,
+}
+
+/// The indices of the dependent quasi-velocities of a choice, and the values of time and state where it was made.
+#[derive(Clone, Debug)]
+struct Chosen {
+    at: Vec<f64>,
+    dependent: Vec<usize>,
 }
 
 /// How the constraints are kept.
@@ -57,6 +69,8 @@ impl<'g> ConstraintTreatment<'g> {
             combinations: 0,
             redundant,
             undetermined: Vec::new(),
+            independent: Vec::new(),
+            chosen: OnceCell::new(),
         }
     }
 
@@ -75,6 +89,8 @@ impl<'g> ConstraintTreatment<'g> {
             combinations: 0,
             redundant,
             undetermined: Vec::new(),
+            independent: Vec::new(),
+            chosen: OnceCell::new(),
         }
     }
 
@@ -85,6 +101,65 @@ impl<'g> ConstraintTreatment<'g> {
     /// The same, kept in another formulation.
     pub(crate) fn in_formulation(self, formulation: ConstraintFormulation<'g>) -> ConstraintTreatment<'g> {
         ConstraintTreatment { formulation, ..self }
+    }
+
+    /// The same with these velocities for independent ones wherever there is a choice.
+    pub(crate) fn with_independent(self, independent: Vec<Expr<'g>>) -> ConstraintTreatment<'g> {
+        ConstraintTreatment { independent, chosen: OnceCell::new(), ..self }
+    }
+
+    /// The velocities that are asked for as independent ones; none where the choice is free.
+    pub fn asked_for(&self) -> &[Expr<'g>] {
+        &self.independent
+    }
+
+    /// The multipliers that hold constraints in what is integrated; none where independent velocities are asked for.
+    pub fn held(&self) -> Option<&Multipliers<'g>> {
+        match &self.formulation {
+            ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
+                Some(&held.multipliers)
+            }
+            _ => None,
+        }
+    }
+
+    /// The multipliers of a formulation with the independent quasi-velocities that are asked for, or with those whose equations
+    /// are [shortest](Multipliers::shortest) of the choices that are regular at the values `at`.
+    fn chosen(
+        &self,
+        held: &MultiplierFormulation<'g>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Multipliers<'g>, NonholoError> {
+        let there: Vec<f64> = at.iter().map(|&(_, value)| value).collect();
+        if let Some(known) = self.chosen.get().filter(|known| known.at == there) {
+            return Ok(held.multipliers.depending(known.dependent.clone()));
+        }
+        let chosen = match self.independent.as_slice() {
+            [] if held.holonomic => {
+                held.multipliers.shortest(at, |chosen| chosen.in_independent_velocities(at)?.poincare())?
+            }
+            [] => held.multipliers.shortest(at, |chosen| {
+                Ok::<_, NonholoError>(Adapted::new(chosen, at)?.constrained()?.equations().clone())
+            })?,
+            independent => held.multipliers.with_independent(independent, at)?,
+        };
+        // It is kept for the first values that it is made for.
+        self.chosen.get_or_init(|| Chosen { at: there, dependent: chosen.dependent().to_vec() });
+        Ok(chosen)
+    }
+
+    /// That no choice is asked for where quasi-velocities vanish that are those of the model, or nothing binds.
+    fn check_no_choice(&self, free: &[Expr<'g>]) -> Result<(), NonholoError> {
+        let is_other = |chosen: &[Expr<'g>]| {
+            chosen.len() != free.len() || !chosen.iter().all(|chosen| free.contains(chosen))
+        };
+        if self.independent.is_empty() || !is_other(&self.independent) {
+            return Ok(());
+        }
+        let names = |list: &[Expr<'g>]| list.iter().map(Expr::to_string).collect::<Vec<_>>();
+        let why = format!("the independent ones are {}", names(free).join(", "));
+        let error = ConstraintError::NotIndependent { chosen: names(&self.independent), why };
+        Err(MechError::from(error).into())
     }
 
     pub(crate) fn with_undetermined(self, undetermined: Vec<String>) -> ConstraintTreatment<'g> {
@@ -158,12 +233,15 @@ impl<'g> ConstraintTreatment<'g> {
     pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
         Ok(match &self.formulation {
             ConstraintFormulation::Free => None,
-            ConstraintFormulation::Vanishing(constrained) => Some(Constrained::clone(constrained)),
+            ConstraintFormulation::Vanishing(constrained) => {
+                self.check_no_choice(constrained.equations().system().quasi_velocities())?;
+                Some(Constrained::clone(constrained))
+            }
             ConstraintFormulation::Multipliers(held) if held.holonomic || held.multipliers.is_nonlinear() => {
                 None
             }
             ConstraintFormulation::Multipliers(held) => {
-                Some(Adapted::new(&held.multipliers, at)?.constrained()?)
+                Some(Adapted::new(&self.chosen(held, at)?, at)?.constrained()?)
             }
         })
     }
@@ -201,7 +279,7 @@ impl<'g> ConstraintTreatment<'g> {
     }
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by
-    /// multipliers are for the choice of independent ones that is best at `at`, and what is observed has the reactions put in.
+    /// multipliers are for the choice of independent ones that is asked for, or whose equations are shortest of those regular at `at`, and what is observed has the reactions put in.
     /// Where a constraint is not affine in the velocities, those of all of them, with the reactions put in.
     ///
     /// # Errors
@@ -266,10 +344,17 @@ impl<'g> ConstraintTreatment<'g> {
     fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {
         match &self.formulation {
             ConstraintFormulation::Multipliers(held) if held.multipliers.is_nonlinear() => {
+                self.check_no_choice(system.quasi_velocities())?;
                 Ok(held.multipliers.with_reactions_put_in()?)
             }
-            ConstraintFormulation::Multipliers(held) => Ok(held.multipliers.in_independent_velocities(at)?),
-            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => Ok(system.clone()),
+            ConstraintFormulation::Multipliers(held) => {
+                Ok(self.chosen(held, at)?.in_independent_velocities(at)?)
+            }
+            ConstraintFormulation::Free => {
+                self.check_no_choice(system.quasi_velocities())?;
+                Ok(system.clone())
+            }
+            ConstraintFormulation::Vanishing(_) => Ok(system.clone()),
         }
     }
 }

@@ -109,6 +109,18 @@ pub enum MeaningError {
         /// The definition as written.
         text: String,
     },
+    /// A quasi-velocity that is given twice beside the text.
+    #[error("`{name}` is given twice")]
+    GivenTwice {
+        /// Its name.
+        name: String,
+    },
+    /// A quasi-velocity given beside the text that is not a linear form in the velocities.
+    #[error("`{text}` is not linear in the velocities")]
+    NotLinear {
+        /// The definition as written.
+        text: String,
+    },
     /// A form of the equations that the model does not have.
     #[error("{message}")]
     NoForm {
@@ -451,6 +463,12 @@ impl MeaningError {
                 "take coordinates in which the body moves by itself, and constraints that tie it".into()
             }
             MeaningError::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
+            MeaningError::GivenTwice { .. } => "keep one of them".into(),
+            MeaningError::NotLinear { .. } => {
+                "write a sum of terms linear in the velocities of the coordinates or in the quasi-velocities, which vanishes with \
+                 these, of coordinates, parameters and t"
+                    .into()
+            }
             MeaningError::NoForm { help, .. } => (*help).into(),
             MeaningError::KinematicsMissing { coordinate } => {
                 format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")

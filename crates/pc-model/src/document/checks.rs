@@ -43,21 +43,29 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
+impl Document {
+    /// The names of the one namespace, with what each stands for.
+    pub(crate) fn declared_names(&self) -> Vec<(&Name, Role)> {
+        let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
+        let inputs = self.inputs.iter().map(|input| (&input.name, Role::Input));
+        let states = self.states.iter().map(|state| (&state.name, Role::State));
+        let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).collect();
+        for (entries, role) in [
+            (&self.parameters, Role::Parameter),
+            (&self.definitions, Role::Definition),
+            (&self.coordinates, Role::Coordinate),
+            (&self.integrals, Role::Integral),
+            (&self.outputs, Role::Output),
+        ] {
+            names.extend(entries.iter().map(|entry| (&entry.name, role)));
+        }
+        names
+    }
+}
+
 /// A name stands for one thing only.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
-    let quasi = document.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
-    let inputs = document.inputs.iter().map(|input| (&input.name, Role::Input));
-    let states = document.states.iter().map(|state| (&state.name, Role::State));
-    let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).collect();
-    for (entries, role) in [
-        (&document.parameters, Role::Parameter),
-        (&document.definitions, Role::Definition),
-        (&document.coordinates, Role::Coordinate),
-        (&document.integrals, Role::Integral),
-        (&document.outputs, Role::Output),
-    ] {
-        names.extend(entries.iter().map(|entry| (&entry.name, role)));
-    }
+    let mut names = document.declared_names();
     names.sort_by_key(|(name, _)| name.place.span.start);
     let mut seen = HashMap::new();
     for (name, role) in names {

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use pc_mech::{
-    Canonical, CompileOptions, KeptIntegrals, MechError, Motion, Multipliers, Signals, VectorField,
+    Canonical, CompileOptions, Equations, KeptIntegrals, MechError, Motion, Multipliers, Signals, System,
+    VectorField,
 };
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
@@ -26,20 +26,52 @@ impl Model {
     }
 
     fn compile_formulation(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
-        match assembly.constraints.formulation() {
-            ConstraintFormulation::Multipliers(held) => {
-                let (compiled, start) =
-                    (held.multipliers.compile_for(self.options()), assembly.start.clone());
-                self.started(compiled, || held.multipliers.kept(self.kept()), assembly.t_start, start)
-            }
-            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
+        match assembly.constraints.held() {
+            Some(held) => self.compile_multipliers(held, assembly),
+            None => {
                 let equations = assembly.equations()?;
-                let system = equations.system();
-                let state = system.state();
-                let (compiled, start) = (equations.compile_for(self.options()), assembly.start_of(&state));
-                self.started(compiled, || equations.kept(self.kept()), assembly.t_start, start)
+                let state = equations.system().state();
+                self.started_equations(&equations, assembly.t_start, assembly.start_of(&state))
             }
         }
+    }
+
+    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is returned with them.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub(crate) fn compile_multipliers(
+        &self,
+        multipliers: &Multipliers<'_>,
+        assembly: &Assembly<'_>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let (compiled, start) = (multipliers.compile_for(self.options()), assembly.start.clone());
+        self.started(compiled, (self.kept(), || multipliers.kept(self.kept())), assembly.t_start, start)
+    }
+
+    fn started_equations(
+        &self,
+        equations: &Equations<'_>,
+        t_start: f64,
+        start: Vec<f64>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let (compiled, names) = (equations.compile_for(self.options()), self.kept_of(equations.system()));
+        self.started(compiled, (&names, || equations.kept(&names)), t_start, start)
+    }
+
+    /// Compiles equations of motion of this model in independent quasi-velocities, whatever these are, and tries them at the start
+    /// (x, η, z), which is returned with them.
+    ///
+    /// # Errors
+    /// [`ModelError`] if they cannot be evaluated there.
+    pub fn compile_equations(
+        &self,
+        equations: &Equations<'_>,
+        t_start: f64,
+        start: Vec<f64>,
+    ) -> Result<(Motion, Vec<f64>), ModelError> {
+        let compile = || self.started_equations(equations, t_start, start);
+        self.document().stage(equations.system().graph(), PROGRAM, compile)
     }
 
     /// Compiles canonical equations of this model and tries them at the start (x, y).
@@ -53,9 +85,9 @@ impl Model {
         start: &[f64],
     ) -> Result<Motion, ModelError> {
         self.document().stage(equations.system().graph(), PROGRAM, || {
-            let compiled = equations.compile_for(self.options());
-            let kept = || equations.kept(self.kept());
-            Ok(self.started(compiled, kept, t_start, start.to_vec())?.0)
+            let (compiled, names) = (equations.compile_for(self.options()), self.kept_of(equations.system()));
+            let kept = || equations.kept(&names);
+            Ok(self.started(compiled, (&names, kept), t_start, start.to_vec())?.0)
         })
     }
 
@@ -72,8 +104,16 @@ impl Model {
         self.document().stage(assembly.system.graph(), PROGRAM, || {
             let compiled = multipliers.compile_in_momenta(self.options(), &assembly.start_velocities());
             let kept = || multipliers.kept(self.kept());
-            Ok(self.started(compiled, kept, assembly.t_start, start.to_vec())?.0)
+            Ok(self.started(compiled, (self.kept(), kept), assembly.t_start, start.to_vec())?.0)
         })
+    }
+
+    /// The names of what is to be kept, but for integrals of the text that a system without some of its coordinates does not have.
+    fn kept_of(&self, system: &System<'_>) -> Vec<String> {
+        let is_written =
+            |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
+        let is_there = |name: &String| system.integrals().iter().any(|(known, _)| known == name);
+        self.kept().iter().filter(|name| is_there(name) || !is_written(name)).cloned().collect()
     }
 
     /// The derivative by external forces is part of the Jacobian under them.
@@ -88,7 +128,7 @@ impl Model {
     fn started(
         &self,
         compiled: Result<Motion, MechError>,
-        kept: impl FnOnce() -> Result<KeptIntegrals, MechError>,
+        (names, kept): (&[String], impl FnOnce() -> Result<KeptIntegrals, MechError>),
         t_start: f64,
         start: Vec<f64>,
     ) -> Result<(Motion, Vec<f64>), ModelError> {
@@ -104,14 +144,14 @@ impl Model {
                 None => refuse(error.to_string()),
             }
         })?;
-        if let Some(name) = self.kept().first().filter(|_| !self.parameter_values().tables().is_empty()) {
+        if let Some(name) = names.first().filter(|_| !self.parameter_values().tables().is_empty()) {
             let message = format!("`{name}` cannot be kept where inputs change with time");
             let help = "leave it out of `project`, or give the inputs constant values";
             return Err(self
                 .document()
                 .error(&self.document().kept_place(name), MeaningError::NoForm { message, help }));
         }
-        if !self.kept().is_empty() {
+        if !names.is_empty() {
             let kept = kept().map_err(|error| self.document().derivation_error(error))?;
             let forces = motion.parameters().len() - self.external.len()..;
             for (i, force) in motion.parameters_mut()[forces.clone()].iter_mut().enumerate() {

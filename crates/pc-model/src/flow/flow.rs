@@ -1,6 +1,5 @@
 //! The vector field that is integrated, what happens on its way, and what a table shows of its states.
 
-use pc_expr::{Backend, Evaluator, Expr, Program};
 use pc_mech::{LegendreTransform, MechError, Motion};
 
 use crate::assembly::assembly::Assembly;
@@ -8,7 +7,8 @@ use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::flow::event_slopes::EventSlopes;
 use crate::flow::events::FlowEvents;
-use crate::flow::reading::{Reading, inputs};
+use crate::flow::free_form::FreeForm;
+use crate::flow::reading::Reading;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
@@ -32,76 +32,87 @@ impl Flow {
     /// # Errors
     /// [`ModelError`] if there are none, or nothing can be evaluated at the start.
     pub fn new(model: &Model, assembly: &Assembly<'_>, variables: Variables) -> Result<Flow, ModelError> {
-        match variables {
-            Variables::QuasiVelocities => {
+        let refused = |error| assembly.document.derivation_error(error);
+        match (variables, assembly.constraints.held()) {
+            (Variables::QuasiVelocities, Some(_)) => {
                 let compiled = model.compile(assembly)?;
-                let all = assembly.system.quasi_velocities().iter().copied();
-                let free: Vec<Expr<'_>> =
-                    all.filter(|eta| compiled.0.names().contains(&eta.to_string())).collect();
-                Flow::of(model, assembly, &free, compiled, None)
+                Flow::of(model, assembly, &FreeForm::all(assembly), compiled, None)
             }
-            Variables::Momenta => {
+            (Variables::Momenta, Some(held)) => {
                 let mut transform = assembly.legendre_transform(variables)?;
-                let system = match assembly.constraints.formulation() {
-                    ConstraintFormulation::Multipliers(_) => assembly.system.clone(),
-                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
-                        assembly.system_in(variables)?
-                    }
-                };
-                let start = assembly.start_of(&system.state());
-                let start = transform.to_momenta(assembly.t_start, &start);
-                let start = start.map_err(|error| assembly.document.derivation_error(error))?;
-                let motion = match assembly.constraints.formulation() {
-                    ConstraintFormulation::Multipliers(held) => {
-                        model.compile_in_momenta(&held.multipliers, assembly, &start)?
-                    }
-                    ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => {
-                        let canonical = assembly.canonical_in(variables)?;
-                        model.compile_canonical(&canonical, assembly.t_start, &start)?
-                    }
-                };
-                Flow::of(model, assembly, system.quasi_velocities(), (motion, start), Some(transform))
+                let form = FreeForm::all(assembly);
+                let start = assembly.start_of(&form.system.state());
+                let start = transform.to_momenta(assembly.t_start, &start).map_err(refused)?;
+                let motion = model.compile_in_momenta(held, assembly, &start)?;
+                Flow::of(model, assembly, &form, (motion, start), Some(transform))
+            }
+            (_, Some(_)) => {
+                let message =
+                    "its constraints are held by multipliers, and this form is of independent velocities";
+                let help = "choose these by --independent, or take the form poincare or canonical";
+                Err(assembly.no_form(message.to_owned(), help))
+            }
+            (Variables::Momenta | Variables::ReducedMomenta, None) => {
+                let form = assembly.free_form(variables)?;
+                let mut transform = assembly.legendre_transform(variables)?;
+                let start =
+                    transform.to_momenta(assembly.t_start, &assembly.start_in(&form)?).map_err(refused)?;
+                let canonical = assembly.canonical_in(variables)?;
+                let motion = model.compile_canonical(&canonical, assembly.t_start, &start)?;
+                Flow::of(model, assembly, &form, (motion, start), Some(transform))
+            }
+            (_, None) => {
+                let (equations, form) = assembly.equations_of(variables)?;
+                let start = assembly.start_in(&form)?;
+                let compiled = model.compile_equations(&equations, assembly.t_start, start)?;
+                Flow::of(model, assembly, &form, compiled, None)
             }
         }
     }
 
-    /// The flow of a motion whose state has, or whose momenta have, these free quasi-velocities.
+    /// The flow of a motion whose state has, or whose momenta have, the quasi-velocities of a form.
     fn of<'g>(
         model: &Model,
         assembly: &Assembly<'g>,
-        free: &[Expr<'g>],
+        form: &FreeForm<'g>,
         (motion, start): (Motion, Vec<f64>),
         transform: Option<LegendreTransform>,
     ) -> Result<Flow, ModelError> {
-        let system = &assembly.system;
-        let motion = assembly.placed(motion.within_chart(system))?;
-        let x = system.frame().coordinates();
+        let (system, free) = (&assembly.system, form.independent.as_slice());
+        let motion = assembly.within_chart(motion, form)?;
+        let x = form.system.frame().coordinates();
+        if x.len() < system.frame().coordinates().len() && !assembly.events.is_empty() {
+            let message = "its events are of all coordinates, and this form has fewer".to_owned();
+            return Err(assembly.no_form(message, "take another form: poincare or canonical"));
+        }
         let declared = &system.quasi_velocities()[..assembly.declared];
         let all = assembly.quasi_velocities_of(free)?;
-        let eta = system.quasi_velocities();
-        let free_places = free.iter().filter_map(|free| eta.iter().position(|eta| eta == free)).collect();
-        let states: Vec<Expr<'g>> = system.states().iter().map(|&(z, _)| z).collect();
-        let inputs = inputs(system, &[x, free, &states].concat());
-        let program = Program::new(system.graph(), &inputs, &all).map_err(MechError::from);
-        let program = assembly.placed(program)?;
-        let reading = Reading {
-            coordinates: x.len(),
-            quasi_velocities: Evaluator::new(program, Backend::Interpreter),
-            free: free_places,
-            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
-            transform,
-            room: Vec::new(),
-        };
-        let explicit = reading.transform.is_none()
-            && !matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
+        let reading = Reading::new(assembly, form, &all, transform)?;
+        let explicit = reading.transform.is_none() && form.matrix.is_none() && !assembly.has_multipliers();
         let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
+        // Where multipliers are eliminated they still say where a reset may lead.
+        let watch = match assembly.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held)
+                if assembly.constraints.held().is_none() && !assembly.events.is_empty() =>
+            {
+                Some(model.compile_multipliers(&held.multipliers, assembly)?.0)
+            }
+            _ => None,
+        };
+        let watch = watch.as_ref().unwrap_or_else(|| motion.in_quasi_velocities());
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, motion.in_quasi_velocities(), slopes)?,
+            events: FlowEvents::new(model, assembly, &reading, watch, slopes)?,
+            names: x
+                .iter()
+                .chain(declared)
+                .copied()
+                .chain(system.states().iter().map(|&(z, _)| z))
+                .map(|name| name.to_string())
+                .collect(),
             motion,
             start,
-            names: x.iter().chain(declared).chain(&states).map(ToString::to_string).collect(),
             reading,
         })
     }
@@ -140,6 +151,12 @@ impl Flow {
         row
     }
 
+    /// The rates of all quasi-velocities of the system, where its state moves at these rates; none where the state has quasi-velocities
+    /// of the system, whose rates are there.
+    pub fn rates_of_quasi_velocities(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
+        self.reading.rates(t, state, rates)
+    }
+
     /// The state of coordinates and all quasi-velocities of the system, of which those that are not free are not looked at.
     ///
     /// # Errors
@@ -151,6 +168,11 @@ impl Flow {
     /// The places, among all quasi-velocities of the system, of the free ones: those of the state, or of its momenta.
     pub fn free_quasi_velocities(&self) -> &[usize] {
         &self.reading.free
+    }
+
+    /// Whether its quasi-velocities, or those of its momenta, are quasi-velocities of the system.
+    pub fn has_own_variables(&self) -> bool {
+        !self.reading.is_changed()
     }
 
     /// Whether the state has momenta.

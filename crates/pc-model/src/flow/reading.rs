@@ -1,7 +1,11 @@
 //! States read as coordinates, all quasi-velocities and first-order states of a model.
 
-use pc_expr::{Evaluator, Expr, Inputs};
+use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 use pc_mech::{LegendreTransform, MechError, System};
+
+use crate::assembly::assembly::Assembly;
+use crate::diagnostics::error::ModelError;
+use crate::flow::free_form::FreeForm;
 
 /// How a state is read as coordinates and all quasi-velocities of the model, and written.
 #[derive(Clone, Debug)]
@@ -17,9 +21,83 @@ pub(super) struct Reading {
     pub(super) transform: Option<LegendreTransform>,
     /// Room for a state in quasi-velocities.
     pub(super) room: Vec<f64>,
+    /// Where the state has quasi-velocities that are not the model's.
+    change: Option<Change>,
+}
+
+/// Quasi-velocities of a state that are not those of the model.
+#[derive(Clone, Debug)]
+struct Change {
+    /// These as functions of (t, x, η, z) with the free η.
+    written: Evaluator,
+    /// The rates of all quasi-velocities of the model as functions of (t, x, η', z, η̇').
+    rates: Evaluator,
 }
 
 impl Reading {
+    /// That of the states of a form, `all` quasi-velocities being functions of its independent ones.
+    ///
+    /// # Errors
+    /// [`ModelError`] for a symbol without a value.
+    pub(super) fn new<'g>(
+        assembly: &Assembly<'g>,
+        form: &FreeForm<'g>,
+        all: &[Expr<'g>],
+        transform: Option<LegendreTransform>,
+    ) -> Result<Reading, ModelError> {
+        let (system, graph) = (&form.system, form.system.graph());
+        let known: Vec<_> = form.independent.iter().copied().zip(form.values.iter().copied()).collect();
+        let all = graph.substitute(all, &known);
+        let compiled = |state: &[Expr<'g>], values: &[Expr<'g>]| {
+            let program = Program::new(graph, &inputs(system, state), values);
+            let program = assembly.placed(program.map_err(MechError::from))?;
+            Ok::<_, ModelError>(Evaluator::new(program, Backend::Interpreter))
+        };
+        let change = match &form.matrix {
+            None => None,
+            Some(_) => {
+                let (eta, accelerations) = (system.quasi_velocities(), system.accelerations());
+                let frame = system.frame();
+                let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
+                    .chain(eta.iter().copied().zip(accelerations.iter().copied()))
+                    .chain([(frame.time(), Expr::ONE)])
+                    .collect();
+                let moving = [system.state(), accelerations].concat();
+                Some(Change {
+                    written: compiled(&system.state_with(&form.independent), &form.definitions)?,
+                    rates: compiled(&moving, &graph.directional(&all, &along))?,
+                })
+            }
+        };
+        let eta = assembly.system.quasi_velocities();
+        let place = |free: &Expr<'g>| eta.iter().position(|eta| eta == free);
+        Ok(Reading {
+            coordinates: system.frame().coordinates().len(),
+            quasi_velocities: compiled(&system.state(), &all)?,
+            free: form.independent.iter().filter_map(place).collect(),
+            parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            transform,
+            room: Vec::new(),
+            change,
+        })
+    }
+
+    /// Whether the state has quasi-velocities that are not the model's.
+    pub(super) fn is_changed(&self) -> bool {
+        self.change.is_some()
+    }
+
+    /// The rates of all quasi-velocities of the model where a state moves at these rates; none where the state has quasi-velocities
+    /// of the model.
+    pub(super) fn rates(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
+        let change = self.change.as_mut()?;
+        let moving = self.coordinates..self.coordinates + self.free.len();
+        let state = [state, &rates[moving]].concat();
+        let mut values = vec![f64::NAN; change.rates.program().outputs_len()];
+        change.rates.eval(t, &state, &self.parameters, &mut values);
+        Some(values)
+    }
+
     /// (x, η, z) with all η of a state.
     ///
     /// # Errors
@@ -69,6 +147,11 @@ impl Reading {
         let mut state = coordinates.to_vec();
         state.extend(self.free.iter().map(|&s| eta[s]));
         state.extend_from_slice(states);
+        if let Some(change) = &mut self.change {
+            let mut eta = vec![f64::NAN; self.free.len()];
+            change.written.eval(t, &state, &self.parameters, &mut eta);
+            state[self.coordinates..self.coordinates + eta.len()].copy_from_slice(&eta);
+        }
         match &mut self.transform {
             Some(transform) => transform.to_momenta(t, &state),
             None => Ok(state),

@@ -3,7 +3,6 @@
 use pc_mech::{Canonical, Equations, LegendreTransform, System};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 
 /// The variables of the state beside the coordinates, and so which equations of motion.
@@ -14,6 +13,38 @@ pub enum Variables {
     QuasiVelocities,
     /// The momenta of (10), those of the same quasi-velocities.
     Momenta,
+    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations where none is left.
+    Reduced,
+    /// The momenta of the same: Lie–Poisson equations.
+    ReducedMomenta,
+    /// Quasi-velocities that are orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) beside those of the text: Hamel's equations in these.
+    Given,
+}
+
+impl Variables {
+    /// Whether the state has momenta.
+    pub fn has_momenta(self) -> bool {
+        matches!(self, Variables::Momenta | Variables::ReducedMomenta)
+    }
+
+    /// Whether the equations are those of the model's own coordinates and quasi-velocities.
+    pub fn are_own(self) -> bool {
+        matches!(self, Variables::QuasiVelocities | Variables::Momenta)
+    }
+
+    /// What the form is called on a command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Variables::QuasiVelocities => "poincare",
+            Variables::Momenta => "canonical",
+            Variables::Reduced => "reduced",
+            Variables::ReducedMomenta => "lie-poisson",
+            Variables::Orthonormal => "orthonormal",
+            Variables::Given => "hamel",
+        }
+    }
 }
 
 impl<'g> Assembly<'g> {
@@ -23,15 +54,11 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
     pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
-        Ok(match (variables, self.constraints.formulation()) {
-            (Variables::QuasiVelocities, ConstraintFormulation::Multipliers(_)) => {
-                self.system.without_observed()
-            }
+        Ok(match variables {
+            Variables::QuasiVelocities if self.constraints.held().is_some() => self.system.without_observed(),
             // What is observed may contain velocities that are not among the free ones.
-            (Variables::Momenta, ConstraintFormulation::Multipliers(_)) => {
-                self.free_system()?.without_observed()
-            }
-            (_, ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_)) => self.free_system()?,
+            Variables::Momenta if self.constraints.held().is_some() => self.free_system()?.without_observed(),
+            _ => self.free_form(variables)?.system,
         })
     }
 
@@ -39,10 +66,11 @@ impl<'g> Assembly<'g> {
     ///
     /// # Errors
     /// [`ModelError`] at the constraint that there are no independent velocities under.
-    pub fn equations_in(&self) -> Result<Equations<'g>, ModelError> {
-        match self.constraints.formulation() {
-            ConstraintFormulation::Multipliers(held) => Ok(held.multipliers.equations().clone()),
-            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => self.equations(),
+    pub fn equations_in(&self, variables: Variables) -> Result<Equations<'g>, ModelError> {
+        match (variables, self.constraints.held()) {
+            (_, Some(held)) => Ok(held.equations().clone()),
+            (Variables::Momenta | Variables::QuasiVelocities, None) => self.equations(),
+            (other, None) => self.placed(self.free_form(other)?.system.poincare()),
         }
     }
 
@@ -53,7 +81,10 @@ impl<'g> Assembly<'g> {
     /// [`ModelError`] if there are none.
     pub fn canonical_in(&self, variables: Variables) -> Result<Canonical<'g>, ModelError> {
         let system = self.system_in(variables)?;
-        let start = self.start_of(&system.state());
+        let start = match variables.are_own() {
+            true => self.start_of(&system.state()),
+            false => self.start_in(&self.free_form(variables)?)?,
+        };
         let n = system.frame().coordinates().len();
         let canonical = system
             .canonical()
@@ -67,10 +98,8 @@ impl<'g> Assembly<'g> {
     /// # Errors
     /// [`ModelError`] if there is none.
     pub fn legendre_transform(&self, variables: Variables) -> Result<LegendreTransform, ModelError> {
-        let transform = match (variables, self.constraints.formulation()) {
-            (Variables::Momenta, ConstraintFormulation::Multipliers(held)) => {
-                held.multipliers.legendre_transform(&self.start_velocities())
-            }
+        let transform = match (variables, self.constraints.held()) {
+            (Variables::Momenta, Some(held)) => held.legendre_transform(&self.start_velocities()),
             _ => self.canonical_in(variables)?.legendre_transform(),
         };
         transform.map_err(|error| self.document.derivation_error(error))

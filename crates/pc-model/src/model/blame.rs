@@ -62,6 +62,10 @@ impl Document {
                     constraints.first().map_or(last, String::as_str),
                     "start nearer to a state that satisfies them, if there is one",
                 ),
+                ConstraintError::NotIndependent { .. } => cannot(
+                    last,
+                    "choose as many as the constraints leave free: quasi-velocities of the model, velocities x' for lagrange and voronets",
+                ),
                 other => self.derivation_error(other.into()),
             },
             NonholoError::Mech(error) => self.derivation_error(error),

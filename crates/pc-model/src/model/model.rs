@@ -7,6 +7,7 @@ use pc_expr::{Budget, Graph, Limits};
 use crate::assembly::parameters::Parameters;
 use crate::diagnostics::source::Place;
 use crate::document::Document;
+use crate::model::given::GivenQuasiVelocity;
 
 /// A model whose parameters can be set and that can be turned into a mechanical system.
 #[derive(Clone, Debug)]
@@ -28,6 +29,10 @@ pub struct Model {
     budget: Budget,
     /// The quasi-velocities, or coordinates, on which external forces act.
     pub(crate) external: Vec<String>,
+    /// Quasi-velocities that are given beside those of the document.
+    pub(crate) given: Vec<GivenQuasiVelocity>,
+    /// The names of the velocities that are asked for as independent ones.
+    pub(crate) independent: Vec<String>,
 }
 
 /// A name that is not a parameter of the model.
@@ -66,6 +71,8 @@ impl Model {
             kept,
             budget: Budget::default(),
             external: Vec::new(),
+            given: Vec::new(),
+            independent: Vec::new(),
         }
     }
 

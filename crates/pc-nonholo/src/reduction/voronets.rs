@@ -1,6 +1,6 @@
 //! Voronets' equations (35) and Chaplygin's.
 
-use pc_mech::{Expr, Graph, Matrix, Multipliers, System};
+use pc_mech::{Equations, Expr, Graph, Matrix, Multipliers, System};
 
 use crate::error::NonholoError;
 use crate::reduction::adapted::affine;
@@ -61,6 +61,20 @@ impl<'g> Voronets<'g> {
             independent,
             dependent,
         })
+    }
+
+    /// The same for the independent velocities that make the equations shortest, as [`Multipliers::shortest`] says.
+    ///
+    /// # Errors
+    /// As [`new`](Voronets::new).
+    pub fn shortest(
+        multipliers: &Multipliers<'g>,
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Voronets<'g>, NonholoError> {
+        let equations = |held: &Multipliers<'g>| -> Result<Equations<'g>, NonholoError> {
+            Ok(Voronets::new(held, at)?.system()?.poincare()?)
+        };
+        Voronets::new(&multipliers.shortest(at, equations)?, at)
     }
 
     /// The system whose constraints are solved, of all n velocities.

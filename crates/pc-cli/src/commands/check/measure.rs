@@ -112,6 +112,6 @@ fn multiplier<'g>(assembly: &Assembly<'g>) -> Option<Expr<'g>> {
     let lagrange = held.equations().system();
     let mut at: Vec<(Expr<'g>, f64)> = lagrange.state().into_iter().zip(start).collect();
     at.push((lagrange.frame().time(), assembly.t_start));
-    let voronets = Voronets::new(&held, &at).ok()?;
+    let voronets = Voronets::shortest(&held, &at).ok()?;
     ReducingMultiplier::of(&voronets).ok()?.map(|reduced| reduced.multiplier)
 }

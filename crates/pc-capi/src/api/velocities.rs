@@ -1,0 +1,49 @@
+//! Velocities that are asked for beside those of a model.
+
+use std::ffi::c_char;
+
+use crate::api::model::{Contents, change, pc_model};
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::text;
+use crate::ffi::status::pc_status;
+
+/// Gives a quasi-velocity beside those of the model, for systems of the form PC_HAMEL: a linear
+/// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where those
+/// given are fewer than the independent ones, quasi-velocities of the model complete them. Each
+/// is an output too. What is wrong with it is found by pc_model_check and pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_give_quasi_velocity(
+    model: *mut pc_model,
+    name: *const c_char,
+    definition: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let give = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, definition) = unsafe { (text(name, "name")?, text(definition, "definition")?) };
+        contents.given.push((name.to_owned(), definition.to_owned()));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, give) }
+}
+
+/// Asks for a velocity as one of the independent ones, as many as the constraints leave free:
+/// where multipliers would hold these, systems then have the equations in which they are
+/// eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
+/// equations in print and in source are those of the velocities that make them shortest. A wrong
+/// choice is found by pc_system_new.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_independent(
+    model: *mut pc_model,
+    name: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let ask = |contents: &mut Contents| {
+        // SAFETY: null or text, as the preamble demands.
+        contents.independent.push(unsafe { text(name, "name") }?.to_owned());
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { change(model, error, ask) }
+}

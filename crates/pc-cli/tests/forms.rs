@@ -1,0 +1,133 @@
+//! The forms of the equations from the command line: what is asked for, shown, written, and refused.
+
+#![expect(clippy::expect_used, reason = "tests")]
+
+use std::process::{Command, Output};
+
+fn pc(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc runs")
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = pc(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], code: i32, message: &str) {
+    let output = pc(arguments);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{error}");
+    assert!(error.contains(message), "{error}");
+    assert!(output.stdout.is_empty(), "{error}");
+}
+
+#[test]
+fn forms_are_printed_under_their_names() {
+    let sleigh = "chaplygin-sleigh";
+    for (form, more, heading, equation) in [
+        ("reduced", "", "Euler–Poincaré equations", "  ω' (J + m a²) = -m a v ω\n"),
+        ("lie-poisson", "", "Lie–Poisson equations", "  p_ω' = -a p_v p_ω/(J + m a²)\n"),
+        ("orthonormal", "", "Poincaré's equations in an orthonormal frame", "  diag(1, 1)\n"),
+        ("hamel", "p=v+2*ω", "Hamel's equations", "Quasi-velocities\n  p = v + 2 ω\n"),
+    ] {
+        let mut arguments = vec!["derive", sleigh, "--form", form];
+        arguments.extend((!more.is_empty()).then_some(more));
+        let text = said(&arguments);
+        assert!(text.contains(heading), "{text}");
+        let alike = |text: &str| text.replace("m a² + J", "J + m a²");
+        assert!(alike(&text).contains(equation), "{text}");
+        let page = said(&[&arguments[..], &["--format", "latex"]].concat());
+        assert!(page.contains("% Equations\n\\begin{align*}"), "{page}");
+        let object = said(&[&arguments[..], &["--format", "json"]].concat());
+        let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
+        if form == "hamel" {
+            assert_eq!(object["quasi_velocity_definitions"]["p"], "v + 2*ω");
+        }
+        assert_eq!(object["quasi_velocities"].as_array().map(Vec::len), Some(2));
+    }
+}
+
+/// The columns are the model's whatever the form, but for what a reduced form is without; and each run is compared with a second
+/// derivation.
+#[test]
+fn runs_show_the_columns_of_the_model() {
+    let sleigh = ["run", "chaplygin-sleigh", "--samples", "3"];
+    let header = |more: &[&str]| {
+        let output = pc(&[&sleigh, more].concat());
+        let summary = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(summary.contains("by a second derivation, which agrees"), "{summary}");
+        let table = String::from_utf8(output.stdout).expect("UTF-8");
+        let last: Vec<f64> =
+            table.lines().last().expect("rows").split(',').map(|x| x.parse().expect("a number")).collect();
+        let names: Vec<String> =
+            table.lines().next().expect("a head").split(',').map(str::to_owned).collect();
+        (names, last)
+    };
+    let (names, end) = header(&[]);
+    let of = |name: &str| end[names.iter().position(|known| known == name).expect("a column")];
+    for (more, first) in [
+        (&["--form", "reduced"][..], "v"),
+        (&["--form", "lie-poisson"], "v"),
+        (&["--form", "orthonormal"], "X"),
+        (&["--form", "hamel", "p=v+2*ω"], "X"),
+    ] {
+        let (own, last) = header(more);
+        assert_eq!(own[1], first, "{own:?}");
+        for (name, value) in own.iter().zip(last) {
+            let expected = if name == "p" { of("v") + 2.0 * of("ω") } else { of(name) };
+            // Errors of some 1e-9 a step.
+            assert!((value - expected).abs() < 1e-6, "{more:?}: {name} is {value}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn source_is_written_in_forms_and_without_a_jacobian() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().to_str().expect("UTF-8");
+    for (more, has) in [
+        (&["--form", "reduced"][..], "y[0]  v\n"),
+        (&["--form", "orthonormal"], "y[3]  η1\n"),
+        (&["--form", "hamel", "p=v+2*ω", "--no-jacobian"], "y[3]  p\n"),
+    ] {
+        said(&[&["emit", "chaplygin-sleigh", "--lang", "c", "-o", path], more].concat());
+        let files = std::fs::read_dir(path).expect("a directory").flatten();
+        let texts: Vec<String> = files.filter_map(|file| std::fs::read_to_string(file.path()).ok()).collect();
+        let text = texts.concat();
+        assert!(text.contains(has), "{text}");
+        assert_eq!(text.contains("_jacobian("), !more.contains(&"--no-jacobian"), "{text}");
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let sleigh = "chaplygin-sleigh";
+    refused(&["derive", sleigh, "p=v"], 2, "`p` is given, which is for --form hamel only");
+    refused(&["derive", sleigh, "--form", "hamel"], 4, "no quasi-velocities are given");
+    refused(&["derive", sleigh, "--form", "hamel", "p"], 2, "write NAME=EXPR");
+    refused(&["derive", sleigh, "--form", "hamel", "v=ω"], 3, "already the name of a quasi-velocity");
+    refused(&["derive", sleigh, "--form", "hamel", "p=v^2"], 3, "is not linear in the velocities");
+    refused(&["derive", sleigh, "--form", "hamel", "p=v+1"], 3, "is not linear in the velocities");
+    refused(
+        &["derive", sleigh, "--form", "hamel", "p=v", "q=2*v"],
+        4,
+        "`q` says no more than those before it",
+    );
+    refused(
+        &["derive", sleigh, "--form", "hamel", "p=v", "q=ω", "r=v-ω"],
+        4,
+        "`r` is one quasi-velocity too many",
+    );
+    refused(&["run", sleigh, "--form", "voronets"], 2, "not supported yet");
+    refused(
+        &["emit", sleigh, "--lang", "c", "-o", "/nowhere", "--form", "canonical"],
+        2,
+        "not supported yet",
+    );
+    refused(&["run", "vertical-disk", "--form", "orthonormal"], 4, "choose these by --independent");
+    refused(&["derive", "vertical-disk", "--independent", "φ'"], 4, "cannot be taken for the independent");
+    refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be taken for the independent");
+    refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
+}

@@ -1,0 +1,234 @@
+//! Which quasi-velocities are taken for independent: those that are asked for, or those whose equations are shortest.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::constraints::multipliers::Multipliers;
+use crate::equations::poincare::Equations;
+use crate::error::{ConstraintError, MechError};
+
+/// Up to so many choices are tried one after the other, each by its equations.
+const MOST_TRIED: usize = 20;
+/// Equations are derived to be compared only where as many constraints are solved, and L is written with so many operations.
+const MOST_SOLVED: usize = 3;
+const LONGEST_TRIED: u32 = 1000;
+/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: a motion goes on for a while before
+/// the equations are singular.
+const REGULAR: f64 = 0.5;
+/// What part of the largest pivot the shortest may be: equations lose a digit by it. (That more choices are not derived has a second
+/// reason: what is derived in a graph before leaves its forms there.)
+const PIVOT: f64 = 0.1;
+
+/// C at a state, its rows of length one and its columns divided by the roots of the masses: units do not matter.
+struct Weighed {
+    rows: Vec<Vec<f64>>,
+}
+
+impl<'g> Multipliers<'g> {
+    /// The same with these quasi-velocities for the [independent](Multipliers::in_independent_velocities) ones, k − m of them.
+    ///
+    /// # Errors
+    /// [`ConstraintError::NotIndependent`] if they are not as many, or none of the system's, or do not determine the others
+    /// at the values `at` of time, coordinates, quasi-velocities and parameters.
+    ///
+    /// ```
+    /// use pc_mech::{Constraint, Graph, System};
+    ///
+    /// // A pendulum: of ẋ and ẏ one is free.
+    /// let graph = Graph::new();
+    /// let pendulum = System::builder(&graph)
+    ///     .coordinates(["x", "y"])
+    ///     .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
+    ///     .build()?;
+    /// let [x, y, vx, vy] = graph.symbols(["x", "y", "x'", "y'"]);
+    /// let held = pendulum.with_multipliers(&[Constraint::new("length", x.square() + y.square() - 1.0)])?;
+    /// let at = [(x, 0.6), (y, -0.8), (vx, 0.0), (vy, 0.0)];
+    /// let chosen = held.with_independent(&[vy], &at)?;
+    /// assert_eq!(chosen.in_independent_velocities(&at)?.quasi_velocities(), [vy]);
+    /// let below = [(x, 0.0), (y, -1.0), (vx, 0.0), (vy, 0.0)];
+    /// assert!(held.with_independent(&[vy], &below).is_err());
+    /// # Ok::<(), pc_mech::MechError>(())
+    /// ```
+    pub fn with_independent(
+        &self,
+        independent: &[Expr<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Multipliers<'g>, MechError> {
+        let eta = self.equations().system().quasi_velocities();
+        let refuse = |why: String| {
+            let chosen = independent.iter().map(Expr::to_string).collect();
+            Err(ConstraintError::NotIndependent { chosen, why }.into())
+        };
+        let names = || eta.iter().map(Expr::to_string).collect::<Vec<_>>().join(", ");
+        if let Some(stray) = independent.iter().find(|name| !eta.contains(name)) {
+            return refuse(format!("`{stray}` is none; they are {}", names()));
+        }
+        let dependent: Vec<usize> = (0..eta.len()).filter(|&s| !independent.contains(&eta[s])).collect();
+        let m = self.constraints().len();
+        if dependent.len() != m {
+            let free = eta.len() - m;
+            return refuse(format!("the constraints leave {free} of {} free", names()));
+        }
+        if !self.determines(&dependent, at)? {
+            return refuse("with the constraints they do not determine the others at the start".to_owned());
+        }
+        Ok(self.depending(dependent))
+    }
+
+    /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest in print among those
+    /// that are regular at the values `at`; the ones that the constraints determine best where others are no shorter.
+    ///
+    /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: then C is eliminated
+    /// with the pivot that is shortest in print among those that are no less than a tenth of the largest.
+    ///
+    /// # Errors
+    /// Those of [`dependent_at`](Multipliers::dependent_at).
+    pub fn shortest<E>(
+        &self,
+        at: &[(Expr<'g>, f64)],
+        derive: impl Fn(&Multipliers<'g>) -> Result<Equations<'g>, E>,
+    ) -> Result<Multipliers<'g>, MechError> {
+        let best = self.dependent_at(at)?;
+        let is_given = self.dependent.as_ref() == Some(&best);
+        let (k, m) = (self.coefficients().columns(), self.constraints().len());
+        if is_given || self.is_nonlinear() || m == 0 {
+            return Ok(self.depending(best));
+        }
+        let weighed = self.weighed(at)?;
+        let lagrangian = self.equations().system().lagrangian();
+        let is_short = m <= MOST_SOLVED && lagrangian.tree_cost() <= LONGEST_TRIED;
+        let Some(choices) = choices(k, m).filter(|_| is_short) else {
+            return Ok(self.depending(weighed.shortest_pivots(self.coefficients()).unwrap_or(best)));
+        };
+        let largest = choices.iter().map(|choice| weighed.determinant(choice)).fold(0.0, f64::max);
+        let regular = |choice: &Vec<usize>| weighed.determinant(choice) >= REGULAR * largest;
+        let others = choices.into_iter().filter(|choice| *choice != best && regular(choice));
+        let tried = std::iter::once(best.clone()).chain(others).filter_map(|choice| {
+            let chosen = self.depending(choice);
+            // What cannot be derived with one choice may be with another; with none the error is that of the best.
+            derive(&chosen).ok().map(|equations| (printed_length(&equations), chosen))
+        });
+        let shortest = tried.min_by_key(|&(length, _)| length).map(|(_, chosen)| chosen);
+        Ok(shortest.unwrap_or_else(|| self.depending(best)))
+    }
+
+    fn weighed(&self, at: &[(Expr<'g>, f64)]) -> Result<Weighed, MechError> {
+        let (system, c) = (self.equations().system(), self.coefficients());
+        let (graph, k) = (system.graph(), c.columns());
+        let mass = self.equations().mass_matrix();
+        let entries: Vec<Expr<'g>> =
+            (0..k).map(|s| mass[(s, s)]).chain(c.entries().iter().copied()).collect();
+        let values = graph.evaluate(&entries, &[system.parameters(), at].concat())?;
+        let (masses, values) = values.split_at(k);
+        let lightest = masses.iter().copied().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
+        let lightest = if lightest.is_finite() { lightest } else { 1.0 };
+        let weight = |mass: f64| (if mass > 0.0 { mass } else { lightest }).sqrt().recip();
+        let row = |row: &[f64]| -> Vec<f64> {
+            let row: Vec<f64> = row.iter().zip(masses).map(|(c, &mass)| c * weight(mass)).collect();
+            let size = row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
+            row.into_iter().map(|entry| entry / size).collect()
+        };
+        Ok(Weighed { rows: values.chunks(k.max(1)).map(row).collect() })
+    }
+}
+
+impl Weighed {
+    /// |det C_D|
+    fn determinant(&self, dependent: &[usize]) -> f64 {
+        let mut rows: Vec<Vec<f64>> =
+            self.rows.iter().map(|row| dependent.iter().map(|&d| row[d]).collect()).collect();
+        let mut determinant = 1.0f64;
+        for step in 0..rows.len() {
+            let Some(best) =
+                (step..rows.len()).max_by(|&a, &b| rows[a][step].abs().total_cmp(&rows[b][step].abs()))
+            else {
+                break;
+            };
+            rows.swap(step, best);
+            determinant *= rows[step][step].abs();
+            if determinant == 0.0 || determinant.is_nan() {
+                return 0.0;
+            }
+            let (done, below) = rows.split_at_mut(step + 1);
+            for row in below {
+                let factor = row[step] / done[step][step];
+                row.iter_mut()
+                    .zip(&done[step])
+                    .skip(step)
+                    .for_each(|(entry, pivot)| *entry -= factor * pivot);
+            }
+        }
+        determinant
+    }
+
+    /// The columns of the pivots that are shortest in print among the regular ones, rising.
+    fn shortest_pivots(self, c: &Matrix<Expr<'_>>) -> Option<Vec<usize>> {
+        let mut rows: Vec<(usize, Vec<f64>)> = self.rows.into_iter().enumerate().collect();
+        let mut dependent = Vec::new();
+        while !rows.is_empty() {
+            let largest =
+                rows.iter().flat_map(|(_, row)| row).fold(0.0f64, |largest, c| largest.max(c.abs()));
+            if largest == 0.0 || !largest.is_finite() {
+                return None;
+            }
+            let places = (0..rows.len()).flat_map(|a| (0..c.columns()).map(move |s| (a, s)));
+            let regular = places.filter(|&(a, s)| rows[a].1[s].abs() >= PIVOT * largest);
+            let (a, s) = regular.min_by_key(|&(a, s)| c[(rows[a].0, s)].tree_cost())?;
+            let (_, pivot) = rows.remove(a);
+            for (_, row) in &mut rows {
+                let factor = row[s] / pivot[s];
+                row.iter_mut().zip(&pivot).for_each(|(entry, pivot)| *entry -= factor * pivot);
+                row[s] = 0.0;
+            }
+            dependent.push(s);
+        }
+        dependent.sort_unstable();
+        Some(dependent)
+    }
+}
+
+/// All m of k, in the order of their lists; none if there are more than are tried.
+fn choices(k: usize, m: usize) -> Option<Vec<Vec<usize>>> {
+    let mut all: Vec<Vec<usize>> = vec![Vec::new()];
+    for _ in 0..m {
+        let longer = |choice: &Vec<usize>| {
+            let from = choice.last().map_or(0, |last| last + 1);
+            let choice = choice.clone();
+            (from..k).map(move |s| [choice.as_slice(), &[s]].concat()).collect::<Vec<_>>()
+        };
+        all = all.iter().flat_map(longer).collect();
+        if all.len() > MOST_TRIED * k.max(1) {
+            return None;
+        }
+    }
+    (all.len() <= MOST_TRIED).then_some(all)
+}
+
+/// How long equations are, written out.
+fn printed_length(equations: &Equations<'_>) -> u64 {
+    let mass = equations.mass_matrix().entries();
+    let sides = mass.iter().chain(equations.right_hand_side()).chain(equations.velocities());
+    sides.map(|side| u64::from(side.tree_cost())).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_choices_are_tried_unless_there_are_many() {
+        assert_eq!(choices(3, 2), Some(vec![vec![0, 1], vec![0, 2], vec![1, 2]]));
+        assert_eq!(choices(4, 0), Some(vec![vec![]]));
+        assert_eq!(choices(6, 3).map(|all| all.len()), Some(20));
+        assert_eq!(choices(7, 3), None);
+        assert_eq!(choices(40, 20), None);
+    }
+
+    #[test]
+    fn determinants_are_those_of_the_columns() {
+        let weighed = Weighed { rows: vec![vec![0.0, 1.0, 2.0], vec![1.0, 0.0, 3.0]] };
+        assert_eq!(weighed.determinant(&[0, 1]), 1.0);
+        assert_eq!(weighed.determinant(&[0, 2]), 2.0);
+        assert_eq!(weighed.determinant(&[1, 2]), 3.0);
+    }
+}

@@ -1,0 +1,242 @@
+//! The equations of independent quasi-velocities, in the coordinates and quasi-velocities of a form.
+
+use pc_mech::{Equations, Expr, Matrix, MechError, Motion, QuasiVelocityChange, System};
+
+use crate::assembly::assembly::Assembly;
+use crate::assembly::constraint_treatment::ConstraintFormulation;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::meaning::MeaningError;
+use crate::flow::variables::Variables;
+
+/// A definition of a quasi-velocity that is this part of what those before it say does not say anything more.
+const DEPENDENT: f64 = 1e-6;
+
+/// A system whose equations (9) are the equations of motion, with what its quasi-velocities have to do with those of the model.
+#[derive(Clone, Debug)]
+pub struct FreeForm<'g> {
+    /// The system.
+    pub system: System<'g>,
+    /// The independent quasi-velocities of the model that it was made of, k of them.
+    pub independent: Vec<Expr<'g>>,
+    /// Each of these as a function of time, coordinates and the quasi-velocities of the system.
+    pub values: Vec<Expr<'g>>,
+    /// The quasi-velocities of the system as functions of time, coordinates and the independent ones.
+    pub definitions: Vec<Expr<'g>>,
+    /// A of η' = A η, k × k; none where the quasi-velocities are those of the model.
+    pub(crate) matrix: Option<Matrix<Expr<'g>>>,
+}
+
+impl<'g> FreeForm<'g> {
+    /// That of the quasi-velocities of a system.
+    pub(crate) fn own(system: System<'g>) -> FreeForm<'g> {
+        let eta = system.quasi_velocities().to_vec();
+        FreeForm { independent: eta.clone(), values: eta.clone(), definitions: eta, matrix: None, system }
+    }
+
+    /// All quasi-velocities of a system whose constraints multipliers hold.
+    pub(crate) fn all(assembly: &Assembly<'g>) -> FreeForm<'g> {
+        FreeForm::own(assembly.system.clone())
+    }
+
+    fn changed(independent: &[Expr<'g>], change: &QuasiVelocityChange<'g>) -> FreeForm<'g> {
+        FreeForm {
+            independent: independent.to_vec(),
+            values: change.old_quasi_velocities().to_vec(),
+            definitions: change.definitions().to_vec(),
+            matrix: Some(change.matrix().clone()),
+            system: change.system().clone(),
+        }
+    }
+
+    /// The quasi-velocities that are not those of the model, each with what it is.
+    pub fn defined(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let all = self.system.quasi_velocities().iter().copied().zip(self.definitions.iter().copied());
+        all.filter(|(eta, definition)| eta != definition).collect()
+    }
+}
+
+impl<'g> Assembly<'g> {
+    /// The system of the independent quasi-velocities in the coordinates and quasi-velocities of these variables; momenta are those
+    /// of its quasi-velocities.
+    ///
+    /// # Errors
+    /// [`ModelError`] if there is no such form.
+    pub fn free_form(&self, variables: Variables) -> Result<FreeForm<'g>, ModelError> {
+        let free = self.observed(self.free_system()?)?;
+        match variables {
+            Variables::QuasiVelocities | Variables::Momenta => Ok(FreeForm::own(free)),
+            Variables::Reduced | Variables::ReducedMomenta => {
+                self.placed(free.reduced()).map(|reduced| FreeForm { system: reduced, ..FreeForm::own(free) })
+            }
+            Variables::Orthonormal => self.orthonormal(&free),
+            Variables::Given => self.in_given(&free),
+        }
+    }
+
+    /// The equations of motion of the independent quasi-velocities in these variables, which are no momenta, with what these are.
+    ///
+    /// # Errors
+    /// [`ModelError`] if there is no such form.
+    pub fn equations_of(&self, variables: Variables) -> Result<(Equations<'g>, FreeForm<'g>), ModelError> {
+        if variables == Variables::QuasiVelocities {
+            let equations = self.equations()?;
+            let form = FreeForm::own(equations.system().clone());
+            return Ok((equations, form));
+        }
+        let form = self.free_form(variables)?;
+        Ok((self.placed(form.system.poincare())?, form))
+    }
+
+    /// The same system with the reactions put in where they are observed.
+    fn observed(&self, free: System<'g>) -> Result<System<'g>, ModelError> {
+        match self.constraints.formulation() {
+            ConstraintFormulation::Multipliers(_) => Ok(free.observing(self.equations()?.system())),
+            ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => Ok(free),
+        }
+    }
+
+    /// In quasi-velocities η1, η2, … that are orthonormal in the kinetic metric.
+    fn orthonormal(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
+        let taken: Vec<String> = free.symbols().iter().map(Expr::to_string).collect();
+        let name = |s: usize| {
+            let mut name = format!("η{s}");
+            while taken.contains(&name) {
+                name.push('_');
+            }
+            name
+        };
+        let names = (1..=free.quasi_velocities().len()).map(name);
+        let change = free.orthonormal_change(names).map_err(|error| match error.is_not_quadratic() {
+            true => {
+                let message = "there is no frame that is orthonormal in the kinetic metric: L is not quadratic in the velocities";
+                self.no_form(message.to_owned(), "take another form: poincare, canonical, or hamel")
+            }
+            false => self.document.derivation_error(error),
+        })?;
+        let form = FreeForm::changed(free.quasi_velocities(), &change);
+        let entries: Vec<Expr<'g>> = change.matrix().entries().to_vec();
+        if self.numbers_at_start(free, &entries)?.iter().all(|entry| entry.is_finite()) {
+            return Ok(form);
+        }
+        let message = "there are no quasi-velocities that are orthonormal in the kinetic metric: it is not positive at the start";
+        Err(self.no_form(message.to_owned(), "take another form: poincare, canonical, or hamel"))
+    }
+
+    /// In the quasi-velocities given beside the text, and as many of the model's as complete them.
+    fn in_given(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
+        let (graph, eta) = (free.graph(), free.quasi_velocities());
+        let help = "give them behind the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
+        if self.given.is_empty() {
+            return Err(self.no_form("no quasi-velocities are given".to_owned(), help));
+        }
+        let all = self.quasi_velocities_of(eta)?;
+        let follow: Vec<_> = self.system.quasi_velocities().iter().copied().zip(all).collect();
+        let definitions: Vec<Expr<'g>> = self.given.iter().map(|&(_, definition)| definition).collect();
+        let definitions = graph.substitute(&definitions, &follow);
+        let rows = |functions: &[Expr<'g>]| -> Result<Vec<Vec<f64>>, ModelError> {
+            let slopes: Vec<Expr<'g>> = functions.iter().flat_map(|&f| graph.gradient(f, eta)).collect();
+            let slopes = self.numbers_at_start(free, &slopes)?;
+            Ok(slopes.chunks(eta.len().max(1)).map(<[f64]>::to_vec).collect())
+        };
+        let mut known: Vec<Vec<f64>> = Vec::new();
+        let mut chosen: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+        for ((&(name, _), &definition), row) in self.given.iter().zip(&definitions).zip(rows(&definitions)?) {
+            let (rest, left) = rest(&known, &row);
+            if left.is_nan() || left <= DEPENDENT {
+                let message = match chosen.len() == eta.len() {
+                    true => format!("`{name}` is one quasi-velocity too many: {} are independent", eta.len()),
+                    false => format!("at the start `{name}` says no more than those before it"),
+                };
+                return Err(self.no_form(message, help));
+            }
+            known.push(rest);
+            chosen.push((name, definition));
+        }
+        // Each time the one that those there are determine least; the first of those alike.
+        let units = rows(eta)?;
+        while chosen.len() < eta.len() {
+            let left = |s: usize| rest(&known, &units[s]).1;
+            let least =
+                (0..eta.len()).fold(0, |least, s| if left(s) > left(least) + DEPENDENT { s } else { least });
+            known.push(rest(&known, &units[least]).0);
+            chosen.push((eta[least], eta[least]));
+        }
+        let (names, definitions): (Vec<String>, Vec<Expr<'g>>) =
+            chosen.into_iter().map(|(name, definition)| (name.to_string(), definition)).unzip();
+        let change = self.placed(free.quasi_velocity_change(names, &definitions))?;
+        Ok(FreeForm::changed(eta, &change))
+    }
+
+    pub(crate) fn no_form(&self, message: String, help: &'static str) -> ModelError {
+        self.document.error(&self.document.energy_place(), MeaningError::NoForm { message, help })
+    }
+
+    /// Functions of time, coordinates, the quasi-velocities of a free system and parameters at the start.
+    fn numbers_at_start(&self, free: &System<'g>, functions: &[Expr<'g>]) -> Result<Vec<f64>, ModelError> {
+        let at = [free.parameters(), &self.at_start()].concat();
+        self.placed(free.graph().evaluate(functions, &at).map_err(MechError::from))
+    }
+
+    /// The start of a form, in its coordinates, quasi-velocities and first-order states.
+    ///
+    /// # Errors
+    /// [`ModelError`] if a definition has no value there.
+    pub fn start_in(&self, form: &FreeForm<'g>) -> Result<Vec<f64>, ModelError> {
+        let eta = self.numbers_at_start(&form.system, &form.definitions)?;
+        let states: Vec<Expr<'g>> = form.system.states().iter().map(|&(z, _)| z).collect();
+        Ok([self.start_of(form.system.frame().coordinates()), eta, self.start_of(&states)].concat())
+    }
+
+    /// Whether the constraints are more than that quasi-velocities vanish.
+    pub fn has_multipliers(&self) -> bool {
+        matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
+    }
+
+    /// A motion of a form that does not go on past a place where its state does not determine velocities.
+    ///
+    /// # Errors
+    /// [`ModelError`], none for a form of this system.
+    pub(crate) fn within_chart(&self, motion: Motion, form: &FreeForm<'g>) -> Result<Motion, ModelError> {
+        let all = self.system.quasi_velocities();
+        if form.system.frame().coordinates() != self.system.frame().coordinates() {
+            return Ok(motion); // where what is left out is not determined nothing depends on it
+        }
+        let motion = match &form.matrix {
+            None => motion.within_chart(&self.system),
+            Some(matrix) => {
+                let place = |eta: &Expr<'g>| form.independent.iter().position(|known| known == eta);
+                let whole =
+                    Matrix::from_fn(all.len(), all.len(), |i, j| match (place(&all[i]), place(&all[j])) {
+                        (Some(u), Some(s)) => matrix[(u, s)],
+                        _ if i == j => Expr::ONE,
+                        _ => Expr::ZERO,
+                    });
+                motion.within_chart_of_change(&self.system, &whole)
+            }
+        };
+        let motion = self.placed(motion)?;
+        let ConstraintFormulation::Multipliers(held) = self.constraints.formulation() else {
+            return Ok(motion);
+        };
+        if held.multipliers.is_nonlinear() || self.constraints.held().is_some() {
+            return Ok(motion);
+        }
+        let dependent: Vec<usize> = (0..all.len()).filter(|&s| !form.independent.contains(&all[s])).collect();
+        let c = held.multipliers.coefficients();
+        let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])]);
+        self.placed(motion.within_choice(&self.system, &square))
+    }
+}
+
+/// What a row says beside those known, all of length one, and how large a part of the row that is.
+fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
+    let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
+    let mut rest = row.to_vec();
+    // Twice is enough.
+    for known in known.iter().chain(known) {
+        let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
+        rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
+    }
+    let left = size(&rest);
+    (rest.iter().map(|entry| entry / left).collect(), left / size(row))
+}

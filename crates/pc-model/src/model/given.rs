@@ -1,0 +1,61 @@
+//! Quasi-velocities that are given beside those of the document.
+
+use pc_expr::parse::{FUNCTIONS, is_name};
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
+use crate::diagnostics::source::{Place, Source};
+use crate::document::{Document, Expression};
+
+/// A quasi-velocity with its definition, a linear form in the velocities of a model or its quasi-velocities.
+#[derive(Clone, Debug)]
+pub struct GivenQuasiVelocity {
+    pub(crate) name: String,
+    pub(crate) source: Source,
+    pub(crate) expression: Expression,
+}
+
+impl GivenQuasiVelocity {
+    /// That of a name and a text.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the name is none or is taken, or the text is no expression.
+    pub(crate) fn new(
+        document: &Document,
+        taken: &[&str],
+        name: &str,
+        text: &str,
+    ) -> Result<Self, ModelError> {
+        let source = Source::new(name, text);
+        let refuse =
+            |kind: ErrorKind| Err(source.error(&Place { entry: String::new(), span: 0..text.len() }, kind));
+        if !is_name(name) {
+            return refuse(ErrorKind::NotAName { key: name.to_owned() });
+        }
+        let reserved = FUNCTIONS.iter().any(|function| function.name == name);
+        if reserved || matches!(name, "t" | "pi" | "energy") {
+            return refuse(ErrorKind::Reserved { name: name.to_owned() });
+        }
+        if taken.contains(&name) {
+            return refuse(ErrorKind::Meaning(MeaningError::GivenTwice { name: name.to_owned() }));
+        }
+        if let Some((known, first)) =
+            document.declared_names().into_iter().find(|(known, _)| known.text == name)
+        {
+            let line = document.source.position(known.place.span.start).line;
+            return refuse(ErrorKind::NameTaken { name: name.to_owned(), first, line });
+        }
+        Ok(GivenQuasiVelocity { name: name.to_owned(), expression: Expression::of(&source)?, source })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its definition.
+    pub fn expression(&self) -> &Expression {
+        &self.expression
+    }
+}
