@@ -101,9 +101,9 @@ impl Graph {
             if next.is_zero() {
                 break;
             }
-            // The derivatives of a polynomial become shorter; where they grow there is none to be found.
-            let growing =
-                next.tree_cost() > derivatives[derivatives.len() - 1].tree_cost().saturating_mul(2) + 8;
+            // The derivatives of a polynomial become shorter; where they grow, or are past counting, there is none to be found.
+            let most = derivatives[derivatives.len() - 1].tree_cost().saturating_mul(2).checked_add(8);
+            let growing = most.is_none_or(|most| next.tree_cost() > most);
             if derivatives.len() > MAX_DEGREE || growing {
                 return None;
             }
