@@ -168,9 +168,9 @@ fn a_free_body_has_the_bracket_of_lie_and_poisson() {
   (p_w1, p_w3) = p_w2
   (p_w2, p_w3) = -p_w1
   H = ½ (p_w1²/A + p_w2²/B + p_w3²/C)
-  p_w1' = -p_w2 p_w3 (1/B - 1/C)
+  p_w1' = p_w2 p_w3 (1/C - 1/B)
   p_w2' = p_w1 p_w3 (1/A - 1/C)
-  p_w3' = -p_w1 p_w2 (1/A - 1/B)
+  p_w3' = p_w1 p_w2 (1/B - 1/A)
   C1 = p_w1² + p_w2² + p_w3²   (proved)
   rank 2 of 3: 1 independent near almost every point";
     assert_eq!(section(&text, "Reduction by symmetry"), expected);

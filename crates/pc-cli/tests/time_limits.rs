@@ -88,10 +88,10 @@ fn a_sweep_ends_as_a_whole_and_goes_on() {
     assert!(fs::read(at("part.csv")).expect("rows") == fs::read(at("whole.csv")).expect("rows"));
 }
 
-/// Sixty coordinates that are all coupled, of which the second derivation has thousands of second derivatives at each state.
+/// Coordinates that are all coupled, of which the second derivation has thousands of second derivatives at each state.
 #[test]
 fn a_check_ends_within_the_second_derivation() {
-    const N: usize = 60;
+    const N: usize = 120;
     let mut model = "[coordinates]\n".to_owned();
     let all = |term: &dyn Fn(usize) -> String| (0..N).map(term).collect::<Vec<_>>().join(" + ");
     (0..N).for_each(|i| writeln!(model, "x{i} = {}", 0.1 + 0.01 * i as f64).expect("text"));
@@ -103,6 +103,6 @@ fn a_check_ends_within_the_second_derivation() {
         all(&|i| format!("cos({i}*x{i})*x{}", (i + 1) % N)),
     )
     .expect("text");
-    let said = limited(pc(&["check", "-", "--limit-time", "1"], &model), 1.0);
+    let said = limited(pc(&["check", "-", "--limit-time", "0.5"], &model), 0.5);
     assert!(said.contains("help: raise the limit"), "{said}");
 }

@@ -57,6 +57,7 @@ pub(crate) enum SystemCall {
     },
     Bracket([String; 2], Vec<f64>),
     Print(i8),
+    Theory(i8, u8),
     Emit(String, f64),
     Inventory(u8),
     Force {
@@ -148,6 +149,8 @@ fn of_system() -> impl Strategy<Value = SystemCall> {
             .prop_map(|(function, index, value)| Parameters { function, index, value }),
         1 => ([texts(), texts()], state()).prop_map(|(texts, y)| Bracket(texts, y)),
         1 => (-1i8..4).prop_map(Print),
+        // What has a degree is long derived.
+        1 => (-1i8..4, prop_oneof![9 => Just(0u8), 1 => Just(1u8)]).prop_map(|(format, degree)| Theory(format, degree)),
         1 => (texts(), numbers()).prop_map(|(name, t)| Emit(name, t)),
         1 => any::<u8>().prop_map(Inventory),
         2 => (any::<u8>(), any::<u8>()).prop_map(|(function, good)| Force { function, good }),

@@ -68,12 +68,16 @@ impl Handles {
                 ModelCall::Bytes(function, text) => {
                     let text = CString::new(text.as_slice()).unwrap();
                     let (text, name) = (text.as_ptr(), c"x".as_ptr());
-                    self.call(|error| match function % 6 {
+                    self.call(|error| match function % 10 {
                         0 => pc_model_add_definition(model, text, name, error),
                         1 => pc_model_set_potential(model, text, error),
                         2 => pc_model_add_event(model, name, text, 0, 0, error),
                         3 => pc_model_set_kinetic(model, text, error),
                         4 => pc_model_set(model, text, 1.0, error),
+                        5 => pc_model_set_action(model, text, error),
+                        6 => pc_model_add_action_constant(model, text, 1.0, error),
+                        7 => pc_model_give_quasi_velocity(model, name, text, error),
+                        8 => pc_model_add_independent(model, text, error),
                         _ => pc_model_keep(model, text, error),
                     })
                 }

@@ -72,6 +72,15 @@ impl Handles {
                     free_text(text);
                     outcome
                 }
+                SystemCall::Theory(format, degree) => {
+                    let (mut text, format) = (ptr::null_mut(), c_int::from(*format));
+                    let place = &raw mut text;
+                    let outcome = self.call(|error| {
+                        pc_system_theory(system, format, usize::from(*degree), ptr::null(), 0, place, error)
+                    });
+                    free_text(text);
+                    outcome
+                }
                 SystemCall::Emit(name, t_end) => {
                     let name = if name.len() > 3 { c("motion") } else { c(name) };
                     let (mut header, mut source) = (ptr::null_mut(), ptr::null_mut());

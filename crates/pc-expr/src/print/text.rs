@@ -10,7 +10,7 @@ use crate::print::style::Style;
 use crate::print::writer::Writer;
 
 /// Expressions of more operations than this, when written out, are written with names for their parts.
-const LONG: u32 = 2_000;
+const LONG: u32 = 20_000;
 /// Columns of what stands between two signs there.
 const ROOM: usize = 80;
 

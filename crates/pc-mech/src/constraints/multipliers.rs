@@ -380,6 +380,7 @@ impl<'g> Multipliers<'g> {
             positions: &positions,
             places,
             velocities: &self.velocities,
+            affine: !self.is_nonlinear(),
             displacements: &displacements,
             lower,
             bordered: &entries,

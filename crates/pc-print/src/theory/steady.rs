@@ -12,7 +12,10 @@ use crate::words::short;
 /// What Newton's method leaves of a zero.
 const ZERO: f64 = 1e-9;
 
-/// All that are found.
+/// Of more, that are members of families then, only so many are listed.
+const MOST_LISTED: usize = 8;
+
+/// All that are found, the nearest of many.
 pub(crate) fn section(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Result<Section, ModelError> {
     let section = |entries| Ok(Section { key: "steady_motions", title: "Steady motions", entries });
     if ground.assembly.constraints.nonlinear().is_some() {
@@ -31,9 +34,12 @@ pub(crate) fn section(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Res
             vec![Entry::words(format!("none found from {} starts", found.starts))]
         }
         Ok(found) => {
-            let all = (1..).zip(&found.list).map(|(number, found)| entry(number, found));
-            all.chain([Entry::words(format!("found from {} starts; there may be others", found.starts))])
-                .collect()
+            let all = (1..).zip(found.list.iter().take(MOST_LISTED));
+            let more = found.list.len().saturating_sub(MOST_LISTED);
+            let more =
+                (more > 0).then(|| Entry::words(format!("{more} more are found: they are not isolated")));
+            let starts = Entry::words(format!("found from {} starts; there may be others", found.starts));
+            all.map(|(number, found)| entry(number, found)).chain(more).chain([starts]).collect()
         }
         Err(NoSteadyMotions::NotAutonomous) => vec![Entry::words("none: the equations depend on time")],
         Err(NoSteadyMotions::SurfaceUnknown) => {

@@ -42,6 +42,8 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) places: Vec<usize>,
     /// g(t, x, η), one a constraint; ḟ = g for those with a position.
     pub(crate) velocities: &'a [Expr<'g>],
+    /// Whether all of these are affine in η.
+    pub(crate) affine: bool,
     /// What vanishes where these do, and of which constraints it is.
     pub(crate) followers: &'a [(String, Expr<'g>)],
     /// b η
@@ -85,6 +87,8 @@ pub(crate) struct Surface {
     room: Room,
     /// The velocities from which the nearest are looked for.
     pub(super) given: Vec<f64>,
+    /// Whether g is affine in η, so that one step leads to the nearest.
+    pub(super) affine: bool,
 }
 
 /// Room for a step of Newton's method: where it begins, what it changes, and the errors of f there.
@@ -137,6 +141,7 @@ impl Surface {
             places: conditions.places,
             room: Room::default(),
             given: Vec::new(),
+            affine: conditions.affine,
         })
     }
 

@@ -38,6 +38,9 @@ impl Surface {
         y: &mut [f64],
         p: &[f64],
     ) -> Result<(), EvaluationFailure> {
+        if self.affine {
+            return self.project_part(Part::Velocity, t, y, p);
+        }
         let mut given = std::mem::take(&mut self.given);
         given.clear();
         given.extend_from_slice(&y[self.moving()]);
