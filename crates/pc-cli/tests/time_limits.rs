@@ -76,10 +76,10 @@ fn a_sweep_ends_as_a_whole_and_goes_on() {
     let model = at("model.toml");
     fs::write(&model, PENDULUM).expect("a model");
     let sweep = |limit: &str, name: &str| {
-        let vary = ["--vary", "g=1:2:60", "--t-end", "1000", "--limit-time", limit, "-o", &at(name)];
+        let vary = ["--vary", "g=1:2:60", "--t-end", "4000", "--limit-time", limit, "-o", &at(name)];
         pc(&[&["sweep", &model], &vary[..]].concat(), "")
     };
-    let said = limited(sweep("0.5", "part.csv"), 0.5);
+    let said = limited(sweep("0.2", "part.csv"), 0.2);
     assert!(said.contains("of 60 members: more time") && said.contains("the same command goes on"), "{said}");
     for name in ["part.csv", "whole.csv"] {
         let (output, _) = sweep("1e6", name);
