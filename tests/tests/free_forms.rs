@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use pc_expr::{Inputs, Interpreter, Kernel, Program};
+use pc_expr::{Folding, Inputs, Interpreter, Kernel, Program};
 use pc_mech::{Graph, System, VectorField};
 use pc_model::{Assembly, BUILTIN, Builtin, Document, Flow, Model, Source, Variables};
 use pc_print::{Derived, Form, Operations};
@@ -136,6 +136,46 @@ fn all_models_move_alike_in_reduced_and_orthonormal_form() {
         let error = assembled(&model, &graph).free_form(Variables::Orthonormal).unwrap_err().to_string();
         assert!(error.contains("orthonormal in the kinetic metric: L is not quadratic"), "{error}");
     }
+}
+
+/// A metric of 1.02, whose root is no number of finitely many digits: rounded, its square would be another, and near x = 0 terms
+/// in x⁻⁵ would not cancel. ω̇ by Lagrange's equations with a multiplier, in 40 digits.
+#[test]
+fn roots_of_numbers_are_exact_in_an_orthonormal_frame() {
+    let mut model = parsed(
+        r#"
+[coordinates]
+x = -0.0071324568147978365
+"φ" = 0.9528100841076882
+[quasi_velocities]
+"ω" = 6.21324506640695
+w = 0.3967100102515362
+[kinematics]
+x = "w"
+"φ" = "sqrt(1.22*φ)*ω + 0.44*cos(2.0*t)"
+[constraints]
+k = "0.18 - 0.05*cos(φ)*ω - 0.19*x^2*w"
+[lagrangian]
+kinetic = "0.51*ω^2 + 0.2*w + 1.04*exp(-1)*w + 0.26*tanh(x)*ω"
+[simulation]
+t_start = 0.7666216164272852
+"#,
+    );
+    model.choose_independent(["ω"]);
+    let graph = Graph::new();
+    let assembly = assembled(&model, &graph);
+    let equations = assembly.free_form(Variables::Orthonormal).unwrap().system.poincare().unwrap();
+    assert_eq!(equations.mass_matrix()[(0, 0)], 1.into());
+    // As it is written in print, in the order that a state has.
+    let page = graph.page(Folding::Structural);
+    let written = equations.written(&page)[0].unwrap();
+    let symbols = ["t", "x", "φ", "η1"].map(|name| page.symbol(name));
+    let at =
+        [0.7666216164272852, -0.0071324568147978365, 0.9528100841076882, 6.21324506640695 * 1.02f64.sqrt()];
+    let at: Vec<_> = symbols.into_iter().zip(at).collect();
+    let found = page.evaluate(&[written], &at).unwrap()[0] / 1.02f64.sqrt();
+    // Terms in x⁻², 2·10⁴, are summed.
+    assert!((found / -4746.645073995105 - 1.0).abs() < 1e-14, "{found}");
 }
 
 /// η'_u = A_us η_s with A_us of random numbers and sines of the coordinates, far from singular.

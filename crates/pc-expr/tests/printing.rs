@@ -6,7 +6,7 @@ mod common;
 
 use common::{Bounded, trees};
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, parse};
-use pc_expr::{Expr, Folding, Function, Graph, Scalar, Style};
+use pc_expr::{Expr, Folding, Function, Graph, Scalar, Side, Style};
 use proptest::prelude::*;
 
 /// The value of a syntax tree.
@@ -179,4 +179,31 @@ fn latex_says_what_is_meant() {
     ] {
         assert_eq!(expr.display(Style::Latex), text);
     }
+}
+
+/// A line may end within a bracket, which changes nothing of what it says: \sin x (a − b) would be sin(x (a − b)).
+#[test]
+fn brackets_between_lines_say_what_is_meant() {
+    let graph = Graph::with_folding(Folding::Structural);
+    let [a, b, x, m_1] = graph.symbols(["a", "b", "x", "m_1"]);
+    let factor = x.sin() * (a + b.square());
+    for (line, terms) in [
+        (factor, vec!["\\sin\\left(x\\right) \\Bigl(a", "+ b^{2}\\Bigr)"]),
+        (-factor, vec!["-\\sin\\left(x\\right) \\Bigl(a", "+ b^{2}\\Bigr)"]),
+        (-2.0 * m_1 * (a - b), vec!["2\\, m_{1}\\, \\Bigl(b", "- a\\Bigr)"]),
+    ] {
+        let names = graph.names(&[Side::Sum(line)], &[], 80);
+        assert_eq!(names.written(Style::Latex).terms(line), terms);
+        assert!(!line.display(Style::Latex).contains("Bigl"), "within others it is whole");
+    }
+}
+
+/// Ten thousand brackets, one in the other: written out they are short, all their parts together are not.
+#[test]
+fn what_is_deep_takes_no_more_room_than_it_needs() {
+    let graph = Graph::with_folding(Folding::Structural);
+    let symbols: Vec<Expr> = (0..9_000).map(|i| graph.symbol(&format!("x{i}"))).collect();
+    let deep = symbols.iter().fold(graph.symbol("y"), |sum, &x| (sum + 1.0) * x);
+    let text = deep.to_string();
+    assert!(text.contains(" where z1 = ") && text.len() < 1 << 20, "{} bytes", text.len());
 }

@@ -94,6 +94,11 @@ impl<'p> Parts<'p> {
         }
         given.extend(sheet.velocity_names());
         let mut named = names(&parts, &given, layout, page);
+        let early = used_before_matrix(&parts, &named);
+        if !early.is_empty() {
+            given.retain(|given| !given.shorthand || !early.contains(&given.name));
+            named = names(&parts, &given, layout, page);
+        }
         let velocities: Vec<Row<'p>> = sheet
             .velocity_names()
             .into_iter()
@@ -127,6 +132,15 @@ impl<'p> Parts<'p> {
             (part, self.names.list().iter().enumerate().filter(here).map(|(number, _)| number).collect())
         })
     }
+}
+
+/// Names of entries of the mass matrix that would be used before it is printed.
+fn used_before_matrix(parts: &[Part<'_>], named: &Names<'_>) -> Vec<String> {
+    let before = parts.iter().take_while(|part| part.heading != Heading::MassMatrix);
+    let lines: usize = before.flat_map(|part| &part.rows).map(|row| row.sides().len()).sum();
+    let has_matrix = parts.iter().any(|part| part.heading == Heading::MassMatrix);
+    let early = named.list().iter().filter(|name| has_matrix && name.shorthand && name.line < lines);
+    early.map(|name| name.name.clone()).collect()
 }
 
 fn names<'p>(parts: &[Part<'p>], given: &[Given<'p>], layout: &Layout, page: &'p Graph) -> Names<'p> {

@@ -18,10 +18,6 @@ use crate::second::{LONG, Second};
 use crate::sized::Sized;
 use crate::tolerance::{ORDINARY, TOLERANCE};
 
-/// An orthonormal frame divides by the roots of pivots of what the constraints leave of M, and its brackets by these pivots again:
-/// where they are small, its rounding is so many times that of the equations from which it is made, at every state near by.
-const ORTHONORMAL: f64 = 1e3;
-
 /// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
 const OTHER: f64 = 1e-9;
 
@@ -320,9 +316,6 @@ impl Second {
         let (wanted, exact) = (first.quantities(), Rounding::none());
         let free = first.free.clone();
         let mut seconds = self.derivation.quantities(&here.derived, &wanted, free.as_deref(), &exact)?;
-        if first.form.starts_with(Variables::Orthonormal.name()) {
-            seconds.iter_mut().for_each(|second| second.size *= ORTHONORMAL);
-        }
         let values = first.values(&self.derivation, here, &exact)?;
         let mut noise = vec![0.0; values.len()];
         if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {

@@ -89,7 +89,7 @@ mod tests {
     /// As x goes to 0 the constraint says less and less of w: what is printed for the other velocity has terms in 1/x⁴ that cancel
     /// and absorb what is left. Some states say nothing of it, others do.
     #[test]
-    fn what_is_absorbed_is_no_disagreement() {
+    fn what_is_absorbed_is_passed_over() {
         let agreement = verify(
             &model(
                 r#"
@@ -114,6 +114,9 @@ kinetic = "0.51*ω^2 + 0.2*w1 + 1.04*exp((-1.0))*w1 + 0.26*tanh(x)*ω"
             ),
             &Options { states: 6, seed: 0 },
         );
-        assert_eq!(agreement.unwrap().states, 6);
+        let agreement = agreement.unwrap();
+        assert_eq!(agreement.states, 6);
+        let partly = agreement.not_compared.iter().any(|line| line.contains("amplified too much"));
+        assert!(partly, "{:?}", agreement.not_compared);
     }
 }

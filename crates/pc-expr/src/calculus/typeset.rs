@@ -48,7 +48,11 @@ impl Graph {
                         Node::Call { function, args } => {
                             let args: Vec<Atom> =
                                 Dag::args(function, &args).iter().map(|arg| set[arg]).collect();
-                            paper.call(function, &args)
+                            // What is a call of numbers here is so on purpose.
+                            match args.iter().all(|arg| matches!(arg, Atom::Constant(_))) {
+                                true => paper.call_unfolded(function, &args),
+                                false => paper.call(function, &args),
+                            }
                         }
                         Node::Product { factors } => {
                             let powers: Vec<(Atom, i32)> =

@@ -47,6 +47,16 @@ impl Dag {
         }
     }
 
+    /// √x, a root also where x is a number that is no square: rounded, its square would not be x.
+    pub(crate) fn exact_root(&mut self, x: Atom) -> Atom {
+        match x {
+            Atom::Constant(c) if !c.is_negative() && c.exact_sqrt().is_none() => {
+                self.call_unfolded(Function::Sqrt, &[x])
+            }
+            _ => self.call(Function::Sqrt, &[x]),
+        }
+    }
+
     /// x^y: integer powers are products, half-integer ones powers of a square root.
     fn constant_power(&mut self, x: Atom, y: Number) -> Atom {
         let small = |q: Number| q.as_integer().filter(|e| e.unsigned_abs() <= MAX_EXPONENT);

@@ -28,6 +28,20 @@ impl Graph {
         }
     }
 
+    /// √x, kept as a root where x is a number that is no square, so that its square is x.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let root = graph.exact_root(1.02.into());
+    /// assert_eq!(root.to_string(), "sqrt(51/50)");
+    /// assert_eq!(root * root, 1.02.into());
+    /// ```
+    pub fn exact_root<'g>(&'g self, x: Expr<'g>) -> Expr<'g> {
+        let x = x.atom_in(self);
+        self.build(|dag| dag.exact_root(x))
+    }
+
     /// The number of different nodes that the expressions are made of: about how long they are where each is written once.
     pub fn size<'g>(&'g self, expressions: &[Expr<'g>]) -> usize {
         let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();

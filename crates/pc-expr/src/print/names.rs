@@ -152,7 +152,7 @@ impl<'g> Names<'g> {
             }
             let line = |&root: &Atom| {
                 let terms = match root {
-                    Atom::Node(node) => signed(writer.terms(node)),
+                    Atom::Node(node) => signed(writer.line(node)),
                     Atom::Constant(_) => vec![writer.atom(root).text],
                 };
                 (root, terms)

@@ -11,6 +11,8 @@ use crate::print::writer::Writer;
 
 /// Expressions of more operations than this, when written out, are written with names for their parts.
 const LONG: u32 = 20_000;
+/// So are those whose parts have more bytes together: nested one in the other these are the square of the whole.
+const LARGE: usize = 16 << 20;
 /// Columns of what stands between two signs there.
 const ROOM: usize = 80;
 
@@ -26,14 +28,21 @@ impl Expr<'_> {
                 Atom::Node(_) => "?".to_owned(),
             };
         };
-        if self.tree_cost() > LONG {
-            return Names::new(graph, &[Side::Sum(self)], &[], ROOM).sentence(self, style);
-        }
-        graph.with(|dag| {
-            let mut writer = Writer::new(dag, style);
-            Cone::below(dag, [self.atom()]).order.into_iter().for_each(|node| writer.write(node));
-            writer.atom(self.atom()).text
-        })
+        let written = || {
+            graph.with(|dag| {
+                let (mut writer, mut size) = (Writer::new(dag, style), 0);
+                for node in Cone::below(dag, [self.atom()]).order {
+                    writer.write(node);
+                    size += writer.size(node);
+                    if size > LARGE {
+                        return None;
+                    }
+                }
+                Some(writer.atom(self.atom()).text)
+            })
+        };
+        let whole = if self.tree_cost() > LONG { None } else { written() };
+        whole.unwrap_or_else(|| Names::new(graph, &[Side::Sum(self)], &[], ROOM).sentence(self, style))
     }
 }
 

@@ -12,6 +12,9 @@ use crate::print::style::Style;
 /// Sums that open in sums that open … are opened so often.
 const DEEP: usize = 60;
 
+/// What no name contains.
+const GAP: &str = "\u{0}";
+
 /// Writes nodes one by one: those below a node before it, so that no depth overflows the stack.
 pub(super) struct Writer<'d> {
     pub(super) dag: &'d Dag,
@@ -47,6 +50,11 @@ impl<'d> Writer<'d> {
         self.named.contains(&id)
     }
 
+    /// Bytes of a node as it stands in those above it.
+    pub(super) fn size(&self, id: NodeId) -> usize {
+        self.pieces.get(&id).map_or(0, |piece| piece.text.len())
+    }
+
     /// Columns of a node as it stands in those above it.
     pub(super) fn columns(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(1, Piece::columns)
@@ -79,19 +87,29 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// The terms of a node written out, those that are subtracted marked, one that is added first.
-    pub(super) fn terms(&self, id: NodeId) -> Vec<(bool, Piece)> {
+    /// The terms of a line, those that are subtracted marked, one that is added first. Between the terms in a bracket a line
+    /// may end, too.
+    pub(super) fn line(&self, id: NodeId) -> Vec<(bool, Piece)> {
+        let (product, q) = match self.dag.node(id) {
+            Node::Sum { constant, terms } => match *self.dag.terms(terms) {
+                [(node, q)] if constant.is_zero() => (node, q),
+                _ => return self.terms(id),
+            },
+            _ => (id, Number::ONE),
+        };
+        self.bracket(q, product).unwrap_or_else(|| self.terms(id))
+    }
+
+    /// The terms of a node written out.
+    fn terms(&self, id: NodeId) -> Vec<(bool, Piece)> {
         let Node::Sum { constant, terms } = self.dag.node(id) else {
-            return self.bracket(Number::ONE, id).unwrap_or_else(|| vec![(false, self.composed(id))]);
+            return vec![(false, self.composed(id))];
         };
         let terms = self.dag.terms(terms);
-        if let (true, &[(node, q)]) = (constant.is_zero(), terms) {
-            if let Some(bracket) = self.bracket(q, node) {
-                return bracket;
-            }
-            if let Some(turned) = self.turned(node, q) {
-                return vec![(false, turned)];
-            }
+        if let (true, &[(node, q)]) = (constant.is_zero(), terms)
+            && let Some(turned) = self.turned(node, q)
+        {
+            return vec![(false, turned)];
         }
         let mut signed = Vec::new();
         self.signed_terms(Number::ONE, constant, terms, 0, &mut signed);
@@ -145,24 +163,23 @@ impl<'d> Writer<'d> {
         (whole && self.style != Style::Text).then_some(sum)
     }
 
-    /// The terms of q x (a + b + …), what stands before the bracket with the first.
+    /// The terms of q x (a + b + …), what stands before the bracket with the first, what stands behind it with the last.
     fn bracket(&self, q: Number, product: NodeId) -> Option<Vec<(bool, Piece)>> {
         let sum = self.bracketed(product)?;
-        let Node::Product { factors } = self.dag.node(product) else { return None };
-        let before: Vec<(NodeId, i32)> =
-            self.dag.factors(factors).iter().copied().filter(|&(node, _)| node != sum).collect();
-        let before = self.quotient(q.abs(), &before, None).at_least(Binding::Product);
+        // Set as a whole, so that what is before the bracket knows that something follows.
+        let whole = self.monomial(q.abs(), product, Some(&(sum, Piece::atom(GAP)))).text;
+        let (before, behind) = whole.split_once(GAP)?;
         let [open, close] = self.style.large_brackets();
         let turned = q.is_negative().then(|| self.turned_sum(sum)).flatten();
         let negative = q.is_negative() && turned.is_none();
         let inside = signed(turned.unwrap_or_else(|| self.terms(sum)));
         let last = inside.len() - 1;
         let term = |(i, text): (usize, String)| {
-            let close = if i == last { close } else { "" };
-            match (i, text.split_at_checked(2)) {
-                (0, _) => (negative, Piece::product(format!("{before} {open}{text}{close}"))),
-                (_, Some((sign, text))) => (sign == "- ", Piece::product(format!("{text}{close}"))),
-                (_, None) => (false, Piece::product(format!("{text}{close}"))),
+            let end = if i == last { format!("{close}{behind}") } else { String::new() };
+            // All but the first begin with their sign and a space.
+            match text.split_at_checked(2).filter(|_| i > 0) {
+                Some((sign, text)) => (sign == "- ", Piece::product(format!("{text}{end}"))),
+                None => (negative, Piece::product(format!("{before}{open}{text}{end}"))),
             }
         };
         Some(inside.into_iter().enumerate().map(term).collect())

@@ -84,7 +84,7 @@ impl<'g> Ldl<'g> {
     /// √D_s L_is η_i
     pub(crate) fn orthonormal(&self, graph: &'g Graph, s: usize, eta: &[Expr<'g>]) -> Expr<'g> {
         let below = self.columns[s].iter().map(|&(i, l)| l * eta[i]);
-        self.diagonal[s].sqrt() * graph.sum(below.chain([eta[s]]))
+        graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
     /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
