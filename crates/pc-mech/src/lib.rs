@@ -260,4 +260,5 @@ pub use transform::velocities::VelocityTransform;
 pub use tree::body::TreeBody;
 pub use tree::joint::Joint;
 pub use tree::kinematics::Motions;
+pub use tree::reactions::JointReaction;
 pub use tree::tree::Tree;

@@ -132,6 +132,16 @@ impl<'g> Tree<'g> {
         Motions::of(self)
     }
 
+    /// The place of a body in the order of declaration.
+    pub(crate) fn place_of(&self, body: &str) -> Option<usize> {
+        self.bodies.iter().position(|known| known.name == body)
+    }
+
+    /// Of each body whether it has links of its own, not those of a body that it is fixed to.
+    pub(crate) fn own_links(&self) -> impl Iterator<Item = bool> {
+        self.bodies.iter().map(|body| !matches!(body.joint.kind, Kind::Fixed))
+    }
+
     /// Adds the links of a body, and answers where it stands.
     fn hang(&mut self, body: usize, parent: Stand<'g>) -> Result<Stand<'g>, MechError> {
         let graph = self.graph;
