@@ -1,12 +1,12 @@
 //! How bodies move: from each body to those that hang on it.
 
-use pc_algebra::{LieGroup, Side, UnitQuaternions};
+use pc_algebra::{LieGroup, Matrix, Side, UnitQuaternions};
 use pc_expr::{Expr, Graph};
 
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{
-    Tensor, Vector, ZERO, add, apply, apply_transpose, cross, dot, entries_of, product, scaled, tensor, unit,
-    vector,
+    Tensor, Vector, ZERO, add, apply, apply_transpose, cross, dot, entries_of, matrix_of, product, scaled,
+    tensor, transpose, unit, vector,
 };
 use crate::tree::tree::{Stand, Tree};
 
@@ -80,6 +80,48 @@ impl<'a, 'g> Motions<'a, 'g> {
     pub fn angular_velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let graph = self.tree.graph;
         self.of_body(body).map(|(motion, stand)| apply_transpose(graph, &stand.rotation, &motion.omega))
+    }
+}
+
+/// How a body moves against its parent.
+#[derive(Clone, Debug)]
+pub struct JointMotion<'g> {
+    /// From the axes of the body to those of its parent, 3 × 3.
+    pub rotation: Matrix<Expr<'g>>,
+    /// The place of the origin of the body, along the axes of its parent from the origin of this.
+    pub place: [Expr<'g>; 3],
+    /// Its angular velocity against the parent, along its axes.
+    pub angular_velocity: [Expr<'g>; 3],
+    /// The velocity of its origin against the parent, along its axes.
+    pub velocity: [Expr<'g>; 3],
+    /// The quasi-velocities of the joint.
+    pub quasi_velocities: Vec<Expr<'g>>,
+}
+
+impl<'g> Tree<'g> {
+    /// How a body moves against its parent, or the world: what its joint does.
+    pub fn joint_motion(&self, body: &str) -> Option<JointMotion<'g>> {
+        let (graph, i) = (self.graph, self.place_of(body)?);
+        let world = Stand { link: None, place: ZERO, rotation: unit() };
+        let parent = self.bodies[i].parent.as_ref().and_then(|parent| self.place_of(parent));
+        let parent = parent.map_or(world, |parent| self.stands[parent]);
+        let mut moved = AT_REST();
+        for link in &self.links[self.own[i].clone()] {
+            moved = link.motion(graph, &moved);
+        }
+        let stand = &self.stands[i];
+        let place = add(&moved.place, &apply(graph, &moved.rotation, &stand.place));
+        let from_parent = vector(|c| place[c] - parent.place[c]);
+        let rotation =
+            product(graph, &product(graph, &transpose(&parent.rotation), &moved.rotation), &stand.rotation);
+        let links = &self.links[self.own[i].clone()];
+        Some(JointMotion {
+            rotation: matrix_of(&rotation),
+            place: apply_transpose(graph, &parent.rotation, &from_parent),
+            angular_velocity: apply_transpose(graph, &stand.rotation, &moved.omega),
+            velocity: apply_transpose(graph, &stand.rotation, &moved.velocity),
+            quasi_velocities: links.iter().flat_map(|link| link.hinge.quasi_velocities()).collect(),
+        })
     }
 }
 

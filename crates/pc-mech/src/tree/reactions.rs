@@ -65,10 +65,8 @@ impl<'g> TreeSystem<'g> {
         }
         let borne = dynamics.forces_on_joints(&unknowns, &loads);
         let mut reactions = Vec::new();
-        for (body, (stand, own)) in
-            self.tree.bodies.iter().zip(self.tree.stands.iter().zip(self.tree.own_links()))
-        {
-            let Some(link) = stand.link.filter(|_| own) else { continue };
+        for (body, (stand, own)) in self.tree.bodies.iter().zip(self.tree.stands.iter().zip(&self.tree.own)) {
+            let Some(link) = stand.link.filter(|_| !own.is_empty()) else { continue };
             let (n, f) = (turning_part(&borne[link]), moving_part(&borne[link]));
             reactions.push(JointReaction {
                 body: body.name.clone(),
