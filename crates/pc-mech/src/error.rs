@@ -1,7 +1,7 @@
 //! What can be wrong with a mechanical system.
 //!
 //! `mech`: the error of the crate, and what is asked of it. A file a topic, in the order of a derivation: `shape`, `frame`,
-//! `lagrangian`, `body`, `force`, `constraint`, `integral`, `matrix`, `evaluation`. `lists`: names and states in their messages.
+//! `lagrangian`, `body`, `tree`, `force`, `constraint`, `integral`, `matrix`, `evaluation`. `lists`: names and states in their messages.
 
 pub(crate) mod body;
 pub(crate) mod constraint;
@@ -14,6 +14,7 @@ mod lists;
 pub(crate) mod matrix;
 pub(crate) mod mech;
 pub(crate) mod shape;
+pub(crate) mod tree;
 
 pub use body::BodyError;
 pub use constraint::ConstraintError;
@@ -26,3 +27,4 @@ pub use matrix::MatrixError;
 pub use mech::MechError;
 pub use shape::ShapeError;
 pub(crate) use shape::shape;
+pub use tree::TreeError;

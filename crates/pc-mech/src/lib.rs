@@ -219,6 +219,7 @@ mod numeric;
 mod random;
 mod system;
 mod transform;
+mod tree;
 
 pub use compiled::forced_motion::ForcedMotion;
 pub use compiled::legendre_transform::LegendreTransform;
@@ -235,7 +236,7 @@ pub use equations::canonical::Canonical;
 pub use equations::poincare::Equations;
 pub use error::{
     BodyError, ConstraintError, EvaluationError, ForceError, FrameError, IntegralError, LagrangianError,
-    MatrixError, MechError, ShapeError,
+    MatrixError, MechError, ShapeError, TreeError,
 };
 pub use numeric::least_squares::LeastSquares;
 pub use numeric::singular_values::SingularValues;
@@ -256,3 +257,7 @@ pub use system::signals::{Interpolation, OutsideTable, Signals, Table, TableErro
 pub use system::system::System;
 pub use transform::quasi_velocities::QuasiVelocityChange;
 pub use transform::velocities::VelocityTransform;
+pub use tree::body::TreeBody;
+pub use tree::joint::Joint;
+pub use tree::kinematics::Motions;
+pub use tree::tree::Tree;

@@ -34,7 +34,7 @@ impl Graph {
     /// # use pc_expr::Graph;
     /// let graph = Graph::new();
     /// let root = graph.exact_root(1.02.into());
-    /// assert_eq!(root.to_string(), "sqrt(51/50)");
+    /// assert_eq!(root.to_string(), "sqrt(1.02)");
     /// assert_eq!(root * root, 1.02.into());
     /// ```
     pub fn exact_root<'g>(&'g self, x: Expr<'g>) -> Expr<'g> {

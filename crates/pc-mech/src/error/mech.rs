@@ -12,6 +12,7 @@ use crate::error::integral::IntegralError;
 use crate::error::lagrangian::LagrangianError;
 use crate::error::matrix::MatrixError;
 use crate::error::shape::ShapeError;
+use crate::error::tree::TreeError;
 
 /// An error of this crate, by what it is about.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,6 +30,9 @@ pub enum MechError {
     /// An error of a body.
     #[error(transparent)]
     Body(#[from] BodyError),
+    /// An error of a tree of bodies.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
     /// An error of the forces.
     #[error(transparent)]
     Force(#[from] ForceError),

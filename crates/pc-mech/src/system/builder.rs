@@ -3,6 +3,7 @@
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
+use crate::error::TreeError;
 use crate::error::{FrameError, LagrangianError, MechError, shape};
 use crate::system::bodies::body::Body;
 use crate::system::bodies::moving::Moving;
@@ -12,6 +13,7 @@ use crate::system::bodies::velocity::{Bodies, BodyVelocity};
 use crate::system::external_force;
 use crate::system::forces::Force;
 use crate::system::system::{System, check_no_state};
+use crate::tree::tree::Tree;
 
 /// How a system is described; every closure receives (t, x, η).
 ///
@@ -37,6 +39,7 @@ pub struct SystemBuilder<'g> {
     /// Terms of L(t, x, ẋ), with the symbols x'.
     in_velocities: Vec<Expr<'g>>,
     bodies: Vec<Body<'g>>,
+    tree: Option<Tree<'g>>,
     /// The acceleration of gravity.
     gravity: Option<Vec<Expr<'g>>>,
     forces: Vec<Force<'g>>,
@@ -79,6 +82,7 @@ impl<'g> SystemBuilder<'g> {
             lagrangian: Vec::new(),
             in_velocities: Vec::new(),
             bodies: Vec::new(),
+            tree: None,
             gravity: None,
             forces: Vec::new(),
             external: Vec::new(),
@@ -256,6 +260,15 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
+    /// Adds bodies joined by joints: their kinetic energy, their weight, and the forces on them. The coordinates and
+    /// quasi-velocities of the [`Tree`] are among those of the system, whose [kinematics](SystemBuilder::kinematics) has their
+    /// velocities.
+    #[must_use]
+    pub fn tree(mut self, tree: Tree<'g>) -> Self {
+        self.tree = Some(tree);
+        self
+    }
+
     /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds m g · r to L,
     /// r being the place of its mass centre.
     ///
@@ -425,6 +438,14 @@ impl<'g> SystemBuilder<'g> {
             let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
             bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
         }
+        if let Some(tree) = &self.tree {
+            let gravity = self.gravity.as_deref().map(three_components).transpose()?;
+            check_named(tree, &frame, &eta)?;
+            let share = tree.motions().share(gravity.as_ref(), &eta);
+            terms.extend(share.kinetic.into_iter().chain(share.weight));
+            parts.push(share.forces);
+            bodies.list.extend(share.velocities);
+        }
         if terms.is_empty() {
             return Err(LagrangianError::Missing.into());
         }
@@ -467,6 +488,30 @@ impl<'g> SystemBuilder<'g> {
             bodies,
         })
     }
+}
+
+/// # Errors
+/// [`ShapeError`](crate::ShapeError) if there are not three.
+fn three_components<'g>(acceleration: &[Expr<'g>]) -> Result<[Expr<'g>; 3], MechError> {
+    shape("the acceleration of gravity", acceleration.len(), 3)?;
+    Ok(std::array::from_fn(|i| acceleration[i]))
+}
+
+/// That a system has what moves the joints of a tree.
+///
+/// # Errors
+/// [`TreeError::NotOfTheSystem`]
+fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Result<(), MechError> {
+    let lists = [
+        ("coordinates", tree.coordinates(), frame.coordinates()),
+        ("quasi-velocities", tree.quasi_velocities(), eta),
+    ];
+    for (what, moving, known) in lists {
+        if let Some(name) = moving.iter().find(|symbol| !known.contains(symbol)) {
+            return Err(TreeError::NotOfTheSystem { name: name.to_string(), what }.into());
+        }
+    }
+    Ok(())
 }
 
 /// That b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be taken for a

@@ -67,6 +67,13 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
+    /// I, 3 × 3.
+    pub(crate) fn matrix(&self) -> Matrix<Expr<'g>> {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        Matrix::from_fn(3, 3, |i, j| rows[i][j])
+    }
+
     /// ω·Iω
     fn twice_the_energy(&self, omega: &[Expr<'g>]) -> Expr<'g> {
         let [xx, yy, zz, xy, yz, xz] = self.0;

@@ -1,0 +1,55 @@
+//! What can be wrong with bodies joined by joints.
+
+/// An error of a tree of bodies.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TreeError {
+    /// Two bodies of one name.
+    #[error("there are two bodies called `{body}`")]
+    TwoBodies {
+        /// Their name.
+        body: String,
+    },
+    /// A parent that there is not.
+    #[error("the body `{body}` hangs on `{parent}`, which there is not")]
+    NoParent {
+        /// The body.
+        body: String,
+        /// Its parent.
+        parent: String,
+    },
+    /// Bodies that hang on each other in a circle.
+    #[error("bodies hang on each other in a circle: {}", bodies.join(" on "))]
+    Circle {
+        /// Their names, each before its parent.
+        bodies: Vec<String>,
+    },
+    /// An axis without a direction.
+    #[error("the axis ({}, {}, {}) of the joint of `{body}` has no direction", axis[0], axis[1], axis[2])]
+    NoDirection {
+        /// The body.
+        body: String,
+        /// The axis.
+        axis: [f64; 3],
+    },
+    /// A list of names that does not fit the joint.
+    #[error("the joint of `{body}` has {expected} {what}; {found} names are given")]
+    Names {
+        /// The body.
+        body: String,
+        /// Coordinates or quasi-velocities.
+        what: &'static str,
+        /// Number of names.
+        found: usize,
+        /// What the joint has.
+        expected: usize,
+    },
+    /// Coordinates or quasi-velocities of the tree that the system does not have.
+    #[error("`{name}`, which the joint of a body is moved by, is not among the {what} of the system")]
+    NotOfTheSystem {
+        /// The coordinate or quasi-velocity.
+        name: String,
+        /// Coordinates or quasi-velocities.
+        what: &'static str,
+    },
+}

@@ -1,0 +1,14 @@
+//! Bodies joined by joints.
+//!
+//! In goes how each body hangs on another, out come coordinates, quasi-velocities and how each body moves. Read `joint` (the
+//! kinds, as they are described), `body`, then `tree`, which takes them to `link`s: one elementary movement each, with the axes
+//! of the body along or about one of which it moves. `spatial` has the vectors and matrices of three components, `kinematics`
+//! the recursion of velocities from body to body, `energy` what it adds to a system.
+
+pub(crate) mod body;
+pub(crate) mod energy;
+pub(crate) mod joint;
+pub(crate) mod kinematics;
+pub(crate) mod link;
+pub(crate) mod spatial;
+pub(crate) mod tree;

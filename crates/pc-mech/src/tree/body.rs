@@ -1,0 +1,78 @@
+//! A body of a tree.
+
+use pc_expr::Expr;
+
+use crate::system::bodies::rigid_body::Inertia;
+use crate::tree::joint::Joint;
+use crate::tree::spatial::{Vector, ZERO};
+
+/// A body, and the joint by which it hangs on another.
+#[derive(Clone, Debug)]
+pub struct TreeBody<'g> {
+    pub(crate) name: String,
+    /// None is the world.
+    pub(crate) parent: Option<String>,
+    pub(crate) joint: Joint<'g>,
+    pub(crate) mass: Expr<'g>,
+    pub(crate) centre: Vector<'g>,
+    pub(crate) inertia: Inertia<'g>,
+    pub(crate) force: Vector<'g>,
+    pub(crate) torque: Vector<'g>,
+}
+
+impl<'g> TreeBody<'g> {
+    /// A body without mass that hangs on the world.
+    pub fn new(name: impl Into<String>, joint: Joint<'g>) -> TreeBody<'g> {
+        TreeBody {
+            name: name.into(),
+            parent: None,
+            joint,
+            mass: Expr::ZERO,
+            centre: ZERO,
+            inertia: Inertia::from(ZERO),
+            force: ZERO,
+            torque: ZERO,
+        }
+    }
+
+    /// The same body hanging on another.
+    #[must_use]
+    pub fn on(self, parent: impl Into<String>) -> TreeBody<'g> {
+        TreeBody { parent: Some(parent.into()), ..self }
+    }
+
+    /// The same body with a mass.
+    #[must_use]
+    pub fn mass(self, mass: impl Into<Expr<'g>>) -> TreeBody<'g> {
+        TreeBody { mass: mass.into(), ..self }
+    }
+
+    /// The same body with its mass centre, along body axes from the point of its joint.
+    #[must_use]
+    pub fn centre(self, centre: [impl Into<Expr<'g>>; 3]) -> TreeBody<'g> {
+        TreeBody { centre: centre.map(Into::into), ..self }
+    }
+
+    /// The same body with its inertia about the mass centre, along body axes.
+    #[must_use]
+    pub fn inertia(self, inertia: impl Into<Inertia<'g>>) -> TreeBody<'g> {
+        TreeBody { inertia: inertia.into(), ..self }
+    }
+
+    /// The same body with a force F(t, x, η) at its mass centre, along the axes of the world.
+    #[must_use]
+    pub fn force(self, force: [impl Into<Expr<'g>>; 3]) -> TreeBody<'g> {
+        TreeBody { force: force.map(Into::into), ..self }
+    }
+
+    /// The same body with a torque N(t, x, η), along body axes.
+    #[must_use]
+    pub fn torque(self, torque: [impl Into<Expr<'g>>; 3]) -> TreeBody<'g> {
+        TreeBody { torque: torque.map(Into::into), ..self }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}

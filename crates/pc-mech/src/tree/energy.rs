@@ -1,0 +1,58 @@
+//! What a tree adds to a system.
+
+use pc_expr::Expr;
+
+use crate::system::bodies::velocity::BodyVelocity;
+use crate::tree::kinematics::Motions;
+use crate::tree::spatial::{Vector, add, apply, cross, dot};
+
+/// What the bodies of a tree add to L and Q.
+pub(crate) struct TreeShare<'g> {
+    /// Σ ½ m |v_c|² + ½ ω·Iω (König).
+    pub(crate) kinetic: Vec<Expr<'g>>,
+    /// Σ m g · r_c
+    pub(crate) weight: Vec<Expr<'g>>,
+    /// Q_1..Q_k (8)
+    pub(crate) forces: Vec<Expr<'g>>,
+    pub(crate) velocities: Vec<BodyVelocity<'g>>,
+}
+
+impl<'g> Motions<'_, 'g> {
+    /// In the field of gravity of this acceleration, in terms of the quasi-velocities `eta`.
+    pub(crate) fn share(&self, gravity: Option<&Vector<'g>>, eta: &[Expr<'g>]) -> TreeShare<'g> {
+        let graph = self.tree.graph;
+        let (mut kinetic, mut weight, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+        // F and N may depend on η: symbols stand for them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
+        let (mut power, mut values) = (Vec::new(), Vec::new());
+        for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
+            let motion = self.of_stand(stand);
+            let centre = stand.point(graph, &body.centre);
+            let velocity = add(&motion.velocity, &cross(&motion.omega, &centre));
+            let inertia = stand.inertia(graph, body);
+            let spin = apply(graph, &inertia, &motion.omega);
+            kinetic.push(body.mass * dot(graph, &velocity, &velocity) / 2.0);
+            kinetic.push(dot(graph, &motion.omega, &spin) / 2.0);
+            if let Some(gravity) = gravity {
+                let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
+                weight.push(body.mass * dot(graph, gravity, &place));
+            }
+            let in_world = apply(graph, &motion.rotation, &velocity);
+            let torque = apply(graph, &stand.rotation, &body.torque);
+            let loads = body.force.iter().zip(in_world).chain(torque.iter().zip(motion.omega));
+            for (load, velocity) in loads.filter(|(load, _)| !load.is_zero()) {
+                let stands_for = graph.symbol(&format!("load {} of the tree", values.len()));
+                power.push(stands_for * velocity);
+                values.push((stands_for, *load));
+            }
+            velocities.push(BodyVelocity {
+                name: body.name.clone(),
+                velocity: in_world.to_vec(),
+                angular_velocity: Some(
+                    crate::tree::spatial::apply_transpose(graph, &stand.rotation, &motion.omega).to_vec(),
+                ),
+            });
+        }
+        let forces = graph.substitute(&graph.gradient(graph.sum(power), eta), &values);
+        TreeShare { kinetic, weight, forces, velocities }
+    }
+}

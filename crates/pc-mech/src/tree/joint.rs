@@ -1,0 +1,158 @@
+//! How a body moves against another.
+
+use pc_algebra::Matrix;
+use pc_expr::Expr;
+
+use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
+
+/// A joint: how a body moves against its parent.
+///
+/// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and the axes of
+/// the body are those of the joint where all coordinates of the joint vanish.
+///
+/// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
+/// |---|---|---|
+/// | [`fixed`](Joint::fixed) | none | |
+/// | [`revolute`](Joint::revolute) | turns about an axis | `arm`, `arm'` |
+/// | [`prismatic`](Joint::prismatic) | slides along an axis | `arm`, `arm'` |
+/// | [`screw`](Joint::screw) | both, with one coordinate | `arm`, `arm'` |
+/// | [`cylindrical`](Joint::cylindrical) | slides along and turns about an axis | `arm_z`, `arm_φ`, and their rates |
+/// | [`universal`](Joint::universal) | turns about an axis of the parent, then about one of its own | `arm_1`, `arm_2`, and their rates |
+/// | [`planar`](Joint::planar) | slides along two axes, turns about the third | `arm_x`, `arm_y`, `arm_φ`, and their rates |
+/// | [`spherical`](Joint::spherical) | turns about a point | a unit quaternion `arm_q0` … `arm_q3`; ω against the parent, in body axes, `arm_ω1` … `arm_ω3` |
+/// | [`free`](Joint::free) | any | the place `arm_x`, `arm_y`, `arm_z` of its origin and a quaternion; the velocity of its origin against the parent and ω, in body axes, `arm_v1` … `arm_ω3` |
+#[derive(Clone, Debug)]
+pub struct Joint<'g> {
+    pub(crate) kind: Kind<'g>,
+    /// The point of the joint, along the axes of the parent from its origin.
+    pub(crate) place: Vector<'g>,
+    /// From the axes of the joint to those of the parent.
+    pub(crate) rotation: Tensor<'g>,
+    /// Coordinates and quasi-velocities, where they are not those of the rule.
+    pub(crate) names: Option<(Vec<String>, Vec<String>)>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Kind<'g> {
+    Fixed,
+    Revolute([f64; 3]),
+    Prismatic([f64; 3]),
+    Screw([f64; 3], Expr<'g>),
+    Cylindrical([f64; 3]),
+    Universal([f64; 3], [f64; 3]),
+    Planar([f64; 3]),
+    Spherical,
+    Free,
+}
+
+impl<'g> Joint<'g> {
+    fn of(kind: Kind<'g>) -> Joint<'g> {
+        Joint { kind, place: ZERO, rotation: unit(), names: None }
+    }
+
+    /// Holds the body.
+    pub fn fixed() -> Joint<'g> {
+        Joint::of(Kind::Fixed)
+    }
+
+    /// Turns about an axis.
+    pub fn revolute(axis: [f64; 3]) -> Joint<'g> {
+        Joint::of(Kind::Revolute(axis))
+    }
+
+    /// Slides along an axis.
+    pub fn prismatic(axis: [f64; 3]) -> Joint<'g> {
+        Joint::of(Kind::Prismatic(axis))
+    }
+
+    /// Turns about an axis and slides along it, by the pitch times the angle: a length a radian.
+    pub fn screw(axis: [f64; 3], pitch: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint::of(Kind::Screw(axis, pitch.into()))
+    }
+
+    /// Slides along an axis and turns about it.
+    pub fn cylindrical(axis: [f64; 3]) -> Joint<'g> {
+        Joint::of(Kind::Cylindrical(axis))
+    }
+
+    /// Turns about the first axis, then about the second, which is carried along.
+    pub fn universal(first: [f64; 3], second: [f64; 3]) -> Joint<'g> {
+        Joint::of(Kind::Universal(first, second))
+    }
+
+    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about the normal. For the normal (0, 0, 1) they are x and y.
+    pub fn planar(normal: [f64; 3]) -> Joint<'g> {
+        Joint::of(Kind::Planar(normal))
+    }
+
+    /// Turns about a point, by a unit quaternion.
+    pub fn spherical() -> Joint<'g> {
+        Joint::of(Kind::Spherical)
+    }
+
+    /// Leaves the body free.
+    pub fn free() -> Joint<'g> {
+        Joint::of(Kind::Free)
+    }
+
+    /// The same joint at a point given along the axes of the parent from its origin.
+    #[must_use]
+    pub fn at(self, place: [impl Into<Expr<'g>>; 3]) -> Joint<'g> {
+        Joint { place: place.map(Into::into), ..self }
+    }
+
+    /// The same joint with axes that a constant rotation takes to those of the parent.
+    ///
+    /// # Panics
+    /// If it has not three rows and columns.
+    #[must_use]
+    pub fn rotated(self, rotation: &Matrix<Expr<'g>>) -> Joint<'g> {
+        assert_eq!((rotation.rows(), rotation.columns()), (3, 3), "rows and columns of a rotation");
+        Joint { rotation: entries_of(rotation), ..self }
+    }
+
+    /// The same joint with other names of its coordinates and quasi-velocities.
+    #[must_use]
+    pub fn named<S: Into<String>>(
+        self,
+        coordinates: impl IntoIterator<Item = S>,
+        quasi_velocities: impl IntoIterator<Item = S>,
+    ) -> Joint<'g> {
+        let list = (
+            coordinates.into_iter().map(Into::into).collect(),
+            quasi_velocities.into_iter().map(Into::into).collect(),
+        );
+        Joint { names: Some(list), ..self }
+    }
+
+    /// Coordinates and quasi-velocities of a body of that name.
+    pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
+        self.names.clone().unwrap_or_else(|| self.kind.names(body))
+    }
+}
+
+const QUATERNION: [&str; 4] = ["q0", "q1", "q2", "q3"];
+
+impl Kind<'_> {
+    fn names(&self, body: &str) -> (Vec<String>, Vec<String>) {
+        let with = |suffixes: &[&str]| -> Vec<String> {
+            suffixes.iter().map(|suffix| format!("{body}_{suffix}")).collect()
+        };
+        let rates = |names: Vec<String>| {
+            let rates = names.iter().map(|name| format!("{name}'")).collect();
+            (names, rates)
+        };
+        match self {
+            Kind::Fixed => (Vec::new(), Vec::new()),
+            Kind::Revolute(_) | Kind::Prismatic(_) | Kind::Screw(..) => rates(vec![body.to_owned()]),
+            Kind::Cylindrical(_) => rates(with(&["z", "φ"])),
+            Kind::Universal(..) => rates(with(&["1", "2"])),
+            Kind::Planar(_) => rates(with(&["x", "y", "φ"])),
+            Kind::Spherical => (with(&QUATERNION), with(&["ω1", "ω2", "ω3"])),
+            Kind::Free => {
+                let places = with(&["x", "y", "z"]);
+                ([places, with(&QUATERNION)].concat(), with(&["v1", "v2", "v3", "ω1", "ω2", "ω3"]))
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! How bodies move: from each body to those that hang on it.
+
+use pc_algebra::{LieGroup, Side, UnitQuaternions};
+use pc_expr::{Expr, Graph};
+
+use crate::tree::link::{Hinge, Link};
+use crate::tree::spatial::{
+    Tensor, Vector, ZERO, add, apply, apply_transpose, cross, entries_of, product, scaled, tensor, unit,
+    vector,
+};
+use crate::tree::tree::{Stand, Tree};
+
+/// How a link moves: its place and axes in the world, and its velocities along its own axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkMotion<'g> {
+    /// Of its origin.
+    pub(crate) place: Vector<'g>,
+    /// From its axes to those of the world.
+    pub(crate) rotation: Tensor<'g>,
+    /// Of its origin.
+    pub(crate) velocity: Vector<'g>,
+    pub(crate) omega: Vector<'g>,
+}
+
+const AT_REST: fn() -> LinkMotion<'static> =
+    || LinkMotion { place: ZERO, rotation: unit(), velocity: ZERO, omega: ZERO };
+
+/// How the bodies of a tree move.
+#[derive(Clone, Debug)]
+pub struct Motions<'a, 'g> {
+    pub(crate) tree: &'a Tree<'g>,
+    pub(crate) links: Vec<LinkMotion<'g>>,
+}
+
+impl<'a, 'g> Motions<'a, 'g> {
+    pub(crate) fn of(tree: &'a Tree<'g>) -> Motions<'a, 'g> {
+        let graph = tree.graph;
+        let mut links: Vec<LinkMotion<'g>> = Vec::with_capacity(tree.links.len());
+        for link in &tree.links {
+            let parent = link.parent.map_or_else(AT_REST, |parent| links[parent]);
+            links.push(link.motion(graph, &parent));
+        }
+        Motions { tree, links }
+    }
+
+    pub(crate) fn of_body(&self, name: &str) -> Option<(LinkMotion<'g>, Stand<'g>)> {
+        let body = self.tree.bodies.iter().position(|body| body.name == name)?;
+        let stand = self.tree.stands[body];
+        Some((self.of_stand(&stand), stand))
+    }
+
+    pub(crate) fn of_stand(&self, stand: &Stand<'g>) -> LinkMotion<'g> {
+        stand.link.map_or_else(AT_REST, |link| self.links[link])
+    }
+
+    /// The velocity of the origin of a body, along its axes.
+    pub fn velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let graph = self.tree.graph;
+        self.of_body(body).map(|(motion, stand)| {
+            let velocity = add(&motion.velocity, &cross(&motion.omega, &stand.place));
+            apply_transpose(graph, &stand.rotation, &velocity)
+        })
+    }
+
+    /// The angular velocity of a body, along its axes.
+    pub fn angular_velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let graph = self.tree.graph;
+        self.of_body(body).map(|(motion, stand)| apply_transpose(graph, &stand.rotation, &motion.omega))
+    }
+}
+
+impl<'g> Link<'g> {
+    /// From its axes to those of its parent.
+    pub(crate) fn to_parent(&self, graph: &'g Graph) -> Tensor<'g> {
+        product(graph, &self.rotation, &self.hinge.turning())
+    }
+
+    /// The place of its origin along the axes of its parent.
+    pub(crate) fn origin(&self, graph: &'g Graph) -> Vector<'g> {
+        add(&self.place, &apply(graph, &self.rotation, &self.hinge.displacement()))
+    }
+
+    fn motion(&self, graph: &'g Graph, parent: &LinkMotion<'g>) -> LinkMotion<'g> {
+        let (to_parent, origin) = (self.to_parent(graph), self.origin(graph));
+        let carried = add(&parent.velocity, &cross(&parent.omega, &origin));
+        LinkMotion {
+            place: add(&parent.place, &apply(graph, &parent.rotation, &origin)),
+            rotation: product(graph, &parent.rotation, &to_parent),
+            velocity: add(&apply_transpose(graph, &to_parent, &carried), &self.hinge.velocity()),
+            omega: add(&apply_transpose(graph, &to_parent, &parent.omega), &self.hinge.omega()),
+        }
+    }
+}
+
+impl<'g> Hinge<'g> {
+    /// From the axes of the link to those of the joint. Of a quaternion it is |q|² times a rotation.
+    pub(crate) fn turning(&self) -> Tensor<'g> {
+        match self {
+            Hinge::Turn { axis, angle, .. } => plane_rotation(*axis, angle.cos(), angle.sin()),
+            Hinge::Slide { .. } => unit(),
+            Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => {
+                entries_of(&UnitQuaternions.rotation_matrix(quaternion))
+            }
+        }
+    }
+
+    /// Where its origin is, along the axes of the joint.
+    pub(crate) fn displacement(&self) -> Vector<'g> {
+        match self {
+            Hinge::Turn { axis, pitch, angle, .. } => along(*axis, *pitch * *angle),
+            Hinge::Slide { axis, way, .. } => along(*axis, *way),
+            Hinge::Ball { .. } => ZERO,
+            Hinge::Free { way, .. } => *way,
+        }
+    }
+
+    /// The velocity of its origin against the parent, along its axes.
+    pub(crate) fn velocity(&self) -> Vector<'g> {
+        match self {
+            Hinge::Turn { axis, pitch, rate, .. } => along(*axis, *pitch * *rate),
+            Hinge::Slide { axis, rate, .. } => along(*axis, *rate),
+            Hinge::Ball { .. } => ZERO,
+            Hinge::Free { v, .. } => *v,
+        }
+    }
+
+    /// Its angular velocity against the parent, along its axes.
+    pub(crate) fn omega(&self) -> Vector<'g> {
+        match self {
+            Hinge::Turn { axis, rate, .. } => along(*axis, *rate),
+            Hinge::Slide { .. } => ZERO,
+            Hinge::Ball { omega, .. } | Hinge::Free { omega, .. } => *omega,
+        }
+    }
+}
+
+/// ẋ in terms of η.
+pub(crate) fn rates<'g>(graph: &'g Graph, hinge: &Hinge<'g>) -> Vec<Expr<'g>> {
+    let turning = |quaternion: &[Expr<'g>; 4], omega: &Vector<'g>| -> Vec<Expr<'g>> {
+        let operators = UnitQuaternions.operators(Side::Left, quaternion);
+        (0..4).map(|i| graph.dot(operators.row(i).iter().copied(), omega.iter().copied())).collect()
+    };
+    match hinge {
+        Hinge::Turn { rate, .. } | Hinge::Slide { rate, .. } => vec![*rate],
+        Hinge::Ball { quaternion, omega } => turning(quaternion, omega),
+        Hinge::Free { quaternion, v, omega, .. } => {
+            let way = apply(graph, &hinge.turning(), v);
+            way.into_iter().chain(turning(quaternion, omega)).collect()
+        }
+    }
+}
+
+/// The turn about a coordinate axis by an angle of this cosine and sine.
+fn plane_rotation<'g>(axis: usize, cos: Expr<'g>, sin: Expr<'g>) -> Tensor<'g> {
+    let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
+    tensor(|i, j| match (i, j) {
+        _ if i == axis || j == axis => {
+            if i == j {
+                Expr::ONE
+            } else {
+                Expr::ZERO
+            }
+        }
+        (i, j) if i == j => cos,
+        (i, j) if (i, j) == (p, q) => -sin,
+        _ => sin,
+    })
+}
+
+/// A vector along a coordinate axis.
+pub(crate) fn along<'g>(axis: usize, length: Expr<'g>) -> Vector<'g> {
+    scaled(length, &vector(|i| if i == axis { Expr::ONE } else { Expr::ZERO }))
+}

@@ -1,0 +1,64 @@
+//! Elementary movements.
+
+use pc_expr::Expr;
+
+use crate::tree::spatial::{Tensor, Vector};
+
+/// A movement of axes against others, one of those that joints are made of; with mass if a body stands still against its axes.
+#[derive(Clone, Debug)]
+pub(crate) struct Link<'g> {
+    /// The link that it hangs on; none is the world.
+    pub(crate) parent: Option<usize>,
+    /// Its point where its coordinates vanish, and the matrix from its axes there to those of the parent.
+    pub(crate) place: Vector<'g>,
+    pub(crate) rotation: Tensor<'g>,
+    pub(crate) hinge: Hinge<'g>,
+}
+
+/// What moves a link. Axes are numbers of coordinate axes; the symbols are x, then η.
+#[derive(Clone, Debug)]
+pub(crate) enum Hinge<'g> {
+    /// Turns about an axis, and advances along it by `pitch` times the angle.
+    Turn {
+        axis: usize,
+        pitch: Expr<'g>,
+        angle: Expr<'g>,
+        rate: Expr<'g>,
+    },
+    Slide {
+        axis: usize,
+        way: Expr<'g>,
+        rate: Expr<'g>,
+    },
+    /// By a unit quaternion, with ω against the parent.
+    Ball {
+        quaternion: [Expr<'g>; 4],
+        omega: Vector<'g>,
+    },
+    /// Its origin at `way` in the axes of the joint, with the velocity v against the parent in its own axes.
+    Free {
+        way: Vector<'g>,
+        quaternion: [Expr<'g>; 4],
+        v: Vector<'g>,
+        omega: Vector<'g>,
+    },
+}
+
+impl<'g> Hinge<'g> {
+    pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
+        match self {
+            Hinge::Turn { angle, .. } => vec![*angle],
+            Hinge::Slide { way, .. } => vec![*way],
+            Hinge::Ball { quaternion, .. } => quaternion.to_vec(),
+            Hinge::Free { way, quaternion, .. } => way.iter().chain(quaternion).copied().collect(),
+        }
+    }
+
+    pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
+        match self {
+            Hinge::Turn { rate, .. } | Hinge::Slide { rate, .. } => vec![*rate],
+            Hinge::Ball { omega, .. } => omega.to_vec(),
+            Hinge::Free { v, omega, .. } => v.iter().chain(omega).copied().collect(),
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! The tree: which body hangs on which, and what moves it.
+
+use std::collections::HashMap;
+
+use pc_algebra::Matrix;
+use pc_expr::{Expr, Graph};
+
+use crate::error::{MechError, TreeError};
+use crate::tree::body::TreeBody;
+use crate::tree::joint::{Joint, Kind};
+use crate::tree::kinematics::{Motions, rates};
+use crate::tree::link::{Hinge, Link};
+use crate::tree::spatial::{
+    Tensor, Vector, ZERO, add, apply, congruent, entries_of, matrix_of, product, transpose, unit,
+};
+
+/// Bodies joined by joints: one or more trees that hang on the world.
+///
+/// Its coordinates are those of the joints, in the order in which the bodies are declared; its quasi-velocities are velocities of a
+/// body against its parent. The velocities of a body follow from those of its parent,
+///
+/// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
+///
+/// along body axes, with R from the axes of the body to those of its parent and r the place of its origin there.
+///
+/// ```
+/// use pc_mech::{Graph, Joint, System, Tree, TreeBody};
+///
+/// // A double pendulum of two rods.
+/// let graph = Graph::new();
+/// let [m, l, g] = graph.symbols(["m", "l", "g"]);
+/// let rod = |name, joint| TreeBody::new(name, joint).mass(m).centre([0.into(), 0.into(), -l / 2.0]);
+/// let tree = Tree::new(&graph, [
+///     rod("upper", Joint::revolute([0.0, 1.0, 0.0])),
+///     rod("lower", Joint::revolute([0.0, 1.0, 0.0]).at([0.into(), 0.into(), -l])).on("upper"),
+/// ])?;
+/// let system = System::builder(&graph)
+///     .coordinates(["upper", "lower"])
+///     .gravity(|_| [0.into(), 0.into(), -g])
+///     .tree(tree)
+///     .build()?;
+/// let [u, w] = graph.symbols(["upper'", "lower'"]);
+/// let mass = system.poincare()?;
+/// assert_eq!(mass.mass_matrix()[(1, 1)], m * l.square() / 4.0);
+/// # let _ = (u, w);
+/// # Ok::<(), pc_mech::MechError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tree<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) bodies: Vec<TreeBody<'g>>,
+    /// Where each body stands.
+    pub(crate) stands: Vec<Stand<'g>>,
+    /// Each after the one that it hangs on.
+    pub(crate) links: Vec<Link<'g>>,
+    /// The links in the order in which the bodies they belong to are declared.
+    declared: Vec<usize>,
+}
+
+/// Where a body stands still.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stand<'g> {
+    /// The link; none is the world.
+    pub(crate) link: Option<usize>,
+    /// Its origin, along the axes of the link.
+    pub(crate) place: Vector<'g>,
+    /// From its axes to those of the link.
+    pub(crate) rotation: Tensor<'g>,
+}
+
+impl<'g> Tree<'g> {
+    /// The tree of bodies, declared in any order.
+    ///
+    /// # Errors
+    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis without a direction,
+    /// or a list of names that does not fit its joint; [`BodyError`](crate::BodyError) for a rotation that is none.
+    pub fn new(
+        graph: &'g Graph,
+        bodies: impl IntoIterator<Item = TreeBody<'g>>,
+    ) -> Result<Tree<'g>, MechError> {
+        let bodies: Vec<TreeBody<'g>> = bodies.into_iter().collect();
+        let order = from_root_to_tip(&bodies)?;
+        let mut tree = Tree { graph, stands: Vec::new(), links: Vec::new(), declared: Vec::new(), bodies };
+        let world = Stand { link: None, place: ZERO, rotation: unit() };
+        let mut stands = vec![world; tree.bodies.len()];
+        let mut own = vec![0..0; tree.bodies.len()];
+        for (body, parent) in order {
+            let first = tree.links.len();
+            stands[body] = tree.hang(body, parent.map_or(world, |parent| stands[parent]))?;
+            own[body] = first..tree.links.len();
+        }
+        tree.declared = own.into_iter().flatten().collect();
+        tree.stands = stands;
+        Ok(tree)
+    }
+
+    /// x, joint after joint.
+    pub fn coordinates(&self) -> Vec<Expr<'g>> {
+        self.declared.iter().flat_map(|&link| self.links[link].hinge.coordinates()).collect()
+    }
+
+    /// η, joint after joint.
+    pub fn quasi_velocities(&self) -> Vec<Expr<'g>> {
+        self.declared.iter().flat_map(|&link| self.links[link].hinge.quasi_velocities()).collect()
+    }
+
+    /// ẋ in terms of η (3).
+    pub fn velocities(&self) -> Vec<Expr<'g>> {
+        self.declared.iter().flat_map(|&link| rates(self.graph, &self.links[link].hinge)).collect()
+    }
+
+    /// |q|² of each quaternion, which are 1.
+    pub fn norms(&self) -> Vec<(String, Expr<'g>)> {
+        let quaternions = self.declared.iter().filter_map(|&link| match &self.links[link].hinge {
+            Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(quaternion),
+            Hinge::Turn { .. } | Hinge::Slide { .. } => None,
+        });
+        let norm = |q: &[Expr<'g>; 4]| self.graph.sum(q.iter().map(|q| q.square()));
+        quaternions.map(|q| (format!("|{}|²", q[0].to_string().trim_end_matches('0')), norm(q))).collect()
+    }
+
+    /// The bodies, as they were declared.
+    pub fn bodies(&self) -> &[TreeBody<'g>] {
+        &self.bodies
+    }
+
+    /// How all bodies move, as expressions of x and η.
+    pub fn motions(&self) -> Motions<'_, 'g> {
+        Motions::of(self)
+    }
+
+    /// Adds the links of a body, and answers where it stands.
+    fn hang(&mut self, body: usize, parent: Stand<'g>) -> Result<Stand<'g>, MechError> {
+        let graph = self.graph;
+        let TreeBody { name, joint: Joint { kind, place, rotation, .. }, .. } = &self.bodies[body];
+        let (coordinates, velocities) = self.names(body)?;
+        let mut x = coordinates.iter().map(|name| graph.symbol(name));
+        let mut eta = velocities.iter().map(|name| graph.symbol(name));
+        let mut x = || x.next().unwrap_or(Expr::ZERO); // as many as the kind has
+        let mut eta = || eta.next().unwrap_or(Expr::ZERO);
+        // Where the joint stands on the link of the parent.
+        let place = add(&parent.place, &apply(graph, &parent.rotation, place));
+        let rotation = product(graph, &parent.rotation, rotation);
+        let align = |axis: &[f64; 3]| {
+            aligned(*axis).ok_or_else(|| TreeError::NoDirection { body: name.clone(), axis: *axis })
+        };
+        let turned = |matrix: &Tensor<'g>| product(graph, &rotation, matrix);
+        let kind = kind.clone();
+        let mut stand = Stand { link: parent.link, place, rotation };
+        // The next elementary movement, on what has been there.
+        let mut links = Vec::new();
+        let first = self.links.len();
+        let mut push = |rotation: Tensor<'g>, hinge: Hinge<'g>| {
+            let on =
+                if links.is_empty() { (parent.link, place) } else { (Some(first + links.len() - 1), ZERO) };
+            links.push(Link { parent: on.0, place: on.1, rotation, hinge });
+            stand = Stand { link: Some(first + links.len() - 1), place: ZERO, rotation: unit() };
+        };
+        let mut matrix = unit();
+        match kind {
+            Kind::Fixed => {}
+            Kind::Revolute(direction) => {
+                let axis;
+                (axis, matrix) = align(&direction)?;
+                push(turned(&matrix), Hinge::Turn { axis, pitch: Expr::ZERO, angle: x(), rate: eta() });
+            }
+            Kind::Screw(direction, pitch) => {
+                let axis;
+                (axis, matrix) = align(&direction)?;
+                push(turned(&matrix), Hinge::Turn { axis, pitch, angle: x(), rate: eta() });
+            }
+            Kind::Prismatic(direction) => {
+                let axis;
+                (axis, matrix) = align(&direction)?;
+                push(turned(&matrix), Hinge::Slide { axis, way: x(), rate: eta() });
+            }
+            Kind::Cylindrical(direction) => {
+                let axis;
+                (axis, matrix) = align(&direction)?;
+                push(turned(&matrix), Hinge::Slide { axis, way: x(), rate: eta() });
+                push(unit(), Hinge::Turn { axis, pitch: Expr::ZERO, angle: x(), rate: eta() });
+            }
+            Kind::Planar(normal) => {
+                let axis;
+                (axis, matrix) = align(&normal)?;
+                for side in [1, 2] {
+                    let rotation = if side == 1 { turned(&matrix) } else { unit() };
+                    push(rotation, Hinge::Slide { axis: (axis + side) % 3, way: x(), rate: eta() });
+                }
+                push(unit(), Hinge::Turn { axis, pitch: Expr::ZERO, angle: x(), rate: eta() });
+            }
+            Kind::Universal(first, second) => {
+                let (outer, to_joint) = align(&first)?;
+                // The second axis along the axes of the first link.
+                let carried = numbers(&apply(graph, &transpose(&to_joint), &second.map(Expr::from)));
+                let (inner, to_outer) = align(&carried)?;
+                push(
+                    turned(&to_joint),
+                    Hinge::Turn { axis: outer, pitch: Expr::ZERO, angle: x(), rate: eta() },
+                );
+                push(to_outer, Hinge::Turn { axis: inner, pitch: Expr::ZERO, angle: x(), rate: eta() });
+                matrix = product(graph, &to_joint, &to_outer);
+            }
+            Kind::Spherical => {
+                let quaternion = [x(), x(), x(), x()];
+                push(rotation, Hinge::Ball { quaternion, omega: [eta(), eta(), eta()] });
+            }
+            Kind::Free => {
+                let (way, quaternion) = ([x(), x(), x()], [x(), x(), x(), x()]);
+                let (v, omega) = ([eta(), eta(), eta()], [eta(), eta(), eta()]);
+                push(rotation, Hinge::Free { way, quaternion, v, omega });
+            }
+        }
+        if !links.is_empty() {
+            stand.rotation = transpose(&matrix);
+        }
+        self.links.extend(links);
+        Ok(stand)
+    }
+
+    fn names(&self, body: usize) -> Result<(Vec<String>, Vec<String>), TreeError> {
+        let TreeBody { name, joint, .. } = &self.bodies[body];
+        let (coordinates, velocities) = joint.names_for(name);
+        let rule = Joint { names: None, ..joint.clone() }.names_for(name);
+        for (what, found, expected) in [
+            ("coordinates", coordinates.len(), rule.0.len()),
+            ("quasi-velocities", velocities.len(), rule.1.len()),
+        ] {
+            if found != expected {
+                return Err(TreeError::Names { body: name.clone(), what, found, expected });
+            }
+        }
+        Ok((coordinates, velocities))
+    }
+
+    /// The mass, first moment and inertia about its origin of all that stands still on a link, along its axes.
+    #[allow(dead_code)]
+    pub(crate) fn mass_on(&self, link: usize) -> MassOnLink<'g> {
+        let graph = self.graph;
+        let mut on_link = MassOnLink { mass: Expr::ZERO, moment: ZERO, inertia: [ZERO; 3] };
+        let bodies = self.bodies.iter().zip(&self.stands).filter(|(_, stand)| stand.link == Some(link));
+        for (body, stand) in bodies {
+            let centre = stand.point(graph, &body.centre);
+            let inertia = stand.inertia(graph, body);
+            let moment = centre.map(|c| body.mass * c);
+            let square = graph.dot(moment.iter().copied(), centre.iter().copied());
+            on_link.mass += body.mass;
+            on_link.moment = add(&on_link.moment, &moment);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let diagonal = if i == j { square } else { Expr::ZERO };
+                    on_link.inertia[i][j] += inertia[i][j] + diagonal - moment[i] * centre[j];
+                }
+            }
+        }
+        on_link
+    }
+}
+
+/// m, m c and the inertia about the origin of a link.
+#[derive(Clone, Copy, Debug)]
+#[allow(dead_code)]
+pub(crate) struct MassOnLink<'g> {
+    pub(crate) mass: Expr<'g>,
+    pub(crate) moment: Vector<'g>,
+    pub(crate) inertia: Tensor<'g>,
+}
+
+impl<'g> Stand<'g> {
+    /// A point of a body along the axes of the link.
+    pub(crate) fn point(&self, graph: &'g Graph, point: &Vector<'g>) -> Vector<'g> {
+        add(&self.place, &apply(graph, &self.rotation, point))
+    }
+
+    /// The inertia of a body about its mass centre along the axes of the link.
+    pub(crate) fn inertia(&self, graph: &'g Graph, body: &TreeBody<'g>) -> Tensor<'g> {
+        congruent(graph, &self.rotation, &entries_of(&body.inertia.matrix()))
+    }
+}
+
+/// The bodies with their parents, each after its own.
+fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>)>, TreeError> {
+    let mut places = HashMap::new();
+    for (place, body) in bodies.iter().enumerate() {
+        if places.insert(body.name.as_str(), place).is_some() {
+            return Err(TreeError::TwoBodies { body: body.name.clone() });
+        }
+    }
+    let mut parents = Vec::with_capacity(bodies.len());
+    for body in bodies {
+        let unknown =
+            |parent: &String| TreeError::NoParent { body: body.name.clone(), parent: parent.clone() };
+        let parent = body.parent.as_ref();
+        parents.push(
+            parent
+                .map(|parent| places.get(parent.as_str()).copied().ok_or_else(|| unknown(parent)))
+                .transpose()?,
+        );
+    }
+    let mut order = Vec::with_capacity(bodies.len());
+    let mut hung = vec![false; bodies.len()];
+    for body in 0..bodies.len() {
+        // Its ancestors that do not hang yet, it first.
+        let mut line = vec![body];
+        while let Some(parent) = parents[line[line.len() - 1]].filter(|&parent| !hung[parent]) {
+            if line.contains(&parent) {
+                let circle = line.iter().map(|&body| bodies[body].name.clone()).collect();
+                return Err(TreeError::Circle { bodies: circle });
+            }
+            line.push(parent);
+        }
+        for body in line
+            .into_iter()
+            .rev()
+            .filter(|&body| !std::mem::replace(&mut hung[body], true))
+            .collect::<Vec<_>>()
+        {
+            order.push((body, parents[body]));
+        }
+    }
+    Ok(order)
+}
+
+/// A coordinate axis, and the rotation that takes it to a direction.
+fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
+    let length = direction.iter().fold(0.0f64, |length, c| length.hypot(*c));
+    if !(length.is_normal()) {
+        return None;
+    }
+    let along = |axis: usize| (0..3).all(|i| (direction[i] != 0.0) == (i == axis));
+    if let Some(axis) = (0..3).find(|&axis| along(axis)) {
+        // Backwards: half a turn about the next axis but one.
+        let backwards = direction[axis] < 0.0;
+        let sign = |i: usize| if backwards && i != (axis + 2) % 3 { -1 } else { 1 };
+        return Some((
+            axis,
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| if i == j { sign(i).into() } else { Expr::ZERO })
+            }),
+        ));
+    }
+    let n = direction.map(|c| c / length);
+    // Orthogonal to the direction and to the axis that is farthest from it.
+    let far = (0..3).min_by(|&i, &j| n[i].abs().total_cmp(&n[j].abs()))?;
+    let mut e = [0.0; 3];
+    e[far] = 1.0;
+    let across = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+    };
+    let u = across(e, n);
+    let length = u.iter().fold(0.0f64, |length, c| length.hypot(*c));
+    let u = u.map(|c| c / length);
+    let v = across(n, u);
+    Some((2, std::array::from_fn(|i| [u[i].into(), v[i].into(), n[i].into()])))
+}
+
+/// A vector of numbers.
+fn numbers(v: &Vector<'_>) -> [f64; 3] {
+    v.map(|component| component.constant().map_or(f64::NAN, |number| number.to_f64()))
+}
+
+impl<'g> Motions<'_, 'g> {
+    /// The place of the origin of a body, along the axes of the world.
+    pub fn place(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        self.of_body(body).map(|(motion, stand)| {
+            add(&motion.place, &apply(self.tree.graph, &motion.rotation, &stand.place))
+        })
+    }
+
+    /// The matrix from the axes of a body to those of the world, 3 × 3.
+    pub fn rotation(&self, body: &str) -> Option<Matrix<Expr<'g>>> {
+        self.of_body(body)
+            .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
+    }
+}

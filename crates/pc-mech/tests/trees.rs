@@ -1,0 +1,310 @@
+//! Bodies joined by joints against the same bodies placed by hand: positions and rotations written out from what a joint is.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_mech::{Expr, Graph, Joint, Matrix, RigidBody, System, Tree, TreeBody, TreeError, VectorField};
+use proptest::prelude::*;
+use proptest::test_runner::{RngSeed, TestRunner};
+
+/// A joint by its number, with its axes.
+#[derive(Clone, Debug)]
+struct Hung {
+    kind: usize,
+    axes: [[f64; 3]; 2],
+    parent: Option<usize>,
+    place: [f64; 3],
+    /// Rotation vector of the joint's axes in the parent.
+    tilt: [f64; 3],
+    mass: f64,
+    centre: [f64; 3],
+    /// Points of unit mass, whose inertia is that of a body.
+    spread: [[f64; 3]; 3],
+}
+
+const KINDS: usize = 9;
+
+fn coordinate_axis(i: usize, sign: f64) -> [f64; 3] {
+    std::array::from_fn(|j| if i == j { sign } else { 0.0 })
+}
+
+fn axis() -> impl Strategy<Value = [f64; 3]> {
+    let small = -2.0..2.0f64;
+    let any = (small.clone(), small.clone(), 0.5..2.0f64).prop_map(|(x, y, z)| [x, y, z]);
+    prop_oneof![
+        ((0..3usize), prop::bool::ANY).prop_map(|(i, s)| coordinate_axis(i, if s { 1.0 } else { -1.0 })),
+        any
+    ]
+}
+
+fn hung(index: usize) -> impl Strategy<Value = Hung> {
+    let vector = || prop::array::uniform3(-1.0..1.0f64);
+    let tilt = prop_oneof![Just([0.0; 3]), vector()];
+    let parts = (0..KINDS, axis(), axis(), 0..=index, vector(), tilt);
+    (parts, 0.5..2.0f64, vector(), prop::array::uniform3(vector())).prop_map(
+        |((kind, first, second, parent, place, tilt), mass, centre, spread)| Hung {
+            kind,
+            // Two axes of a universal joint are not parallel.
+            axes: [
+                first,
+                if cross(first, second).iter().all(|c| c.abs() < 0.2) {
+                    [first[1], first[2], first[0] + 0.1]
+                } else {
+                    second
+                },
+            ],
+            parent: parent.checked_sub(1),
+            place,
+            tilt,
+            mass,
+            centre,
+            spread,
+        },
+    )
+}
+
+fn tree_of(count: usize) -> impl Strategy<Value = Vec<Hung>> {
+    (0..count).map(hung).collect::<Vec<_>>()
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Σ (r²δ − r rᵀ) over the points: [xx, yy, zz, xy, yz, xz].
+fn inertia(points: &[[f64; 3]]) -> [f64; 6] {
+    let entry = |i: usize, j: usize| -> f64 {
+        let square = |r: &[f64; 3]| r.iter().map(|c| c * c).sum::<f64>();
+        points.iter().map(|r| if i == j { square(r) } else { 0.0 } - r[i] * r[j]).sum()
+    };
+    [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)]
+}
+
+type Rows<'g> = [[Expr<'g>; 3]; 3];
+
+fn identity<'g>() -> Rows<'g> {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Expr::ONE } else { Expr::ZERO }))
+}
+
+fn times<'g>(a: &Rows<'g>, b: &Rows<'g>) -> Rows<'g> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).fold(Expr::ZERO, |s, x| s + x))
+    })
+}
+
+fn on<'g>(a: &Rows<'g>, v: [Expr<'g>; 3]) -> [Expr<'g>; 3] {
+    std::array::from_fn(|i| (0..3).map(|k| a[i][k] * v[k]).fold(Expr::ZERO, |s, x| s + x))
+}
+
+/// Rodrigues' formula: 1 + sin φ ê + (1 − cos φ) ê².
+fn turn<'g>(axis: [f64; 3], angle: Expr<'g>) -> Rows<'g> {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let [x, y, z] = axis.map(|c| if length == 0.0 { Expr::ZERO } else { Expr::from(c / length) });
+    let hat = [[Expr::ZERO, -z, y], [z, Expr::ZERO, -x], [-y, x, Expr::ZERO]];
+    let square = times(&hat, &hat);
+    let one = identity();
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| one[i][j] + angle.sin() * hat[i][j] + (1.0 - angle.cos()) * square[i][j])
+    })
+}
+
+fn quaternion<'g>(q: &[Expr<'g>]) -> Rows<'g> {
+    let [a, b, c, d] = [q[0], q[1], q[2], q[3]];
+    let s = |x: Expr<'g>| x.square();
+    [
+        [s(a) + s(b) - s(c) - s(d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+        [2.0 * (b * c + a * d), s(a) - s(b) + s(c) - s(d), 2.0 * (c * d - a * b)],
+        [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), s(a) - s(b) - s(c) + s(d)],
+    ]
+}
+
+fn normed(axis: [f64; 3]) -> [f64; 3] {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    axis.map(|c| c / length)
+}
+
+impl Hung {
+    fn tilted<'g>(&self) -> Rows<'g> {
+        let angle = self.tilt.iter().map(|c| c * c).sum::<f64>().sqrt();
+        turn(self.tilt, angle.into())
+    }
+
+    fn joint<'g>(&self) -> Joint<'g> {
+        let [first, second] = self.axes;
+        let joint = match self.kind {
+            0 => Joint::fixed(),
+            1 => Joint::revolute(first),
+            2 => Joint::prismatic(first),
+            3 => Joint::screw(first, 0.3),
+            4 => Joint::cylindrical(first),
+            5 => Joint::universal(first, second),
+            6 => Joint::planar(coordinate_axis(2, 1.0)),
+            7 => Joint::spherical(),
+            _ => Joint::free(),
+        };
+        let rows = self.tilted();
+        joint.at(self.place).rotated(&Matrix::from_fn(3, 3, |i, j| rows[i][j]))
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        [(0, 0), (1, 1), (1, 1), (1, 1), (2, 2), (2, 2), (3, 3), (4, 3), (7, 6)][self.kind]
+    }
+
+    /// Displacement and rotation in the axes of the joint.
+    fn moved<'g>(&self, x: &[Expr<'g>]) -> ([Expr<'g>; 3], Rows<'g>) {
+        let [first, second] = self.axes.map(normed);
+        let along = |length: Expr<'g>| first.map(|c| length * c);
+        let zero = [Expr::ZERO; 3];
+        match self.kind {
+            0 => (zero, identity()),
+            1 => (zero, turn(first, x[0])),
+            2 => (along(x[0]), identity()),
+            3 => (along(0.3 * x[0]), turn(first, x[0])),
+            4 => (along(x[0]), turn(first, x[1])),
+            5 => (zero, times(&turn(first, x[0]), &turn(second, x[1]))),
+            6 => ([x[0], x[1], Expr::ZERO], turn([0.0, 0.0, 1.0], x[2])),
+            7 => (zero, quaternion(&x[0..4])),
+            _ => ([x[0], x[1], x[2]], quaternion(&x[3..7])),
+        }
+    }
+}
+
+const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
+
+/// The tree, and the same bodies placed by hand.
+fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
+    let tree = Tree::new(
+        graph,
+        bodies.iter().enumerate().map(|(i, body)| {
+            let hung = TreeBody::new(format!("b{i}"), body.joint())
+                .mass(body.mass)
+                .centre(body.centre)
+                .inertia(inertia(&body.spread))
+                .force([0.5, -0.25, 0.125])
+                .torque([-0.1, 0.2, 0.3]);
+            match body.parent {
+                Some(parent) => hung.on(format!("b{parent}")),
+                None => hung,
+            }
+        }),
+    )
+    .unwrap();
+    let names = |list: Vec<Expr<'g>>| list.iter().map(Expr::to_string).collect::<Vec<_>>();
+    let start = || {
+        let velocities = tree.velocities();
+        System::builder(graph)
+            .coordinates(names(tree.coordinates()))
+            .quasi_velocities(names(tree.quasi_velocities()))
+            .kinematics(|_, _, _| velocities)
+            .gravity(|_| GRAVITY.map(Expr::from))
+    };
+    let x = tree.coordinates();
+    let mut by_hand = start();
+    let mut placed: Vec<([Expr<'g>; 3], Rows<'g>)> = Vec::new();
+    let mut next = 0;
+    for body in bodies {
+        let (place, rotation) = body.parent.map_or(([Expr::ZERO; 3], identity()), |parent| placed[parent]);
+        let (way, turned) = body.moved(&x[next..]);
+        next += body.sizes().0;
+        let tilted = body.tilted();
+        let offset = on(&tilted, way);
+        let offset = on(&rotation, std::array::from_fn(|i| offset[i] + body.place[i]));
+        let place: [Expr<'g>; 3] = std::array::from_fn(|i| place[i] + offset[i]);
+        let rotation = times(&times(&rotation, &tilted), &turned);
+        placed.push((place, rotation));
+        let centre = on(&rotation, body.centre.map(Expr::from));
+        let centre: [Expr<'g>; 3] = std::array::from_fn(|i| place[i] + centre[i]);
+        by_hand = by_hand.rigid_body(|_, _, _| {
+            RigidBody::rotating(
+                body.mass,
+                centre,
+                inertia(&body.spread),
+                Matrix::from_fn(3, 3, |i, j| rotation[i][j]),
+            )
+            .force([0.5, -0.25, 0.125])
+            .torque([-0.1, 0.2, 0.3])
+        });
+    }
+    let system = start().tree(tree).build().unwrap();
+    (system, by_hand.build().unwrap())
+}
+
+/// A state with unit quaternions.
+fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
+    let mut y: Vec<f64> = Vec::new();
+    for body in bodies {
+        let first = y.len();
+        y.extend(&numbers[first..first + body.sizes().0]);
+        let quaternion = match body.kind {
+            7 => first..first + 4,
+            8 => first + 3..first + 7,
+            _ => continue,
+        };
+        y[quaternion.start] += 0.5;
+        let norm = y[quaternion.clone()].iter().map(|q| q * q).sum::<f64>().sqrt();
+        y[quaternion].iter_mut().for_each(|q| *q /= norm);
+    }
+    let k: usize = bodies.iter().map(|body| body.sizes().1).sum();
+    let first = y.len();
+    y.extend(&numbers[first..first + k]);
+    y
+}
+
+/// The largest difference of two lists, of the largest number in them.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let largest = a.iter().chain(b).fold(1.0f64, |largest, x| largest.max(x.abs()));
+    a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs())) / largest
+}
+
+#[test]
+fn bodies_hung_by_joints_move_as_those_placed_by_hand() {
+    let config = ProptestConfig {
+        cases: 24,
+        rng_seed: RngSeed::Fixed(20),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let strategy = (tree_of(3), prop::collection::vec(-1.0..1.0f64, 60));
+    let outcome = TestRunner::new(config).run(&strategy, |(bodies, numbers)| {
+        prop_assume!(bodies.iter().any(|body| body.kind != 0));
+        let graph = Graph::new();
+        let (hung, placed) = systems(&graph, &bodies);
+        let y = state(&bodies, &numbers);
+        let rates = |system: &System<'_>| -> Vec<f64> {
+            let mut motion = system.poincare().unwrap().compile().unwrap();
+            let mut rates = vec![0.0; y.len()];
+            motion.rhs(0.0, &y, &mut rates).unwrap();
+            rates
+        };
+        let (hung, placed) = (rates(&hung), rates(&placed));
+        // Condition of the mass matrix times rounding.
+        prop_assert!(difference(&hung, &placed) < 1e-10, "{hung:?}\n{placed:?}");
+        Ok(())
+    });
+    outcome.unwrap();
+}
+
+#[test]
+fn what_is_no_tree_is_said() {
+    let graph = Graph::new();
+    let body = |name: &str| TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]));
+    let error = |bodies: Vec<TreeBody<'_>>| Tree::new(&graph, bodies).unwrap_err().to_string();
+    assert_eq!(error(vec![body("a"), body("a")]), "there are two bodies called `a`");
+    assert_eq!(error(vec![body("a").on("b")]), "the body `a` hangs on `b`, which there is not");
+    assert_eq!(
+        error(vec![body("a").on("c"), body("b").on("a"), body("c").on("b")]),
+        "bodies hang on each other in a circle: a on c on b"
+    );
+    assert_eq!(
+        error(vec![TreeBody::new("a", Joint::prismatic([0.0; 3]))]),
+        "the axis (0, 0, 0) of the joint of `a` has no direction"
+    );
+    let named = Joint::spherical().named(["q"], ["ω"]);
+    assert_eq!(
+        error(vec![TreeBody::new("a", named)]),
+        "the joint of `a` has 4 coordinates; 1 names are given"
+    );
+    let tree = Tree::new(&graph, [body("a").mass(1)]).unwrap();
+    let outcome = System::builder(&graph).coordinates(["b"]).tree(tree).build();
+    let missing = TreeError::NotOfTheSystem { name: "a".to_owned(), what: "coordinates" };
+    assert_eq!(outcome.unwrap_err(), missing.into());
+}
