@@ -3,9 +3,7 @@
 //! A body has thirty definitions of its own, before those of the text: the constant rotation of its joint, the rotation by
 //! the joint, its own, and its place; a point has three. They are made of coordinates and parameters alone.
 
-use pc_model::document::{
-    Document, Expression, Joint, JointKind, JointRotation, Point, TreeBody,
-};
+use pc_model::document::{Document, Expression, Joint, JointKind, JointRotation, Point, TreeBody};
 
 use crate::error::Unable;
 use crate::term::{Function, Names, Term};
@@ -45,6 +43,18 @@ impl<'a> Tree<'a> {
         OF_BODY * self.document.tree.len() + OF_POINT * self.document.points.len()
     }
 
+    /// What they are called where something is wrong with them.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let bodies = self.order.iter().map(|&body| &self.document.tree[body].name.text);
+        let bodies = bodies.flat_map(|name| std::iter::repeat_n(name, OF_BODY));
+        let points = self.document.points.iter().map(|point| &point.name.text);
+        let points = points.flat_map(|name| std::iter::repeat_n(name, OF_POINT));
+        bodies
+            .map(|name| format!("the body {name}"))
+            .chain(points.map(|name| format!("the point {name}")))
+            .collect()
+    }
+
     fn first(&self, body: usize) -> usize {
         OF_BODY * self.order.iter().position(|&known| known == body).unwrap_or(0)
     }
@@ -77,8 +87,9 @@ impl<'a> Tree<'a> {
         for &number in &self.order {
             let body = &self.document.tree[number];
             let first = all.len();
-            let defined = |from: usize| (first + from..first + from + 9).map(Term::Definition).collect::<Vec<_>>();
-            let motion = Motion::of(&body.joint, &defined(0), names)?;
+            let defined =
+                |from: usize| (first + from..first + from + 9).map(Term::Definition).collect::<Vec<_>>();
+            let motion = Motion::of(&body.joint, names)?;
             all.extend(constant_rotation(&body.joint, names)?);
             all.extend(match motion.turn {
                 Some(turn) => product(&defined(0), &turn),
@@ -106,8 +117,11 @@ impl<'a> Tree<'a> {
         for body in &self.document.tree {
             let joint = &body.joint;
             let x = joint.coordinates.iter().map(|name| name.text.clone());
-            let eta: Vec<Term> =
-                joint.quasi_velocities.iter().map(|name| names.quasi_velocity(&name.text)).collect::<Result<_, _>>()?;
+            let eta: Vec<Term> = joint
+                .quasi_velocities
+                .iter()
+                .map(|name| names.quasi_velocity(&name.text))
+                .collect::<Result<_, _>>()?;
             let rates = match joint.kind {
                 JointKind::Spherical => quaternion_rates(&coordinates(joint, names)?, &eta),
                 JointKind::Free => {
@@ -158,31 +172,30 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(joint: &Joint, _axes: &[Term], names: &Names) -> Result<Motion, Unable> {
+    fn of(joint: &Joint, names: &Names) -> Result<Motion, Unable> {
         let x = coordinates(joint, names)?;
-        let axis = |number: usize| -> Result<Vec<Term>, Unable> {
-            let axis: Vec<Term> =
-                joint.axes[number].iter().map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
-            let length = Term::Call(Function::Sqrt, vec![scalar(&axis, &axis)]);
-            Ok(axis.into_iter().map(|part| Term::Product(vec![(false, part), (true, length.clone())])).collect())
+        let axis = |number: usize| -> Vec<Term> {
+            let axis = joint.axes.get(number).copied().unwrap_or_default();
+            let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+            axis.iter().map(|part| Term::Number(part / length)).collect()
         };
         let along = |axis: &[Term], by: &Term| -> Vec<Term> { axis.iter().map(|u| times([u, by])).collect() };
         let (slide, turn) = match joint.kind {
             JointKind::Fixed => (None, None),
-            JointKind::Revolute => (None, Some(about(&axis(0)?, &x[0]))),
-            JointKind::Prismatic => (Some(along(&axis(0)?, &x[0])), None),
+            JointKind::Revolute => (None, Some(about(&axis(0), &x[0]))),
+            JointKind::Prismatic => (Some(along(&axis(0), &x[0])), None),
             JointKind::Screw => {
-                let (axis, pitch) = (axis(0)?, joint.pitch.as_ref());
+                let (axis, pitch) = (axis(0), joint.pitch.as_ref());
                 let pitch = pitch.map_or(Ok(Term::Number(0.0)), |pitch| names.resolve(&pitch.ast))?;
                 (Some(along(&axis, &times([&pitch, &x[0]]))), Some(about(&axis, &x[0])))
             }
-            JointKind::Cylindrical => (Some(along(&axis(0)?, &x[0])), Some(about(&axis(0)?, &x[1]))),
-            JointKind::Universal => {
-                (None, Some(product(&about(&axis(0)?, &x[0]), &about(&axis(1)?, &x[1]))))
-            }
+            JointKind::Cylindrical => (Some(along(&axis(0), &x[0])), Some(about(&axis(0), &x[1]))),
+            JointKind::Universal => (None, Some(product(&about(&axis(0), &x[0]), &about(&axis(1), &x[1])))),
             JointKind::Planar => {
-                let normal = axis(0)?;
-                let [first, second] = in_plane(joint, &normal);
+                let normal = axis(0);
+                // The normal is a coordinate axis, and the slides are along the two that follow it.
+                let [first, second] = [0, 1]
+                    .map(|turns| (0..3).map(|i| normal[(i + 2 - turns) % 3].clone()).collect::<Vec<_>>());
                 let slide = added(&along(&first, &x[0]), &along(&second, &x[1]));
                 (Some(slide), Some(about(&normal, &x[2])))
             }
@@ -238,7 +251,8 @@ fn scalar(a: &[Term], b: &[Term]) -> Term {
 }
 
 fn cross(a: &[Term], b: &[Term]) -> Vec<Term> {
-    let part = |i: usize, j: usize| Term::Sum(vec![(false, times([&a[i], &b[j]])), (true, times([&a[j], &b[i]]))]);
+    let part =
+        |i: usize, j: usize| Term::Sum(vec![(false, times([&a[i], &b[j]])), (true, times([&a[j], &b[i]]))]);
     vec![part(1, 2), part(2, 0), part(0, 1)]
 }
 
@@ -262,9 +276,15 @@ fn product(a: &[Term], b: &[Term]) -> Vec<Term> {
 fn skew(u: &[Term]) -> Vec<Term> {
     let (zero, minus) = (Term::Number(0.0), |i: usize| Term::Negative(Box::new(u[i].clone())));
     vec![
-        zero.clone(), minus(2), u[1].clone(), //
-        u[2].clone(), zero.clone(), minus(0), //
-        minus(1), u[0].clone(), zero,
+        zero.clone(),
+        minus(2),
+        u[1].clone(), //
+        u[2].clone(),
+        zero.clone(),
+        minus(0), //
+        minus(1),
+        u[0].clone(),
+        zero,
     ]
 }
 
@@ -274,7 +294,8 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     let square = product(&s, &s);
     let sine = Term::Call(Function::Sin, vec![angle.clone()]);
     let rest = Term::Sum(vec![(false, one), (true, Term::Call(Function::Cos, vec![angle.clone()]))]);
-    let entry = |((unit, s), square): ((Term, Term), Term)| sum([unit, times([&sine, &s]), times([&rest, &square])]);
+    let entry =
+        |((unit, s), square): ((Term, Term), Term)| sum([unit, times([&sine, &s]), times([&rest, &square])]);
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
@@ -282,7 +303,9 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
 fn by_quaternion(q: &[Term]) -> Vec<Term> {
     let (s, two) = (skew(&q[1..]), Term::Number(2.0));
     let square = product(&s, &s);
-    let entry = |((unit, s), square): ((Term, Term), Term)| sum([unit, times([&two, &q[0], &s]), times([&two, &square])]);
+    let entry = |((unit, s), square): ((Term, Term), Term)| {
+        sum([unit, times([&two, &q[0], &s]), times([&two, &square])])
+    };
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 

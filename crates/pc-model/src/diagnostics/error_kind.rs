@@ -146,7 +146,9 @@ pub enum ErrorKind {
         body: String,
     },
     /// Definitions by velocities beside quaternions.
-    #[error("the joint of `{body}` has an angular velocity, beside which no quasi-velocity is defined by `is`")]
+    #[error(
+        "the joint of `{body}` has an angular velocity, beside which no quasi-velocity is defined by `is`"
+    )]
     DefinedBesideTurning {
         /// The body.
         body: String,
@@ -422,6 +424,7 @@ fn reserved(name: &str) -> String {
         "t" => "it is the time".into(),
         "pi" => "it is the number π".into(),
         "energy" => "it is the energy column that every run has".into(),
+        "world" => "it is what bodies hang on in the end".into(),
         _ => match FUNCTIONS.iter().find(|function| function.name == name) {
             Some(function) => format!("it is the function `{}`", function.usage),
             None => "it has a meaning of its own".into(),

@@ -337,12 +337,6 @@ pub enum MeaningError {
     /// An axis without direction.
     #[error("the axis has length 0")]
     ZeroAxis,
-    /// An axis made of parameters that has another length than 1.
-    #[error("the axis has length {}, not 1", rounded(*length))]
-    AxisNotUnit {
-        /// Its length.
-        length: f64,
-    },
     /// A matrix that is no rotation.
     #[error("these nine entries are no rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
     NotARotation {
@@ -443,7 +437,6 @@ impl MeaningError {
             | MeaningError::Contradiction { .. }
             | MeaningError::Degenerate { .. }
             | MeaningError::ZeroAxis
-            | MeaningError::AxisNotUnit { .. }
             | MeaningError::NotARotation { .. }
             | MeaningError::QuaternionNotUnit { .. }
             | MeaningError::Massless { .. }
@@ -552,9 +545,6 @@ impl MeaningError {
             MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             MeaningError::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
             MeaningError::ZeroAxis => "give it a direction, such as `[0, 0, 1]`".into(),
-            MeaningError::AxisNotUnit { .. } => {
-                "divide it by its length; an axis made of numbers alone is divided by itself".into()
-            }
             MeaningError::NotARotation { .. } => {
                 "its rows are orthogonal unit vectors; angles about axes are given by `turns`".into()
             }

@@ -2,8 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
+use pc_expr::parse::AstKind;
+
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::contents::{Constraint, Document, QuasiVelocity};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::joints::{TreeBody, WORLD, prime};
@@ -15,6 +18,7 @@ use crate::document::loops::Loop;
 /// Where a body hangs on none that there is, or what a joint says is said otherwise elsewhere.
 pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     check_parents(document)?;
+    check_masses(document)?;
     close(document, loops)?;
     for point in &document.points {
         check_body(document, &point.body)?;
@@ -60,6 +64,33 @@ fn check_parents(document: &Document) -> Result<(), ModelError> {
         on_world.extend(below);
     }
     Ok(())
+}
+
+/// That what moves has mass: it, or what hangs on it, unless `[lagrangian]` says more of the energy.
+fn check_masses(document: &Document) -> Result<(), ModelError> {
+    if document.lagrangian.as_ref().is_some_and(|own| own.kinetic.is_some() || own.lagrangian.is_some()) {
+        return Ok(());
+    }
+    let is_zero = |mass: &Expression| matches!(mass.ast.kind, AstKind::Number(0.0));
+    let has_mass =
+        |body: &&TreeBody| body.inertia.is_some() || body.mass.as_ref().is_some_and(|mass| !is_zero(mass));
+    let place = |name: &str| document.tree.iter().position(|body| body.name.text == name);
+    let mut carries = vec![false; document.tree.len()];
+    for body in document.tree.iter().filter(has_mass) {
+        let mut next = place(&body.name.text);
+        while let Some(body) = next.filter(|&body| !carries[body]) {
+            carries[body] = true;
+            next = document.tree[body].parent().and_then(place);
+        }
+    }
+    let moves = |body: &TreeBody| !body.joint.coordinates.is_empty();
+    match document.tree.iter().zip(carries).find(|(body, carries)| moves(body) && !carries) {
+        None => Ok(()),
+        Some((body, _)) => {
+            let fault = MeaningError::Massless { body: body.name.text.clone() };
+            Err(document.source.error(&body.name.place, fault))
+        }
+    }
 }
 
 /// The points and constraints of loops.
@@ -123,7 +154,11 @@ fn declare_motions(document: &mut Document, tree: &[TreeBody]) -> Result<(), Mod
                 return Err(said_elsewhere(document, &given.name, body));
             }
             let name = given.as_ref().map_or(name, |given| &given.name).clone();
-            quasi_velocities.push(QuasiVelocity { name, is: None, start: given.and_then(|given| given.start) });
+            quasi_velocities.push(QuasiVelocity {
+                name,
+                is: None,
+                start: given.and_then(|given| given.start),
+            });
         }
     }
     let own = &document.quasi_velocities;

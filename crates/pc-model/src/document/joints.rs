@@ -44,8 +44,8 @@ pub struct Joint {
     pub place: Place,
     /// What it lets move.
     pub kind: JointKind,
-    /// The axes that its kind has, in the joint's axes.
-    pub axes: Vec<[Expression; 3]>,
+    /// The directions that its kind has, in the joint's axes; of any length but 0.
+    pub axes: Vec<[f64; 3]>,
     /// Of a screw, the advance per radian.
     pub pitch: Option<Expression>,
     /// Where it is, in the axes of the body it hangs on, from the origin of that; the origin where it is left out.
@@ -179,8 +179,7 @@ pub struct Point {
 }
 
 impl Point {
-    const ENDS: [&'static str; 12] =
-        ["x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33"];
+    const ENDS: [&'static str; 12] = ["x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33"];
 
     pub(super) fn new(name: Name, body: Located<String>, at: Option<[Expression; 3]>) -> Point {
         let component = |end| Name { text: format!("{}_{end}", name.text), place: name.place.clone() };

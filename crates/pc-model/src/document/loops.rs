@@ -3,9 +3,9 @@
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::diagnostics::meaning::MeaningError;
 use crate::document::expression::{Expression, Located, Name};
 use crate::document::joints::Point;
+use crate::document::tree::direction;
 
 const KEYS: &[&str] = &["bodies", "kind", "at", "axis", "length"];
 const BODIES: &str = "bodies = [\"a\", \"b\"]";
@@ -76,9 +76,8 @@ fn closed(item: &Item<'_>) -> Result<Loop, ModelError> {
     }
     let [first, second] = entries.bodies.ok_or_else(|| missing("bodies", BODIES))?;
     let [here, there] = entries.at.ok_or_else(|| missing("at", PLACES))?;
-    let point = |end, body, at| {
-        Ok(Point::new(item.derived_name(format!("{}_{end}", name.text))?, body, Some(at)))
-    };
+    let point =
+        |end, body, at| Ok(Point::new(item.derived_name(format!("{}_{end}", name.text))?, body, Some(at)));
     let points = [point("a", first, here)?, point("b", second, there)?];
     let constraints = texts.into_iter().map(|text| table.following(text, &name.place));
     Ok(Loop { constraints: constraints.collect::<Result<_, _>>()?, name, points })
@@ -133,15 +132,8 @@ fn scalar_product(name: &str, a: [f64; 3], b: [f64; 3]) -> String {
 
 /// An axis, made a unit vector.
 fn axis(item: &Item<'_>) -> Result<[f64; 3], ModelError> {
-    let components = item.parts(&[3], "3 numbers", DIRECTIONS)?;
-    let mut axis = [0.0; 3];
-    for (value, component) in axis.iter_mut().zip(&components) {
-        *value = component.number()?.value;
-    }
-    match norm(axis) {
-        0.0 => Err(item.error(MeaningError::ZeroAxis)),
-        length => Ok(axis.map(|value| value / length)),
-    }
+    let axis = direction(item, DIRECTIONS)?;
+    Ok(axis.map(|value| value / norm(axis)))
 }
 
 /// Two unit vectors across a unit vector and across each other.

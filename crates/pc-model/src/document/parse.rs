@@ -15,8 +15,8 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, SECTIONS};
 use crate::diagnostics::source::Source;
 use crate::document::contents::Document;
-use crate::document::reader::{Item, Table};
 use crate::document::loops::{self, Loop};
+use crate::document::reader::{Item, Table};
 use crate::document::{bodies, checks, hanging, inputs, sections, simulation, syntax, tree};
 
 impl Document {

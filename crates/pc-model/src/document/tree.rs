@@ -3,9 +3,10 @@
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::bodies::inertia;
 use crate::document::expression::Name;
-use crate::document::joints::{Joint, JointKind, JointRotation, Point, TreeBody, prime};
+use crate::document::joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
 
 const KEYS: &[&str] = &["parent", "joint", "mass", "center", "inertia", "force", "torque"];
 const JOINT_KEYS: &[&str] =
@@ -19,6 +20,9 @@ const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
 /// A body with an entry `joint`.
 pub(super) fn body(item: &Item<'_>, table: &Table<'_>) -> Result<TreeBody, ModelError> {
     let name = item.new_label()?;
+    if name.text == WORLD {
+        return Err(item.key_error(ErrorKind::Reserved { name: name.text }));
+    }
     let (mut parent, mut hangs, mut mass, mut center) = (None, None, None, None);
     let (mut moments, mut force, mut torque) = (None, None, None);
     for part in table.items() {
@@ -66,15 +70,11 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     for part in table.items() {
         match part.key() {
             "kind" => kind = Some(part.choice(JointKind::ALL)?),
-            "axis" | "axes" => {
-                let list = match part.key() {
-                    "axis" => vec![part.array("3 expressions", AXIS)?],
-                    _ => {
-                        let both = part.parts(&[2], "2 axes", AXES)?;
-                        both.iter().map(|axis| axis.array("3 expressions", AXES)).collect::<Result<_, _>>()?
-                    }
-                };
-                axes = Some((part.clone(), list));
+            "axis" => axes = Some((part.clone(), vec![direction(&part, AXIS)?])),
+            "axes" => {
+                let both = part.parts(&[2], "2 axes", AXES)?;
+                let both = both.iter().map(|axis| direction(axis, AXES));
+                axes = Some((part.clone(), both.collect::<Result<_, _>>()?));
             }
             "pitch" => pitch = Some((part.clone(), part.expression()?)),
             "at" => at = Some(part.array("3 expressions", AT)?),
@@ -99,7 +99,11 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         (0, None) => Vec::new(),
         (1, None) => return Err(missing("axis", AXIS)),
         (_, None) => return Err(missing("axes", AXES)),
-        (count, Some((_, list))) if list.len() == count => list,
+        (1, Some((part, list))) if list.len() == 1 => {
+            check_normal(kind, &part, list[0])?;
+            list
+        }
+        (2, Some((_, list))) if list.len() == 2 => list,
         (_, Some((part, _))) => return Err(without_effect(&part, kind)),
     };
     let pitch = match (kind, pitch) {
@@ -119,6 +123,34 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         given => names(given.as_ref(), body, usual)?,
     };
     Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
+}
+
+/// The components of a direction.
+pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 3], ModelError> {
+    let components = item.parts(&[3], "3 numbers", example)?;
+    let mut direction = [0.0; 3];
+    for (value, component) in direction.iter_mut().zip(&components) {
+        *value = component.number()?.value;
+    }
+    match direction == [0.0; 3] {
+        true => Err(item.error(MeaningError::ZeroAxis)),
+        false => Ok(direction),
+    }
+}
+
+/// The slides of a planar joint are along the axes of the joint that follow its normal, so that this is one of them.
+fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<(), ModelError> {
+    if kind != JointKind::Planar
+        || (0..3).any(|i| normal[i] > 0.0 && normal[(i + 1) % 3] == 0.0 && normal[(i + 2) % 3] == 0.0)
+    {
+        return Ok(());
+    }
+    let found = format!("[{}, {}, {}]", normal[0], normal[1], normal[2]);
+    Err(part.error(ErrorKind::OutOfRange {
+        expected: "[1, 0, 0], [0, 1, 0] or [0, 0, 1] as the normal of a planar joint, whose axes `rotation` or `turns` can turn",
+        found,
+        example: AXIS,
+    }))
 }
 
 /// An entry that joints of this kind do not have.
@@ -184,6 +216,7 @@ fn point(item: &Item<'_>) -> Result<Point, ModelError> {
             _ => return Err(part.unknown(&["body", "at"])),
         }
     }
-    let body = body.ok_or_else(|| table.error(ErrorKind::Missing { key: "body", example: "body = \"…\"" }))?;
+    let body =
+        body.ok_or_else(|| table.error(ErrorKind::Missing { key: "body", example: "body = \"…\"" }))?;
     Ok(Point::new(name, body, at))
 }
