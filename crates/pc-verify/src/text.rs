@@ -70,6 +70,8 @@ pub(crate) struct Body {
     pub(crate) force: Vec<Term>,
     /// μ_i for each component of the force: where it is not 0 the force has the force function μ_i F_i r_i, which counts in L.
     pub(crate) force_functions: Vec<f64>,
+    /// Whether any of it may: none does of a force on a body with a joint.
+    pub(crate) may_have_force_functions: bool,
     pub(crate) torque: Vec<Term>,
 }
 
@@ -133,6 +135,7 @@ impl Text {
                 },
                 force: body.force.as_ref().map_or(Ok(Vec::new()), |force| terms(force))?,
                 force_functions: vec![0.0; body.force.as_ref().map_or(0, |force| force.len())],
+                may_have_force_functions: true,
                 torque: body.torque.as_ref().map_or(Ok(Vec::new()), |torque| terms(torque))?,
             })
         });

@@ -155,6 +155,7 @@ impl<'a> Tree<'a> {
             inertia: body.inertia.as_ref().map(|inertia| matrix(inertia, term)).transpose()?,
             turning: Some(Turning::Rotation(rotation)),
             force_functions: vec![0.0; force.len()],
+            may_have_force_functions: false,
             force,
             torque: terms(&body.torque)?,
         })
