@@ -5,10 +5,15 @@
 //! of the body along or about one of which it moves. `spatial` has the vectors and matrices of three components, `kinematics`
 //! the recursion of velocities from body to body, `energy` what it adds to a system.
 
+pub(crate) mod articulated;
 pub(crate) mod body;
+pub(crate) mod dynamics;
 pub(crate) mod energy;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod link;
+pub(crate) mod regrouping;
 pub(crate) mod spatial;
+pub(crate) mod system;
 pub(crate) mod tree;
+pub(crate) mod turning;

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use hashbrown::HashTable;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::graph::budget::Meter;
 use crate::graph::divisors::{DivisorSets, Divisors};
@@ -35,6 +35,8 @@ pub(crate) struct Dag {
     costs: Vec<u32>,
     /// A bit for each symbol that the node is written with, the same bit for every sixty-fourth.
     symbols: Vec<u64>,
+    /// Nodes that sums and products above them do not open.
+    kept: FxHashSet<NodeId>,
     /// What the node divides by.
     pub(super) divisors: Vec<Divisors>,
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
@@ -73,6 +75,7 @@ impl Dag {
             nonnegative: Vec::new(),
             costs: Vec::new(),
             symbols: Vec::new(),
+            kept: FxHashSet::default(),
             divisors: Vec::new(),
             limits: Vec::new(),
             divisor_sets: DivisorSets::default(),
@@ -163,6 +166,18 @@ impl Dag {
             self.register(id);
             id
         })
+    }
+
+    /// Has sums and products that are made of this node from now on leave it closed.
+    pub(crate) fn keep(&mut self, atom: Atom) {
+        if let Atom::Node(node) = atom {
+            let (node, _) = self.split_coefficient(node, Number::ONE);
+            self.kept.insert(node);
+        }
+    }
+
+    pub(super) fn is_kept(&self, node: NodeId) -> bool {
+        !self.kept.is_empty() && self.kept.contains(&node)
     }
 
     /// Whether two expressions are the same node; by value too where that is switched on.

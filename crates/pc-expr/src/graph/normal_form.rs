@@ -69,6 +69,7 @@ impl Dag {
                 Node::Constant(c) => *constant = *constant + q * c,
                 Node::Sum { constant: c, terms }
                     if terms.range().len() <= MERGED_TERMS
+                        && !self.is_kept(node)
                         && out.len() < limit
                         && fits(c)
                         && self.terms(terms).iter().all(|&(_, r)| fits(r)) =>
@@ -168,6 +169,7 @@ impl Dag {
                 (Some(q), Node::Constant(c)) => *coefficient = q * c.powi(e),
                 (Some(q), Node::Product { factors })
                     if factors.range().len() <= MERGED_FACTORS
+                        && !self.is_kept(inner)
                         && out.len() < limit
                         && self.factors(factors).iter().all(|&(_, d)| d.checked_mul(e).is_some()) =>
                 {

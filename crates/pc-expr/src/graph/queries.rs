@@ -28,6 +28,25 @@ impl Graph {
         }
     }
 
+    /// The expression x, which sums and products made of it from now on do not open: the result of a step of a recursion, to be
+    /// computed once and used as it is. Without that a sum of sums is one sum, which is shorter to read and longer to compute.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [a, b, c] = graph.symbols(["a", "b", "c"]);
+    /// let step = graph.keep(a - b);
+    /// assert_eq!((step + c).to_string(), "c + (a - b)");
+    /// assert_eq!(step + c, a + c - b); // of one value all the same
+    /// ```
+    pub fn keep<'g>(&'g self, x: Expr<'g>) -> Expr<'g> {
+        let atom = x.atom_in(self);
+        self.build(|dag| {
+            dag.keep(atom);
+            atom
+        })
+    }
+
     /// √x, kept as a root where x is a number that is no square, so that its square is x.
     ///
     /// ```

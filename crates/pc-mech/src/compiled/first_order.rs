@@ -1,6 +1,7 @@
 //! First-order systems whose rates contain the solution of linear equations.
 
 use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
 
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph, Inputs, Pattern};
@@ -8,6 +9,8 @@ use pc_expr::{Expr, Graph, Inputs, Pattern};
 use crate::compiled::elimination::columns::{SparseColumn, nonzeros, sparse};
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::equations::poincare::Equations;
+use crate::tree::dynamics::TreeDynamics;
+use crate::tree::system::TreeSystem;
 
 /// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
 ///
@@ -35,8 +38,10 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) multipliers: usize,
     /// How many of these belong to independent constraints, the first ones wherever they are.
     pub(crate) rank: usize,
-    /// M, k × k.
+    /// M, k × k; without entries where a tree is eliminated.
     pub(crate) mass: Matrix<Expr<'g>>,
+    /// What M w = r is, where M and r are not written out.
+    pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
     /// p, where it is not M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
@@ -59,7 +64,22 @@ pub(crate) struct Implicit<'g> {
     pub(crate) guess: Vec<f64>,
 }
 
+/// The equations of a tree.
+#[derive(Clone, Debug)]
+pub(crate) struct TreeEquations<'g> {
+    pub(crate) system: TreeSystem<'g>,
+    pub(crate) dynamics: TreeDynamics<'g>,
+}
+
 impl<'g> FirstOrder<'g> {
+    /// M⁻¹ in the form in which it is applied.
+    pub(crate) fn factors(&self) -> Factors<'g> {
+        match &self.tree {
+            Some(tree) => Factors::Tree(Rc::clone(tree)),
+            None => Factors::of(self.graph, &self.mass),
+        }
+    }
+
     /// The inputs (t, (y, `more`), p) of a program.
     pub(crate) fn inputs(&self, more: &[Expr<'g>]) -> Inputs<'g> {
         Inputs {
@@ -75,6 +95,9 @@ impl<'g> FirstOrder<'g> {
 
     /// w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
+        if let Some(tree) = &self.tree {
+            return tree.system.in_order(&tree.dynamics.accelerations());
+        }
         let mut unknowns = factors.solve(self.graph, &self.right);
         for (s, unknown) in unknowns.iter_mut().enumerate() {
             let row = self.mass.row(s);
@@ -102,6 +125,9 @@ impl<'g> FirstOrder<'g> {
 
     /// F = r − M w or r − p, in t, y and w.
     pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
+        if let Some(tree) = &self.tree {
+            return tree.system.in_order(&tree.dynamics.balance(&tree.system.by_link(&self.unknowns)));
+        }
         let nonzero = |s| self.mass.row(s).iter().zip(&self.unknowns).filter(|(m, _)| !m.is_zero());
         let product = |s| self.graph.sum(nonzero(s).map(|(&m, &w)| m * w));
         let left = |s: usize| self.implicit.as_ref().map_or_else(|| product(s), |p| p.left[s]);
@@ -131,6 +157,19 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl<'g> Equations<'g> {
+    /// The same, of a tree joint after joint.
+    pub(crate) fn shortest_first_order(&self) -> FirstOrder<'g> {
+        let whole = self.first_order();
+        let Some(tree) = &self.system.tree else { return whole };
+        let tree = TreeEquations { dynamics: tree.dynamics(&self.system), system: (**tree).clone() };
+        FirstOrder {
+            mass: Matrix::from_fn(0, 0, |_, _| Expr::ZERO),
+            right: Vec::new(),
+            tree: Some(Rc::new(tree)),
+            ..whole
+        }
+    }
+
     /// The case w = η̇, g = (b η + b_0, w).
     pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let system = &self.system;
@@ -148,6 +187,7 @@ impl<'g> Equations<'g> {
             multipliers: 0,
             rank: 0,
             mass: self.mass.clone(),
+            tree: None,
             implicit: None,
             right: self.right.clone(),
             rates: self

@@ -120,7 +120,7 @@ impl<'g> Equations<'g> {
     /// # Errors
     /// As [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        self.first_order().compile(&options.into(), LONGEST_ELIMINATION)
+        self.shortest_first_order().compile(&options.into(), LONGEST_ELIMINATION)
     }
 }
 
@@ -133,7 +133,7 @@ impl FirstOrder<'_> {
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
         let short = || cost::operations(&self.mass) <= longest;
         let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
-        let form = if self.implicit.is_none() && self.multipliers == 0 && unrolled() {
+        let form = if self.tree.is_some() || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
             Form::Unrolled(Box::new(Unrolled::new(self, options)?))
         } else {
             Form::Staged(Box::new(Staged::new(self, options)?))

@@ -344,6 +344,7 @@ impl<'g> Canonical<'g> {
             }
         };
         FirstOrder {
+            tree: None,
             graph,
             time: system.frame.time(),
             state: system.state_with(&self.momenta),

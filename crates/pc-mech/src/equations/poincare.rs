@@ -64,7 +64,10 @@ impl<'g> System<'g> {
         let on_constraints = |expressions: &[Expr<'g>]| graph.substitute(expressions, &constraints);
         let gradient = on_constraints(&gradient);
         let (momenta, slope) = gradient.split_at(all.len());
-        let system = self.restricted(free);
+        let mut system = self.restricted(free);
+        if free == all.len() {
+            system.tree.clone_from(&self.tree); // nothing was put in
+        }
         let eta = &system.quasi_velocities;
         let velocities = system.frame.velocities(eta);
 

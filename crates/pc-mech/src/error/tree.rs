@@ -44,6 +44,16 @@ pub enum TreeError {
         /// What the joint has.
         expected: usize,
     },
+    /// A part of a body that moves.
+    #[error("the {what} of `{body}` is constant; here it depends on `{symbol}`")]
+    NotConstant {
+        /// The body.
+        body: String,
+        /// Its part.
+        what: &'static str,
+        /// Time, a coordinate, a velocity or a state in it.
+        symbol: String,
+    },
     /// Coordinates or quasi-velocities of the tree that the system does not have.
     #[error("`{name}`, which the joint of a body is moved by, is not among the {what} of the system")]
     NotOfTheSystem {

@@ -3,8 +3,7 @@
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-use crate::error::TreeError;
-use crate::error::{FrameError, LagrangianError, MechError, shape};
+use crate::error::{FrameError, LagrangianError, MechError, TreeError, shape};
 use crate::system::bodies::body::Body;
 use crate::system::bodies::moving::Moving;
 use crate::system::bodies::particle::Particle;
@@ -13,6 +12,7 @@ use crate::system::bodies::velocity::{Bodies, BodyVelocity};
 use crate::system::external_force;
 use crate::system::forces::Force;
 use crate::system::system::{System, check_no_state};
+use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 
 /// How a system is described; every closure receives (t, x, η).
@@ -438,13 +438,20 @@ impl<'g> SystemBuilder<'g> {
             let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
             bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
         }
-        if let Some(tree) = &self.tree {
-            let gravity = self.gravity.as_deref().map(three_components).transpose()?;
-            check_named(tree, &frame, &eta)?;
-            let share = tree.motions().share(gravity.as_ref(), &eta);
+        let mut tree_system = None;
+        if let Some(tree) = self.tree {
+            let gravity =
+                self.gravity.as_deref().map(three_components).transpose()?.unwrap_or([Expr::ZERO; 3]);
+            check_named(&tree, &frame, &eta)?;
+            let states = self.states.iter().map(|(z, _)| z);
+            let moving = frame.coordinates().iter().chain(&eta).chain([&self.time]).chain(states).copied();
+            tree.check_constant(&moving.chain(self.signals.iter().copied()).collect::<Vec<_>>())?;
+            let share = tree.motions().share(&gravity, &eta);
+            let others = self.graph.sum(terms.iter().copied());
             terms.extend(share.kinetic.into_iter().chain(share.weight));
             parts.push(share.forces);
             bodies.list.extend(share.velocities);
+            tree_system = TreeSystem::of(tree, gravity, others, &frame, &eta).map(Box::new);
         }
         if terms.is_empty() {
             return Err(LagrangianError::Missing.into());
@@ -486,6 +493,7 @@ impl<'g> SystemBuilder<'g> {
             integrals: self.integrals,
             outputs: self.outputs,
             bodies,
+            tree: tree_system,
         })
     }
 }

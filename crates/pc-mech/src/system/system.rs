@@ -5,6 +5,7 @@ use pc_expr::{Expr, Graph};
 
 use crate::error::{FrameError, MechError, shape};
 use crate::system::bodies::velocity::Bodies;
+use crate::tree::system::TreeSystem;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///
@@ -25,6 +26,8 @@ pub struct System<'g> {
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
     pub(crate) bodies: Bodies<'g>,
+    /// The bodies joined by joints that it is made of, if it is made of nothing else that has inertia.
+    pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
 
 impl<'g> System<'g> {
@@ -182,6 +185,7 @@ impl<'g> System<'g> {
             structure: self.structure.permuted(order),
             quasi_velocities: order.iter().map(|&s| self.quasi_velocities[s]).collect(),
             forces: order.iter().map(|&s| self.forces[s]).collect(),
+            tree: None,
             ..self.clone()
         }
     }
@@ -200,6 +204,7 @@ impl<'g> System<'g> {
             outputs: named(self.outputs),
             states: self.states.into_iter().map(|(z, rate)| (z, one(rate))).collect(),
             bodies: self.bodies.map(&put),
+            tree: None,
             ..self
         }
     }
@@ -216,6 +221,7 @@ impl<'g> System<'g> {
             // Before L: what is made first is summed first.
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
+            tree: self.tree.as_ref().map(|tree| Box::new(tree.map(bind))),
             ..self.clone().map_expressions(|list| graph.substitute(list, &numbers))
         }
     }

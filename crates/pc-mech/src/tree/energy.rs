@@ -19,7 +19,7 @@ pub(crate) struct TreeShare<'g> {
 
 impl<'g> Motions<'_, 'g> {
     /// In the field of gravity of this acceleration, in terms of the quasi-velocities `eta`.
-    pub(crate) fn share(&self, gravity: Option<&Vector<'g>>, eta: &[Expr<'g>]) -> TreeShare<'g> {
+    pub(crate) fn share(&self, gravity: &Vector<'g>, eta: &[Expr<'g>]) -> TreeShare<'g> {
         let graph = self.tree.graph;
         let (mut kinetic, mut weight, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
         // F and N may depend on η: symbols stand for them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
@@ -32,10 +32,8 @@ impl<'g> Motions<'_, 'g> {
             let spin = apply(graph, &inertia, &motion.omega);
             kinetic.push(body.mass * dot(graph, &velocity, &velocity) / 2.0);
             kinetic.push(dot(graph, &motion.omega, &spin) / 2.0);
-            if let Some(gravity) = gravity {
-                let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
-                weight.push(body.mass * dot(graph, gravity, &place));
-            }
+            let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
+            weight.push(body.mass * dot(graph, gravity, &place));
             let in_world = apply(graph, &motion.rotation, &velocity);
             let torque = apply(graph, &stand.rotation, &body.torque);
             let loads = body.force.iter().zip(in_world).chain(torque.iter().zip(motion.omega));

@@ -54,6 +54,14 @@ impl<'g> Hinge<'g> {
         }
     }
 
+    /// The same with symbols of its constants replaced.
+    pub(crate) fn map(&self, put: &impl Fn(Expr<'g>) -> Expr<'g>) -> Hinge<'g> {
+        match self.clone() {
+            Hinge::Turn { axis, pitch, angle, rate } => Hinge::Turn { axis, pitch: put(pitch), angle, rate },
+            other @ (Hinge::Slide { .. } | Hinge::Ball { .. } | Hinge::Free { .. }) => other,
+        }
+    }
+
     pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
         match self {
             Hinge::Turn { rate, .. } | Hinge::Slide { rate, .. } => vec![*rate],

@@ -218,6 +218,36 @@ impl<'g> Tree<'g> {
         Ok(stand)
     }
 
+    /// The same with symbols of its constants replaced.
+    pub(crate) fn map(&self, put: &impl Fn(Expr<'g>) -> Expr<'g>) -> Tree<'g> {
+        let all = |tensor: Tensor<'g>| tensor.map(|row| row.map(put));
+        let body = |body: &TreeBody<'g>| TreeBody {
+            mass: put(body.mass),
+            centre: body.centre.map(put),
+            inertia: body.inertia.map(put),
+            force: body.force.map(put),
+            torque: body.torque.map(put),
+            ..body.clone()
+        };
+        let stand = |stand: &Stand<'g>| Stand {
+            place: stand.place.map(put),
+            rotation: all(stand.rotation),
+            link: stand.link,
+        };
+        let link = |link: &Link<'g>| Link {
+            place: link.place.map(put),
+            rotation: all(link.rotation),
+            hinge: link.hinge.map(put),
+            parent: link.parent,
+        };
+        Tree {
+            bodies: self.bodies.iter().map(body).collect(),
+            stands: self.stands.iter().map(stand).collect(),
+            links: self.links.iter().map(link).collect(),
+            ..self.clone()
+        }
+    }
+
     fn names(&self, body: usize) -> Result<(Vec<String>, Vec<String>), TreeError> {
         let TreeBody { name, joint, .. } = &self.bodies[body];
         let (coordinates, velocities) = joint.names_for(name);
@@ -234,7 +264,6 @@ impl<'g> Tree<'g> {
     }
 
     /// The mass, first moment and inertia about its origin of all that stands still on a link, along its axes.
-    #[allow(dead_code)]
     pub(crate) fn mass_on(&self, link: usize) -> MassOnLink<'g> {
         let graph = self.graph;
         let mut on_link = MassOnLink { mass: Expr::ZERO, moment: ZERO, inertia: [ZERO; 3] };
@@ -259,7 +288,6 @@ impl<'g> Tree<'g> {
 
 /// m, m c and the inertia about the origin of a link.
 #[derive(Clone, Copy, Debug)]
-#[allow(dead_code)]
 pub(crate) struct MassOnLink<'g> {
     pub(crate) mass: Expr<'g>,
     pub(crate) moment: Vector<'g>,

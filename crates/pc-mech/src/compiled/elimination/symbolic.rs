@@ -6,7 +6,6 @@ use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeD
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
-use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::{EvaluationFailure, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::machine_code::MachineCode;
@@ -36,7 +35,7 @@ impl Unrolled {
     pub(crate) fn new(system: &FirstOrder<'_>, options: &CompileOptions) -> Result<Unrolled, ExprError> {
         let graph = system.graph;
         let inputs = system.inputs(&[]);
-        let factors = Factors::of(graph, &system.mass);
+        let factors = system.factors();
         let unknowns = system.solve(&factors);
         let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns.iter().copied()).collect();
         let rates = graph.substitute(&system.rates, &values);

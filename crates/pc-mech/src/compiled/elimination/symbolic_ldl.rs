@@ -1,9 +1,12 @@
 //! M = L D Lᵀ, unrolled over expressions.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
+
+use crate::compiled::first_order::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {
@@ -12,6 +15,8 @@ pub(crate) enum Factors<'g> {
     /// The inverse itself, for a small matrix of both signs, such as that of L = ẋẏ: a pivot may vanish where it is regular.
     /// And for any without a usable pivot on its diagonal.
     Inverse(Matrix<Expr<'g>>),
+    /// Joint after joint.
+    Tree(Rc<TreeEquations<'g>>),
 }
 
 /// The rows up to which a matrix of both signs is inverted whole; the inverse of more is long.
@@ -66,6 +71,13 @@ impl<'g> Factors<'g> {
                 pivot.map(|pivot| Watched { place: rows - 1, pivot, size }).collect()
             }
             Factors::Inverse(_) => Vec::new(),
+            Factors::Tree(tree) => {
+                let links = tree.system.places.iter().zip(&tree.dynamics.articulated.links);
+                let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
+                freedoms
+                    .map(|(&place, joint)| Watched { place, pivot: joint.pivot, size: joint.size })
+                    .collect()
+            }
         }
     }
 
@@ -76,6 +88,10 @@ impl<'g> Factors<'g> {
             Factors::Inverse(inverse) => (0..right.len())
                 .map(|i| graph.dot(inverse.row(i).iter().copied(), right.iter().copied()))
                 .collect(),
+            Factors::Tree(tree) => {
+                let applied = tree.system.by_link(right);
+                tree.system.in_order(&tree.dynamics.articulated.solve(vec![None; applied.len()], &applied))
+            }
         }
     }
 }

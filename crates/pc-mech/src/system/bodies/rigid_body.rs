@@ -67,6 +67,11 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
+    /// The same with each entry replaced.
+    pub(crate) fn map(&self, put: impl Fn(Expr<'g>) -> Expr<'g>) -> Inertia<'g> {
+        Inertia(self.0.map(put))
+    }
+
     /// I, 3 × 3.
     pub(crate) fn matrix(&self) -> Matrix<Expr<'g>> {
         let [xx, yy, zz, xy, yz, xz] = self.0;

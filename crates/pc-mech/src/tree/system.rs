@@ -1,0 +1,111 @@
+//! A system that is a tree.
+
+use pc_algebra::Frame;
+use pc_expr::Expr;
+
+use crate::error::{MechError, TreeError};
+use crate::system::system::System;
+use crate::tree::dynamics::TreeDynamics;
+use crate::tree::spatial::Vector;
+use crate::tree::tree::Tree;
+
+/// A system whose inertia is that of a tree: L is its kinetic energy, its weight and a force function U(t, x).
+#[derive(Clone, Debug)]
+pub(crate) struct TreeSystem<'g> {
+    pub(crate) tree: Tree<'g>,
+    gravity: Vector<'g>,
+    /// U(t, x)
+    others: Expr<'g>,
+    /// The quasi-velocities of each link, by their places in the system.
+    pub(crate) places: Vec<Vec<usize>>,
+}
+
+impl<'g> TreeSystem<'g> {
+    /// That of a tree, with the rest of the Lagrangian; none if there is other inertia, if the tree does not move as its joints
+    /// say, or if it has not all quasi-velocities.
+    pub(crate) fn of(
+        tree: Tree<'g>,
+        gravity: Vector<'g>,
+        others: Expr<'g>,
+        frame: &Frame<'g>,
+        eta: &[Expr<'g>],
+    ) -> Option<TreeSystem<'g>> {
+        let place = |symbol: &Expr<'g>| eta.iter().position(|eta| eta == symbol);
+        let of_link = |link: &crate::tree::link::Link<'g>| -> Option<Vec<usize>> {
+            link.hinge.quasi_velocities().iter().map(place).collect()
+        };
+        let places: Vec<Vec<usize>> = tree.links.iter().map(of_link).collect::<Option<_>>()?;
+        let moved: usize = places.iter().map(Vec::len).sum();
+        if moved != eta.len() || eta.iter().any(|&eta| others.depends_on(eta)) {
+            return None;
+        }
+        let velocities = frame.velocities(eta);
+        let follows = |(x, velocity): (Expr<'g>, Expr<'g>)| {
+            let i = frame.coordinates().iter().position(|known| *known == x);
+            i.is_some_and(|i| (velocities[i] - velocity).is_zero())
+        };
+        let of_joints = tree.coordinates().into_iter().zip(tree.velocities());
+        of_joints.into_iter().all(follows).then_some(TreeSystem { tree, gravity, others, places })
+    }
+
+    /// Its equations, with the forces of the system.
+    pub(crate) fn dynamics(&self, system: &System<'g>) -> TreeDynamics<'g> {
+        let graph = self.tree.graph;
+        let frame = &system.frame;
+        let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
+        let applied = |s: &usize| graph.keep(system.forces[*s] + slopes[*s]);
+        let applied = self.places.iter().map(|places| places.iter().map(applied).collect()).collect();
+        TreeDynamics::new(&self.tree, self.gravity, applied)
+    }
+
+    /// Components given link after link, in the order of the quasi-velocities of the system.
+    pub(crate) fn in_order(&self, by_link: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+        let count = self.places.iter().map(Vec::len).sum();
+        let mut ordered = vec![Expr::ZERO; count];
+        for (places, values) in self.places.iter().zip(by_link) {
+            places.iter().zip(values).for_each(|(&place, &value)| ordered[place] = value);
+        }
+        ordered
+    }
+
+    /// The reverse.
+    pub(crate) fn by_link(&self, ordered: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+        self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
+    }
+
+    /// The same with symbols of its constants replaced by numbers.
+    pub(crate) fn map(&self, put: impl Fn(Expr<'g>) -> Expr<'g>) -> TreeSystem<'g> {
+        TreeSystem {
+            tree: self.tree.map(&put),
+            gravity: self.gravity.map(&put),
+            others: put(self.others),
+            places: self.places.clone(),
+        }
+    }
+}
+
+impl<'g> Tree<'g> {
+    /// That masses and places are constant in their axes.
+    ///
+    /// # Errors
+    /// [`TreeError::NotConstant`] with the first of `moving` that stands in one of them.
+    pub(crate) fn check_constant(&self, moving: &[Expr<'g>]) -> Result<(), MechError> {
+        for body in &self.bodies {
+            let parts = [
+                ("mass", vec![body.mass]),
+                ("mass centre", body.centre.to_vec()),
+                ("inertia", body.inertia.matrix().entries().to_vec()),
+                ("place of the joint", body.joint.place.to_vec()),
+                ("rotation of the joint", body.joint.rotation.concat()),
+            ];
+            for (what, parts) in parts {
+                let known = self.graph.symbols_of(&parts);
+                if let Some(symbol) = known.iter().find(|symbol| moving.contains(symbol)) {
+                    let (body, symbol) = (body.name.clone(), symbol.to_string());
+                    return Err(TreeError::NotConstant { body, what, symbol }.into());
+                }
+            }
+        }
+        Ok(())
+    }
+}
