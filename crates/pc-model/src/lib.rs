@@ -45,7 +45,7 @@ pub use diagnostics::category::Category;
 pub use diagnostics::error::{Diagnostic, ModelError};
 pub use diagnostics::error_kind::ErrorKind;
 pub use diagnostics::meaning::MeaningError;
-pub use diagnostics::source::Source;
+pub use diagnostics::source::{Place, Source};
 pub use document::Document;
 pub use flow::events::FlowEvents;
 pub use flow::flow::Flow;

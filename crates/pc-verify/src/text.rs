@@ -23,10 +23,8 @@ pub(crate) struct Text {
     pub(crate) state_rates: Vec<Term>,
     /// The acceleration of gravity.
     pub(crate) gravity: Vec<Term>,
-    /// Those of the bodies on joints, then those of the text.
+    /// Those of the text that are constant, those of bodies on joints, then the rest of the text.
     pub(crate) definitions: Vec<Term>,
-    /// How many are of bodies on joints.
-    of_tree: usize,
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
     pub(crate) constraints: Vec<Term>,
@@ -107,7 +105,7 @@ impl Text {
             quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
             parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
             states: document.states.iter().map(|state| state.name.text.clone()).collect(),
-            definitions: tree.names().into_iter().chain(named(&document.definitions)).collect(),
+            definitions: tree.names(),
             constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
             bodies: labels.map(|name| name.text.clone()).collect(),
             points: tree.points(),
@@ -144,13 +142,7 @@ impl Text {
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
             gravity: document.gravity.as_ref().map_or(Ok(Vec::new()), |g| terms(&g.acceleration))?,
-            of_tree: tree.len(),
-            definitions: tree
-                .definitions(&names)?
-                .into_iter()
-                .map(Ok)
-                .chain(document.definitions.iter().map(|d| term(&d.expression)))
-                .collect::<Result<_, _>>()?,
+            definitions: tree.definitions(&names)?,
             velocities: velocities(document, &tree, &names)?,
             brackets: brackets(document, &names)?,
             constraints: document
@@ -176,8 +168,8 @@ impl Text {
 
     /// Of each constraint, whether it contains no velocities, itself or by its definitions.
     pub(crate) fn on_positions(&self) -> Result<Vec<bool>, Unable> {
-        let mut moving = vec![false; self.of_tree]; // places and attitudes
-        for term in &self.definitions[self.of_tree..] {
+        let mut moving: Vec<bool> = Vec::with_capacity(self.definitions.len());
+        for term in &self.definitions {
             let has = term
                 .has_velocities(&moving)
                 .ok_or_else(|| Unable::Circular { name: self.names.definitions[moving.len()].clone() })?;

@@ -1,9 +1,15 @@
 //! Bodies on joints, as terms: where each is, how it is turned, and the rates of the joints' coordinates.
 //!
-//! A body has thirty definitions of its own, before those of the text: the constant rotation of its joint, the rotation by
-//! the joint, its own, and its place; a point has three. They are made of coordinates and parameters alone.
+//! A body has thirty definitions of its own: the constant rotation of its joint, the rotation by the joint, its own, and its
+//! place; a point has three. They stand after those definitions of the text that are constant, of which joints are made, and
+//! before the others, which may be made of points.
 
-use pc_model::document::{Document, Expression, Joint, JointKind, JointRotation, Point, TreeBody};
+use std::collections::HashSet;
+
+use pc_expr::parse::{Ast, AstKind};
+use pc_model::document::{
+    Document, Expression, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
+};
 
 use crate::error::Unable;
 use crate::term::{Function, Names, Term};
@@ -17,6 +23,9 @@ const OF_POINT: usize = 3;
 /// The places of the definitions of bodies and points.
 pub(crate) struct Tree<'a> {
     document: &'a Document,
+    /// The definitions of the text, those that are constant first, and how many these are.
+    written: Vec<&'a NamedExpression>,
+    constant: usize,
     /// The bodies, each after the one it hangs on.
     order: Vec<usize>,
 }
@@ -35,28 +44,36 @@ impl<'a> Tree<'a> {
             }
             order.extend(chain.into_iter().rev());
         }
-        Tree { document, order }
+        let mut known: HashSet<&str> = document.parameters.iter().map(|p| p.name.text.as_str()).collect();
+        let (mut written, mut moving) = (Vec::new(), Vec::new());
+        for definition in &document.definitions {
+            if is_constant(&definition.expression.ast, &known) {
+                known.insert(&definition.name.text);
+                written.push(definition);
+            } else {
+                moving.push(definition);
+            }
+        }
+        let constant = written.len();
+        written.extend(moving);
+        Tree { document, written, constant, order }
     }
 
-    /// How many definitions there are.
-    pub(crate) fn len(&self) -> usize {
-        OF_BODY * self.document.tree.len() + OF_POINT * self.document.points.len()
-    }
-
-    /// What they are called where something is wrong with them.
+    /// The names of all definitions, those of bodies and points only for where something is wrong with them.
     pub(crate) fn names(&self) -> Vec<String> {
         let bodies = self.order.iter().map(|&body| &self.document.tree[body].name.text);
         let bodies = bodies.flat_map(|name| std::iter::repeat_n(name, OF_BODY));
         let points = self.document.points.iter().map(|point| &point.name.text);
         let points = points.flat_map(|name| std::iter::repeat_n(name, OF_POINT));
-        bodies
-            .map(|name| format!("the body {name}"))
-            .chain(points.map(|name| format!("the point {name}")))
-            .collect()
+        let own = bodies.map(|name| format!("the body {name}"));
+        let own = own.chain(points.map(|name| format!("the point {name}")));
+        let (constant, moving) = self.written.split_at(self.constant);
+        let named = |list: &[&NamedExpression]| list.iter().map(|d| d.name.text.clone()).collect::<Vec<_>>();
+        named(constant).into_iter().chain(own).chain(named(moving)).collect()
     }
 
     fn first(&self, body: usize) -> usize {
-        OF_BODY * self.order.iter().position(|&known| known == body).unwrap_or(0)
+        self.constant + OF_BODY * self.order.iter().position(|&known| known == body).unwrap_or(0)
     }
 
     /// The rotation of a body, row by row, and its place.
@@ -71,7 +88,7 @@ impl<'a> Tree<'a> {
 
     /// The names of the components of points, with what they are.
     pub(crate) fn points(&self) -> Vec<(String, Term)> {
-        let first = OF_BODY * self.document.tree.len();
+        let first = self.constant + OF_BODY * self.document.tree.len();
         let components = |(number, point): (usize, &Point)| {
             let (rotation, _) = self.placement(place_of(self.document, point.body()));
             let place = (0..3).map(move |i| Term::Definition(first + OF_POINT * number + i));
@@ -83,7 +100,10 @@ impl<'a> Tree<'a> {
 
     /// The definitions, in their order.
     pub(crate) fn definitions(&self, names: &Names) -> Result<Vec<Term>, Unable> {
-        let mut all = Vec::with_capacity(self.len());
+        let written = |list: &[&NamedExpression]| -> Result<Vec<Term>, Unable> {
+            list.iter().map(|definition| names.resolve(&definition.expression.ast)).collect()
+        };
+        let mut all = written(&self.written[..self.constant])?;
         for &number in &self.order {
             let body = &self.document.tree[number];
             let first = all.len();
@@ -108,6 +128,7 @@ impl<'a> Tree<'a> {
             let (rotation, origin) = self.placement(place_of(self.document, point.body()));
             all.extend(added(&origin, &turned(&rotation, &vector(point.at.as_ref(), names)?)));
         }
+        all.extend(written(&self.written[self.constant..])?);
         Ok(all)
     }
 
@@ -159,6 +180,21 @@ impl<'a> Tree<'a> {
             force,
             torque: terms(&body.torque)?,
         })
+    }
+}
+
+/// Whether an expression is made of numbers and known names alone.
+fn is_constant(ast: &Ast, known: &HashSet<&str>) -> bool {
+    let all = |parts: &mut dyn Iterator<Item = &Ast>| parts.map(|part| is_constant(part, known)).all(|is| is);
+    match &ast.kind {
+        AstKind::Number(_) => true,
+        AstKind::Name(name) => name == "pi" || known.contains(name.as_str()),
+        AstKind::Velocity(_) | AstKind::TotalDerivative(_) => false,
+        AstKind::Negate(inner) => is_constant(inner, known),
+        AstKind::Sum(terms) => all(&mut terms.iter().map(|(_, term)| term)),
+        AstKind::Product(factors) => all(&mut factors.iter().map(|(_, factor)| factor)),
+        AstKind::Power(base, exponent) => all(&mut [&**base, &**exponent].into_iter()),
+        AstKind::Call(_, _, arguments) => all(&mut arguments.iter()),
     }
 }
 
