@@ -51,7 +51,7 @@ pub use flow::events::FlowEvents;
 pub use flow::flow::Flow;
 pub use flow::free_form::FreeForm;
 pub use flow::variables::Variables;
-pub use model::builtin::{BUILTIN, Builtin};
+pub use model::builtin::{BUILTIN, Builtin, TREES};
 pub use model::given::GivenQuasiVelocity;
 pub use model::model::{Model, UnknownIntegral, UnknownParameter};
 pub use model::start::UnknownStart;

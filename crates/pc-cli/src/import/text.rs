@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
+use std::path::Path;
 
 use pc_expr::parse::{FUNCTIONS, is_name};
 use pc_model::Source;
@@ -197,7 +198,10 @@ impl<'a> Tree<'a> {
             text += &line;
             text.push('\n');
         };
-        line(format!("# Made of the URDF file {} by `pc import`.", one_line(self.source.name())));
+        let file = Path::new(self.source.name())
+            .file_name()
+            .map_or_else(|| "-".into(), |name| name.to_string_lossy());
+        line(format!("# Made of the URDF file {} by `pc import`.", one_line(&file)));
         self.left_out().iter().for_each(|left| line(format!("# {}.", one_line(left))));
         line("\n[model]".into());
         line(format!("name = {}", quoted(&self.robot.name)));
@@ -222,10 +226,16 @@ impl<'a> Tree<'a> {
         for (joint, _) in starts {
             let (Some(mimic), own) = (&joint.mimic, &self.coordinates[joint.name.as_str()]) else { continue };
             let other = &self.coordinates[mimic.joint.as_str()];
-            line(format!(
-                "mimic_{own} = \"{own} - ({:?})*{other} - ({:?})\"",
-                mimic.multiplier, mimic.offset
-            ));
+            let factor = match mimic.multiplier {
+                1.0 => String::new(),
+                multiplier => format!("({multiplier:?})*"),
+            };
+            let offset = match mimic.offset {
+                0.0 => String::new(),
+                offset if offset < 0.0 => format!(" + {:?}", -offset),
+                offset => format!(" - {offset:?}"),
+            };
+            line(format!("mimic_{own} = \"{own} - {factor}{other}{offset}\""));
         }
         if self.robot.joints.iter().any(|joint| self.is_damped(joint)) {
             line("\n[forces]".into());

@@ -367,7 +367,7 @@ impl ErrorKind {
             Self::Exclusive { help, .. } => (*help).into(),
             Self::OfOtherJoints { key, example } => format!("write `{example}`, or leave `{key}` out"),
             Self::NotInTree { name, known } => {
-                suggest(name, known, &format!("the bodies with joints are {}, and \"world\"", listed(known)))
+                suggest(name, known, &format!("the bodies with joints are {}; \"world\" is what they hang on in the end", listed(known)))
             }
             Self::CircularParents { .. } => "leave the `parent` of one of them out: it hangs on the world then".into(),
             Self::OfJoint { .. } => "give its start value alone, or leave it out".into(),
