@@ -226,7 +226,7 @@ pub use compiled::legendre_transform::LegendreTransform;
 pub use compiled::machine_code::MachineCode;
 pub use compiled::mass_factors::{MassFactors, SingularMatrix};
 pub use compiled::motion::Motion;
-pub use compiled::options::CompileOptions;
+pub use compiled::options::{CompileOptions, TreeElimination};
 pub use compiled::projection::integrals::KeptIntegrals;
 pub use constraints::body_reactions::BodyReaction;
 pub use constraints::constraint::Constraint;

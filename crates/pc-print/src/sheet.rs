@@ -102,8 +102,8 @@ pub struct Bracket<'p> {
 
 impl<'p> Sheet<'p> {
     /// The sheet of equations in velocities, in the graph of a page.
-    pub fn of_velocities(assembly: &Assembly<'_>, derived: &Derived<'_>, page: &'p Graph) -> Sheet<'p> {
-        let equations: &Equations<'_> = &derived.equations;
+    pub fn of_velocities<'g>(assembly: &Assembly<'g>, derived: &Derived<'g>, page: &'p Graph) -> Sheet<'p> {
+        let equations: &Equations<'g> = &derived.equations;
         let system = equations.system();
         let writing = Writing::new(system, system.quasi_velocities(), page);
         let right = writing.all(equations.right_hand_side());
@@ -125,10 +125,10 @@ impl<'p> Sheet<'p> {
     }
 
     /// The sheet of canonical equations, in the graph of a page.
-    pub fn of_momenta(
-        assembly: &Assembly<'_>,
-        derived: &Derived<'_>,
-        equations: &Canonical<'_>,
+    pub fn of_momenta<'g>(
+        assembly: &Assembly<'g>,
+        derived: &Derived<'g>,
+        equations: &Canonical<'g>,
         page: &'p Graph,
     ) -> Sheet<'p> {
         let system = equations.system();

@@ -215,7 +215,7 @@ fn conserved(equations: &Equations<'_>) -> Vec<String> {
     kept.map(|(name, _)| name.clone()).collect()
 }
 
-fn emission(name: &str, assembly: &Assembly<'_>, equations: &Equations<'_>) -> Result<Emission, Refusal> {
+fn emission<'g>(name: &str, assembly: &Assembly<'g>, equations: &Equations<'g>) -> Result<Emission, Refusal> {
     let refused = |error: pc_mech::MechError| Refusal::new("emission", &error);
     let system = equations.system();
     let state = system.state();

@@ -1,6 +1,6 @@
 //! The parts of the equations as functions of the state.
 
-use ::pc_model::{Model, Variables};
+use ::pc_model::{Assembly, Model, Variables};
 use pc_expr::{Evaluator, Inputs, Program};
 use pc_mech::{Backend, Equations, Expr, MechError};
 
@@ -23,7 +23,10 @@ pub(crate) struct Mechanics {
 impl Mechanics {
     pub(crate) fn of(model: &Model, variables: Variables) -> Result<Mechanics, CallError> {
         let graph = model.graph();
-        let assembly = model.assemble(&graph)?;
+        Mechanics::of_assembly(&model.assemble(&graph)?, variables)
+    }
+
+    fn of_assembly<'g>(assembly: &Assembly<'g>, variables: Variables) -> Result<Mechanics, CallError> {
         let equations = assembly.equations_in(variables)?;
         let structure = equations.system().structure();
         let operators = structure.operators();
@@ -36,7 +39,7 @@ impl Mechanics {
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
         let compiled =
-            |values: &[Expr<'_>], forces: &[Expr<'_>]| assembly.placed(compile(&equations, values, forces));
+            |values: &[Expr<'g>], forces: &[Expr<'g>]| assembly.placed(compile(&equations, values, forces));
         Ok(Mechanics {
             mass: compiled(equations.mass_matrix().entries(), &[])?,
             structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,

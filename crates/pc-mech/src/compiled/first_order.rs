@@ -4,10 +4,11 @@ use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
 use pc_algebra::Matrix;
-use pc_expr::{Expr, Graph, Inputs, Pattern};
+use pc_expr::{Expr, Graph, Inputs, Pattern, Program};
 
 use crate::compiled::elimination::columns::{SparseColumn, nonzeros, sparse};
 use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::compiled::options::TreeElimination;
 use crate::equations::poincare::Equations;
 use crate::tree::dynamics::TreeDynamics;
 use crate::tree::system::TreeSystem;
@@ -78,6 +79,15 @@ impl<'g> FirstOrder<'g> {
             Some(tree) => Factors::Tree(Rc::clone(tree)),
             None => Factors::of(self.graph, &self.mass),
         }
+    }
+
+    /// Operations of ẏ written out.
+    fn operations(&self) -> usize {
+        let unknowns = self.solve(&self.factors());
+        let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
+        let rates = self.graph.substitute(&self.rates, &values);
+        Program::new(self.graph, &self.inputs(&[]), &rates)
+            .map_or(usize::MAX, |program| program.cost().total())
     }
 
     /// The inputs (t, (y, `more`), p) of a program.
@@ -157,25 +167,31 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl<'g> Equations<'g> {
-    /// The same, of a tree joint after joint.
-    pub(crate) fn shortest_first_order(&self) -> FirstOrder<'g> {
-        let whole = self.first_order();
-        let Some(tree) = &self.system.tree else { return whole };
-        let tree = TreeEquations { dynamics: tree.dynamics(&self.system), system: (**tree).clone() };
-        FirstOrder {
-            mass: Matrix::from_fn(0, 0, |_, _| Expr::ZERO),
-            right: Vec::new(),
-            tree: Some(Rc::new(tree)),
-            ..whole
+    /// The same, of a tree joint after joint where that takes fewer operations.
+    pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
+        let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
+            return self.first_order();
+        };
+        let dynamics = TreeEquations { dynamics: tree.dynamics(&self.system), system: (**tree).clone() };
+        let by_joints = self.first_order_with(Matrix::from_fn(0, 0, |_, _| Expr::ZERO), Vec::new());
+        let by_joints = FirstOrder { tree: Some(Rc::new(dynamics)), ..by_joints };
+        if elimination == TreeElimination::ByJoints || tree.is_large() {
+            return by_joints;
         }
+        let whole = self.first_order();
+        if by_joints.operations() <= whole.operations() { by_joints } else { whole }
     }
 
     /// The case w = η̇, g = (b η + b_0, w).
     pub(crate) fn first_order(&self) -> FirstOrder<'g> {
+        self.first_order_with(self.mass_matrix().clone(), self.right_hand_side().to_vec())
+    }
+
+    fn first_order_with(&self, mass: Matrix<Expr<'g>>, right: Vec<Expr<'g>>) -> FirstOrder<'g> {
         let system = &self.system;
         let x = system.frame.coordinates();
         let unknowns = system.accelerations();
-        let energy = ("energy".to_owned(), self.energy);
+        let energy = ("energy".to_owned(), self.energy());
         FirstOrder {
             graph: system.graph(),
             time: system.frame.time(),
@@ -186,12 +202,12 @@ impl<'g> Equations<'g> {
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             rank: 0,
-            mass: self.mass.clone(),
+            mass,
             tree: None,
             implicit: None,
-            right: self.right.clone(),
+            right,
             rates: self
-                .velocities
+                .velocities()
                 .iter()
                 .chain(&unknowns)
                 .chain(system.states.iter().map(|(_, rate)| rate))

@@ -120,7 +120,8 @@ impl<'g> Equations<'g> {
     /// # Errors
     /// As [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        self.shortest_first_order().compile(&options.into(), LONGEST_ELIMINATION)
+        let options = options.into();
+        self.shortest_first_order(options.elimination).compile(&options, LONGEST_ELIMINATION)
     }
 }
 

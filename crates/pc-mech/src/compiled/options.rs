@@ -30,6 +30,19 @@ pub struct CompileOptions {
     pub(crate) jvp: bool,
     pub(crate) parameter_jacobian: bool,
     pub(crate) time_derivative: bool,
+    pub(crate) elimination: TreeElimination,
+}
+
+/// How accelerations of [bodies joined by joints](crate::Tree) are solved for. The numbers are the same but for rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TreeElimination {
+    /// By joints where that takes fewer operations, as it does for all large trees.
+    #[default]
+    Shorter,
+    /// Joint after joint: operations grow as the number of bodies does.
+    ByJoints,
+    /// With the mass matrix of the whole tree.
+    Whole,
 }
 
 impl Default for CompileOptions {
@@ -41,6 +54,7 @@ impl Default for CompileOptions {
             jvp: false,
             parameter_jacobian: false,
             time_derivative: false,
+            elimination: TreeElimination::default(),
         }
     }
 }
@@ -75,6 +89,12 @@ impl CompileOptions {
     #[must_use]
     pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
+    }
+
+    /// How a tree of bodies is solved.
+    #[must_use]
+    pub fn elimination(self, elimination: TreeElimination) -> CompileOptions {
+        CompileOptions { elimination, ..self }
     }
 
     /// Whether to have ∂f/∂t, which Rosenbrock's methods take; under constraints in momenta with the Jacobian only.

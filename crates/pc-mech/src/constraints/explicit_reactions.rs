@@ -57,7 +57,7 @@ impl<'g> Multipliers<'g> {
     /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if M is singular everywhere,
     /// [`ConstraintError::Dependent`] if C M⁻¹ Cᵀ is.
     pub fn reactions_of_state(&self) -> Result<Vec<Expr<'g>>, MechError> {
-        let (system, mass, c) = (&self.equations.system, &self.equations.mass, &self.coefficients);
+        let (system, mass, c) = (&self.equations.system, self.equations.mass_matrix(), &self.coefficients);
         let graph = system.graph();
         system.check_regular(mass)?;
         let factors = Factors::of(graph, mass);
@@ -68,7 +68,7 @@ impl<'g> Multipliers<'g> {
         if let Some(constraint) = self.first_dependent(&gram) {
             return Err(ConstraintError::Dependent { constraint }.into());
         }
-        let free = factors.solve(graph, &self.equations.right);
+        let free = factors.solve(graph, self.equations.right_hand_side());
         let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(c.row(a), &free)).collect();
         let reactions = Factors::of(graph, &gram).solve(graph, &gaps);
         graph.check(&reactions)?;

@@ -101,7 +101,7 @@ impl<'g> System<'g> {
             .coordinates()
             .iter()
             .copied()
-            .zip(equations.velocities.iter().copied())
+            .zip(equations.velocities().iter().copied())
             .chain([(self.frame.time(), Expr::ONE)])
             .collect();
         let order = self.collecting_order();
@@ -123,7 +123,7 @@ impl<'g> System<'g> {
         };
         let bordered = multipliers.bordered();
         if graph.generic_rank(&bordered.to_rows()) < bordered.rows() {
-            self.check_regular(&multipliers.equations.mass)?;
+            self.check_regular(multipliers.equations.mass_matrix())?;
         }
         Ok(multipliers)
     }
@@ -230,7 +230,7 @@ impl<'g> Multipliers<'g> {
         let graph = system.graph();
         let mut rows = self.coefficients.to_rows();
         let along: Vec<_> = (system.frame.coordinates().iter().copied())
-            .zip(self.equations.velocities.iter().copied())
+            .zip(self.equations.velocities().iter().copied())
             .chain([(system.frame.time(), Expr::ONE)])
             .collect();
         for follower in &self.followers {
@@ -392,7 +392,7 @@ impl<'g> Multipliers<'g> {
 
     /// The matrix of M η̇ − Cᵀ λ = r, −C η̇ = (dC/dt) η + dc_0/dt.
     fn bordered(&self) -> Matrix<Expr<'g>> {
-        let (mass, c) = (&self.equations.mass, &self.coefficients);
+        let (mass, c) = (self.equations.mass_matrix(), &self.coefficients);
         let (k, size) = (mass.rows(), mass.rows() + c.rows());
         Matrix::from_fn(size, size, |i, j| match (i < k, j < k) {
             (true, true) => mass[(i, j)],

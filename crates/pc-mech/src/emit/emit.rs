@@ -92,10 +92,10 @@ impl<'g> Equations<'g> {
     fn equations_as_text(&self) -> Vec<String> {
         let graph = self.system.graph();
         let rates = self.system.accelerations();
-        let kinematic = self.system.frame.coordinates().iter().zip(&self.velocities);
+        let kinematic = self.system.frame.coordinates().iter().zip(self.velocities());
         let mut lines: Vec<String> = kinematic.map(|(x, velocity)| format!("{x}' = {velocity}")).collect();
-        for (s, right) in self.right.iter().enumerate() {
-            let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
+        for (s, right) in self.right_hand_side().iter().enumerate() {
+            let left = graph.dot(self.mass_matrix().row(s).iter().copied(), rates.iter().copied());
             lines.push(format!("{left} = {right}"));
         }
         lines.extend(self.system.states.iter().map(|(z, rate)| format!("{z}' = {rate}")));
@@ -118,9 +118,9 @@ impl<'g> Equations<'g> {
         {
             return Ok(None);
         }
-        let columns = (0..self.mass.rows()).flat_map(|s| self.mass.column(s));
+        let columns = (0..self.mass_matrix().rows()).flat_map(|s| self.mass_matrix().column(s));
         let outputs: Vec<Expr<'g>> =
-            solved.motion.iter().copied().chain(columns).chain([self.energy]).collect();
+            solved.motion.iter().copied().chain(columns).chain([self.energy()]).collect();
         let program = Program::new(graph, &inputs, &outputs)?;
         let layout = match writer.options.language {
             Language::C => {
@@ -203,12 +203,12 @@ impl<'g> Equations<'g> {
             let (array, extent) = ("", Extent::One);
             routines.push(Routine { name: "energy", purpose: energy, array, extent, sparse, body });
         } else {
-            let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass.column(s)).collect();
+            let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass_matrix().column(s)).collect();
             let slot = |e: usize| (format!("[{} + {k}*{}]", e % k, e / k), String::new());
             let extent = Extent::QuasiVelocitiesSquared;
             routines.push(writer.routine("mass_matrix", purpose, ("mass", extent), &columns, slot)?);
             let slot = |_| Default::default();
-            routines.push(writer.routine("energy", energy, ("", Extent::One), &[self.energy], slot)?);
+            routines.push(writer.routine("energy", energy, ("", Extent::One), &[self.energy()], slot)?);
         }
         let watched = [
             ("integrals", "integrals", Extent::Integrals, &system.integrals),
@@ -244,10 +244,10 @@ struct Solved<'g> {
 impl<'g> Solved<'g> {
     fn new(equations: &Equations<'g>, first_order: &FirstOrder<'g>) -> Solved<'g> {
         let system = &equations.system;
-        let factors = Factors::of(system.graph(), &equations.mass);
+        let factors = Factors::of(system.graph(), equations.mass_matrix());
         let accelerations = first_order.solve(&factors);
         let of_states = system.states.iter().map(|(_, rate)| rate);
-        let motion = equations.velocities.iter().chain(&accelerations).chain(of_states).copied().collect();
+        let motion = equations.velocities().iter().chain(&accelerations).chain(of_states).copied().collect();
         Solved { factors, accelerations, motion }
     }
 }

@@ -13,10 +13,11 @@ impl<'g> Equations<'g> {
     pub fn balance(&self, style: Style) -> Vec<(String, String)> {
         let graph = self.system.graph();
         let rates = self.system.accelerations();
-        (0..self.right.len())
+        (0..self.right_hand_side().len())
             .map(|s| {
-                let left = graph.dot(self.mass.row(s).iter().copied(), rates.iter().copied());
-                let right = expanded(&self.system, self.right[s], &self.system.quasi_velocities, style);
+                let left = graph.dot(self.mass_matrix().row(s).iter().copied(), rates.iter().copied());
+                let right =
+                    expanded(&self.system, self.right_hand_side()[s], &self.system.quasi_velocities, style);
                 (left.display(style), right)
             })
             .collect()
@@ -26,7 +27,10 @@ impl<'g> Equations<'g> {
     /// are no polynomials, which are written as they [are](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         let variables = &self.system.quasi_velocities;
-        self.right.iter().map(|&right| sum_of_products(&self.system, right, variables, page)).collect()
+        self.right_hand_side()
+            .iter()
+            .map(|&right| sum_of_products(&self.system, right, variables, page))
+            .collect()
     }
 }
 

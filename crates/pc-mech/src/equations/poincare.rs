@@ -1,9 +1,11 @@
 //! Poincaré's equations (9), solved for the accelerations.
 
+use std::cell::OnceCell;
+
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
-use crate::compiled::elimination::symbolic_ldl::Factors;
+use crate::compiled::options::TreeElimination;
 use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
@@ -12,10 +14,25 @@ use crate::system::system::System;
 #[derive(Clone, Debug)]
 pub struct Equations<'g> {
     pub(crate) system: System<'g>,
-    pub(crate) velocities: Vec<Expr<'g>>,
-    pub(crate) mass: Matrix<Expr<'g>>,
-    pub(crate) right: Vec<Expr<'g>>,
-    pub(crate) energy: Expr<'g>,
+    velocities: Vec<Expr<'g>>,
+    energy: Expr<'g>,
+    /// M and r; of a large tree not before they are asked for.
+    matrices: OnceCell<Matrices<'g>>,
+}
+
+/// M η̇ = r.
+#[derive(Clone, Debug)]
+struct Matrices<'g> {
+    mass: Matrix<Expr<'g>>,
+    right: Vec<Expr<'g>>,
+}
+
+impl<'g> Matrices<'g> {
+    /// Where the derivation fails, what is used says so.
+    fn undefined(size: usize) -> Matrices<'g> {
+        let undefined = Expr::ONE / Expr::ZERO;
+        Matrices { mass: Matrix::from_fn(size, size, |_, _| undefined), right: vec![undefined; size] }
+    }
 }
 
 impl<'g> System<'g> {
@@ -42,8 +59,18 @@ impl<'g> System<'g> {
     /// [`LagrangianError::Degenerate`]; [`ShapeError`] if there are fewer than `free` quasi-velocities.
     pub fn poincare_constrained(&self, free: usize) -> Result<Equations<'g>, MechError> {
         self.graph().stage("Poincaré's equations", || {
+            if let Some(tree) = self.tree.as_ref().filter(|_| free == self.quasi_velocities.len())
+                && tree.is_large()
+            {
+                return Ok(Equations {
+                    system: self.clone(),
+                    velocities: self.frame.velocities(&self.quasi_velocities),
+                    energy: tree.energy(),
+                    matrices: OnceCell::new(),
+                });
+            }
             let equations = self.equations(free)?;
-            equations.system.check_regular(&equations.mass)?;
+            equations.system.check_regular(equations.mass_matrix())?;
             Ok(equations)
         })
     }
@@ -96,11 +123,11 @@ impl<'g> System<'g> {
         let order = system.collecting_order();
         let shorten = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
         let entries = shorten(mass.entries());
+        let mass = Matrix::from_fn(free, free, |r, s| entries[r * free + s]);
         Ok(Equations {
             velocities,
-            mass: Matrix::from_fn(free, free, |r, s| entries[r * free + s]),
-            right: shorten(&right),
             energy: shorten(&[energy])[0],
+            matrices: OnceCell::from(Matrices { mass, right: shorten(&right) }),
             system,
         })
     }
@@ -134,12 +161,20 @@ impl<'g> Equations<'g> {
 
     /// M = ∂²L/∂η∂η, k × k and symmetric.
     pub fn mass_matrix(&self) -> &Matrix<Expr<'g>> {
-        &self.mass
+        &self.matrices().mass
     }
 
     /// The right-hand side r of M η̇ = r, length k.
     pub fn right_hand_side(&self) -> &[Expr<'g>] {
-        &self.right
+        &self.matrices().right
+    }
+
+    fn matrices(&self) -> &Matrices<'g> {
+        self.matrices.get_or_init(|| {
+            let k = self.system.quasi_velocities.len();
+            let derived = self.system.equations(k).ok().and_then(|derived| derived.matrices.into_inner());
+            derived.unwrap_or_else(|| Matrices::undefined(k))
+        })
     }
 
     /// The energy y_s η_s − L in terms of (t, x, η).
@@ -149,7 +184,10 @@ impl<'g> Equations<'g> {
 
     /// The accelerations η̇ = M⁻¹ r, length k.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
-        self.first_order().solve(&Factors::of(self.system.graph(), &self.mass))
+        let is_large = self.system.tree.as_ref().is_some_and(|tree| tree.is_large());
+        let elimination = if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole };
+        let first_order = self.shortest_first_order(elimination);
+        first_order.solve(&first_order.factors())
     }
 
     /// The same equations with symbols in integrals and outputs replaced, such as those of reactions.
@@ -166,12 +204,15 @@ impl<'g> Equations<'g> {
         let numbers = self.system.numbers();
         let order = system.collecting_order();
         let bind = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &numbers), &order);
-        let (k, mass) = (self.mass.rows(), bind(self.mass.entries()));
+        let bound = |matrices: &Matrices<'g>| {
+            let (k, mass) = (matrices.mass.rows(), bind(matrices.mass.entries()));
+            let mass = Matrix::from_fn(k, k, |r, s| mass[r * k + s]);
+            OnceCell::from(Matrices { mass, right: bind(&matrices.right) })
+        };
         Equations {
             velocities: graph.substitute(&self.velocities, &numbers),
-            mass: Matrix::from_fn(k, k, |r, s| mass[r * k + s]),
-            right: bind(&self.right),
             energy: bind(&[self.energy])[0],
+            matrices: self.matrices.get().map_or_else(OnceCell::new, bound),
             system,
         }
     }

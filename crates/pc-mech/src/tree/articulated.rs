@@ -15,7 +15,7 @@
 use pc_expr::{Expr, Graph};
 
 use crate::tree::link::{Hinge, Link};
-use crate::tree::spatial::{Tensor, Vector, ZERO, apply, cross, tensor, transpose, vector};
+use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, transpose, vector};
 use crate::tree::tree::MassOnLink;
 use crate::tree::turning::Turning;
 
@@ -39,8 +39,6 @@ pub(crate) fn moving_part<'g>(a: &Spatial<'g>) -> Vector<'g> {
 pub(crate) struct Inertia6<'g>([[Expr<'g>; 6]; 6]);
 
 impl<'g> Inertia6<'g> {
-    pub(crate) const ZERO: Inertia6<'static> = Inertia6([[Expr::ZERO; 6]; 6]);
-
     /// That of a body with this mass.
     pub(crate) fn rigid(body: &MassOnLink<'g>) -> Inertia6<'g> {
         let h = skew(&body.moment);

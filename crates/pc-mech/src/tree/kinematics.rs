@@ -22,6 +22,19 @@ pub(crate) struct LinkMotion<'g> {
     pub(crate) omega: Vector<'g>,
 }
 
+impl<'g> LinkMotion<'g> {
+    /// The same, each number of it a step of the recursion.
+    fn kept(&self, graph: &'g Graph) -> LinkMotion<'g> {
+        let keep = |v: &Vector<'g>| v.map(|component| graph.keep(component));
+        LinkMotion {
+            place: keep(&self.place),
+            rotation: self.rotation.map(|row| keep(&row)),
+            velocity: keep(&self.velocity),
+            omega: keep(&self.omega),
+        }
+    }
+}
+
 const AT_REST: fn() -> LinkMotion<'static> =
     || LinkMotion { place: ZERO, rotation: unit(), velocity: ZERO, omega: ZERO };
 
@@ -38,7 +51,8 @@ impl<'a, 'g> Motions<'a, 'g> {
         let mut links: Vec<LinkMotion<'g>> = Vec::with_capacity(tree.links.len());
         for link in &tree.links {
             let parent = link.parent.map_or_else(AT_REST, |parent| links[parent]);
-            links.push(link.motion(graph, &parent));
+            let motion = link.motion(graph, &parent);
+            links.push(if tree.is_large() { motion.kept(graph) } else { motion });
         }
         Motions { tree, links }
     }

@@ -48,6 +48,19 @@ impl<'g> TreeSystem<'g> {
         of_joints.into_iter().all(follows).then_some(TreeSystem { tree, gravity, others, places })
     }
 
+    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    pub(crate) fn is_large(&self) -> bool {
+        self.tree.is_large()
+    }
+
+    /// T − U, T being a quadratic form in η.
+    pub(crate) fn energy(&self) -> Expr<'g> {
+        let share = self.tree.motions().share(&self.gravity, &[]);
+        let graph = self.tree.graph;
+        let kinetic = graph.sum(share.kinetic);
+        kinetic - graph.sum(share.weight) - self.others
+    }
+
     /// Its equations, with the forces of the system.
     pub(crate) fn dynamics(&self, system: &System<'g>) -> TreeDynamics<'g> {
         let graph = self.tree.graph;

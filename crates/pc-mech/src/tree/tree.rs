@@ -57,6 +57,9 @@ pub struct Tree<'g> {
     declared: Vec<usize>,
 }
 
+/// Elementary joints up to which a tree is also looked at as a whole: the equations of more do not fit on a page.
+const MANY_LINKS: usize = 12;
+
 /// Where a body stands still.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stand<'g> {
@@ -216,6 +219,11 @@ impl<'g> Tree<'g> {
         }
         self.links.extend(links);
         Ok(stand)
+    }
+
+    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    pub(crate) fn is_large(&self) -> bool {
+        self.links.len() > MANY_LINKS
     }
 
     /// The same with symbols of its constants replaced.

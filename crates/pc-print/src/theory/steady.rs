@@ -16,7 +16,7 @@ const ZERO: f64 = 1e-9;
 const MOST_LISTED: usize = 8;
 
 /// All that are found, the nearest of many.
-pub(crate) fn section(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Result<Section, ModelError> {
+pub(crate) fn section<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'g>) -> Result<Section, ModelError> {
     let section = |entries| Ok(Section { key: "steady_motions", title: "Steady motions", entries });
     if ground.assembly.constraints.nonlinear().is_some() {
         return section(vec![Entry::words("not looked for: a constraint is not affine in the velocities")]);

@@ -13,6 +13,7 @@ mod rhs;
 mod solve;
 mod start;
 mod systems;
+mod trees;
 
 use std::env;
 use std::process::ExitCode;
@@ -35,6 +36,11 @@ const BENCHMARKS: &[Benchmark] = &[
     },
     Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
     Benchmark { name: "solve", about: "a whole integration, by us and by plain C", run: solve::run },
+    Benchmark {
+        name: "trees",
+        about: "chains of bodies, joint after joint, derived and by hand",
+        run: trees::run,
+    },
     Benchmark { name: "capi", about: "one evaluation, from Rust and through libpc", run: capi::run },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];

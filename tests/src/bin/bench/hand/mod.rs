@@ -6,13 +6,16 @@
 //! lead to both.
 #![expect(unsafe_code, reason = "a function compiled for some processors only is entered through `unsafe`")]
 
+mod chain;
 mod particle;
 mod pendulum;
 mod rolling;
 mod top;
 
 use pc_expr::{Entry, Jit};
+use pc_mech::MachineCode;
 
+pub(crate) use chain::chain;
 pub(crate) use particle::{charged, relativistic};
 pub(crate) use pendulum::{pendulum, pendulum_by_tensions};
 pub(crate) use rolling::{disk, sleigh};
@@ -52,6 +55,22 @@ impl Routine {
         assert_eq!([jit.outputs_len(), jit.parameters_len()], [dimension, parameters.len()]);
         let scratch = vec![0.0; jit.scratch_len()];
         Routine { entry: jit.entry(), dimension, parameters, scratch, _code: Some(jit) }
+    }
+
+    /// The code of a motion without parameters, none of whose pivots changes; valid as long as the motion.
+    ///
+    /// # Panics
+    /// If one changes.
+    pub(crate) fn of_motion(code: &MachineCode) -> Routine {
+        assert_eq!(code.outputs_len(), code.rates_len(), "outputs are rates");
+        let scratch = vec![0.0; code.scratch_len()];
+        Routine {
+            entry: code.entry(),
+            dimension: code.rates_len(),
+            parameters: Vec::new(),
+            scratch,
+            _code: None,
+        }
     }
 
     /// Writes ẏ(y).
