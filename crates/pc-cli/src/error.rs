@@ -9,6 +9,7 @@ use pc_solve::{Code, SolveError, Spent};
 use pc_verify::VerifyError;
 
 use crate::exit_code;
+use crate::import::UrdfError;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::output::kept::Kept;
 use crate::plot::error::PlotError;
@@ -138,6 +139,9 @@ pub enum CliError {
     /// Something wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// Something wrong with a robot in URDF.
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
     /// The equations are not those of a second derivation: one of the two is wrong, by a defect of this program.
     #[error("{0}; nothing is returned, since one of them is wrong by a defect of this program")]
     Verify(Box<VerifyError>),
@@ -202,6 +206,7 @@ impl CliError {
         match self {
             CliError::Model(error) => error.category().exit_code(),
             CliError::Sweep(error) => error.exit_code(),
+            CliError::Urdf(_) => 3,
             CliError::Verify(_) | CliError::Rows { .. } | CliError::Ended { .. } => 4,
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,

@@ -17,6 +17,7 @@ mod exit_code;
 
 pub mod args;
 pub mod commands;
+pub mod import;
 pub mod motion;
 pub mod output;
 pub mod plot;

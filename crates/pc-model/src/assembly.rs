@@ -2,7 +2,7 @@
 //!
 //! In goes a [`Model`](crate::Model), out comes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`, what
 //! its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`, `frame`,
-//! `definitions`, `start`, `bodies` and `external_force`, `brackets`, `constraints` with `constraint_treatment`,
+//! `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`, `constraints` with `constraint_treatment`,
 //! `body_reactions` and the names of a `resultant`, `action`, `event` and `events`, and quasi-velocities that are `given` beside the text; `trial` and `definite` look whether the start
 //! makes sense. A `function` is put together alone, when it is asked for.
 
@@ -27,4 +27,5 @@ pub(crate) mod parameters;
 pub(crate) mod resultant;
 pub(crate) mod start;
 pub(crate) mod tables;
+pub(crate) mod tree;
 pub(crate) mod trial;

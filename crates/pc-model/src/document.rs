@@ -2,15 +2,18 @@
 //!
 //! In goes TOML, out comes a [`Document`]. Read what comes out first: `expression`, with the places that
 //! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `reading` has its bytes, `syntax` gives TOML,
-//! `reader` typed access to it, `hidden` what no label may have; `sections`, `bodies`, `inputs` and `simulation` read the sections, `checks` holds what
-//! must be true between them, and `parse` puts these together.
+//! `reader` typed access to it, `hidden` what no label may have; `sections`, `bodies`, `tree` with the `joints` it is of, `loops`, `inputs` and
+//! `simulation` read the sections, `hanging` declares what joints move, `checks` holds what must be true between them, and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
 pub(crate) mod contents;
 pub(crate) mod expression;
+pub(crate) mod hanging;
 pub(crate) mod hidden;
 pub(crate) mod inputs;
+pub(crate) mod joints;
+pub(crate) mod loops;
 pub(crate) mod parse;
 pub(crate) mod reader;
 pub(crate) mod reading;
@@ -18,6 +21,7 @@ pub(crate) mod sections;
 pub(crate) mod simulation;
 pub(crate) mod syntax;
 pub(crate) mod text_map;
+pub(crate) mod tree;
 
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
@@ -26,6 +30,7 @@ pub use contents::{
 };
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;
+pub use joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
 pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;

@@ -27,7 +27,8 @@ impl Derivation {
         for value in &mut other.text.parameters {
             *value *= 1.0 + MOVED * random.signed();
         }
-        for body in 0..self.text.bodies.len() {
+        let may = |body: &usize| self.text.bodies[*body].may_have_force_functions;
+        for body in (0..self.text.bodies.len()).filter(may).collect::<Vec<_>>() {
             let components: Vec<usize> = (0..self.text.bodies[body].force.len()).collect();
             let factor = |components: &[usize]| {
                 let quotients = [&*self, &other].map(|derivation| derivation.factor(body, components, near));

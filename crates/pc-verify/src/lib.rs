@@ -56,6 +56,7 @@ mod term;
 mod tests;
 mod text;
 mod tolerance;
+mod tree;
 mod unsteady;
 mod velocities;
 

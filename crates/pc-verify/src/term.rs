@@ -140,6 +140,8 @@ pub(crate) struct Names {
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
     pub(crate) bodies: Vec<String>,
+    /// Components of points, each with what it is.
+    pub(crate) points: Vec<(String, Term)>,
 }
 
 impl Names {
@@ -151,7 +153,9 @@ impl Names {
             AstKind::Number(value) => Term::Number(*value),
             AstKind::Name(name) => self.name(name)?,
             AstKind::Velocity(name) => {
-                Term::Velocity(place(&self.coordinates, name).ok_or_else(|| unknown(name))?)
+                let point = || self.point(name).map(|component| Term::Rate(Box::new(component)));
+                let velocity = place(&self.coordinates, name).map(Term::Velocity);
+                velocity.or_else(point).ok_or_else(|| unknown(name))?
             }
             AstKind::TotalDerivative(inner) => Term::Rate(boxed(inner)?),
             AstKind::Sum(terms) => {
@@ -172,6 +176,20 @@ impl Names {
         })
     }
 
+    /// The coordinate of that name.
+    pub(crate) fn coordinate(&self, name: &str) -> Result<Term, Unable> {
+        place(&self.coordinates, name).map(Term::Coordinate).ok_or_else(|| unknown(name))
+    }
+
+    /// The quasi-velocity of that name.
+    pub(crate) fn quasi_velocity(&self, name: &str) -> Result<Term, Unable> {
+        place(&self.quasi_velocities, name).map(Term::QuasiVelocity).ok_or_else(|| unknown(name))
+    }
+
+    fn point(&self, name: &str) -> Option<Term> {
+        self.points.iter().find(|(known, _)| known == name).map(|(_, component)| component.clone())
+    }
+
     fn name(&self, name: &str) -> Result<Term, Unable> {
         let reaction = || place(&self.constraints, name.strip_prefix("λ_")?).map(Term::Reaction);
         match name {
@@ -183,6 +201,7 @@ impl Names {
                 .or_else(|| place(&self.coordinates, name).map(Term::Coordinate))
                 .or_else(|| place(&self.quasi_velocities, name).map(Term::QuasiVelocity))
                 .or_else(|| place(&self.definitions, name).map(Term::Definition))
+                .or_else(|| self.point(name))
                 .or_else(reaction)
                 .or_else(|| Resultant::named(name, &self.constraints, &self.bodies).map(Term::Resultant))
                 .ok_or_else(|| unknown(name)),

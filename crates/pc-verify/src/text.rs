@@ -9,6 +9,7 @@ use pc_model::document::{AlgebraDefinition, Document, Expression, Inertia, Named
 
 use crate::error::Unable;
 use crate::term::{Names, Term};
+use crate::tree::Tree;
 
 /// Everything that a model says about its motion.
 #[derive(Clone, Debug)]
@@ -22,6 +23,7 @@ pub(crate) struct Text {
     pub(crate) state_rates: Vec<Term>,
     /// The acceleration of gravity.
     pub(crate) gravity: Vec<Term>,
+    /// Those of the text that are constant, those of bodies on joints, then the rest of the text.
     pub(crate) definitions: Vec<Term>,
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
@@ -66,6 +68,8 @@ pub(crate) struct Body {
     pub(crate) force: Vec<Term>,
     /// μ_i for each component of the force: where it is not 0 the force has the force function μ_i F_i r_i, which counts in L.
     pub(crate) force_functions: Vec<f64>,
+    /// Whether any of it may: none does of a force on a body with a joint.
+    pub(crate) may_have_force_functions: bool,
     pub(crate) torque: Vec<Term>,
 }
 
@@ -90,15 +94,21 @@ impl Text {
     /// What the document of a model says, with the values that its parameters have.
     pub(crate) fn new(model: &Model) -> Result<Text, Unable> {
         let document = model.document();
-        let named = |list: &[NamedExpression]| list.iter().map(|entry| entry.name.text.clone()).collect();
+        let named = |list: &[NamedExpression]| -> Vec<String> {
+            list.iter().map(|entry| entry.name.text.clone()).collect()
+        };
+        let tree = Tree::of(document);
+        let labels = document.bodies.iter().map(|body| &body.name);
+        let labels = labels.chain(document.tree.iter().map(|body| &body.name));
         let names = Names {
             coordinates: named(&document.coordinates),
             quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
             parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
             states: document.states.iter().map(|state| state.name.text.clone()).collect(),
-            definitions: named(&document.definitions),
+            definitions: tree.names(),
             constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
-            bodies: document.bodies.iter().map(|body| body.name.text.clone()).collect(),
+            bodies: labels.map(|name| name.text.clone()).collect(),
+            points: tree.points(),
         };
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
@@ -123,6 +133,7 @@ impl Text {
                 },
                 force: body.force.as_ref().map_or(Ok(Vec::new()), |force| terms(force))?,
                 force_functions: vec![0.0; body.force.as_ref().map_or(0, |force| force.len())],
+                may_have_force_functions: true,
                 torque: body.torque.as_ref().map_or(Ok(Vec::new()), |torque| terms(torque))?,
             })
         });
@@ -131,12 +142,8 @@ impl Text {
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
             gravity: document.gravity.as_ref().map_or(Ok(Vec::new()), |g| terms(&g.acceleration))?,
-            definitions: document
-                .definitions
-                .iter()
-                .map(|d| term(&d.expression))
-                .collect::<Result<_, _>>()?,
-            velocities: velocities(document, &names)?,
+            definitions: tree.definitions(&names)?,
+            velocities: velocities(document, &tree, &names)?,
             brackets: brackets(document, &names)?,
             constraints: document
                 .constraints
@@ -147,7 +154,7 @@ impl Text {
             potential: part(energy.and_then(|l| l.potential.as_ref()))?,
             lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
             dissipation: part(energy.and_then(|l| l.dissipation.as_ref()))?,
-            bodies: bodies.collect::<Result<_, Unable>>()?,
+            bodies: bodies.chain(tree.bodies(&names)?.into_iter().map(Ok)).collect::<Result<_, Unable>>()?,
             forces: document
                 .forces
                 .iter()
@@ -201,7 +208,7 @@ impl Text {
 }
 
 /// The 9 entries of a matrix of inertia; [`Inertia::Full`] has Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
-fn matrix(
+pub(crate) fn matrix(
     inertia: &Inertia,
     term: impl Fn(&Expression) -> Result<Term, Unable>,
 ) -> Result<Vec<Term>, Unable> {
@@ -219,16 +226,25 @@ fn matrix(
     Ok((0..9).map(|i| entry(i / 3, i % 3)).map(value).collect())
 }
 
-fn velocities(document: &Document, names: &Names) -> Result<Velocities, Unable> {
+fn velocities(document: &Document, tree: &Tree<'_>, names: &Names) -> Result<Velocities, Unable> {
     let declared = &document.quasi_velocities;
-    if document.kinematics.is_empty() && !document.coordinates.is_empty() {
+    let by_joints =
+        !document.tree.is_empty() && !declared.is_empty() && declared.iter().all(|eta| eta.is.is_none());
+    if document.kinematics.is_empty() && !document.coordinates.is_empty() && !by_joints {
         let definition = |eta: &pc_model::document::QuasiVelocity| {
             let undefined = || Unable::Undefined { name: eta.name.text.clone() };
             names.resolve(&eta.is.as_ref().ok_or_else(undefined)?.ast)
         };
         return Ok(Velocities::Ordinary(declared.iter().map(definition).collect::<Result<_, _>>()?));
     }
+    let of_joints = if by_joints { tree.rates(names)? } else { Vec::new() };
     let rate = |name: &String| {
+        if let Some((_, rate)) = of_joints.iter().find(|(x, _)| x == name) {
+            return Ok(rate.clone());
+        }
+        if document.kinematics.is_empty() {
+            return names.quasi_velocity(&format!("{name}'"));
+        }
         let entry = document.kinematics.iter().find(|entry| entry.name.text == *name);
         let entry = entry.ok_or_else(|| Unable::UnknownName { name: format!("{name}'") })?;
         names.resolve(&entry.expression.ast)

@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char, c_int};
 use std::sync::OnceLock;
 
 use ::pc_model::document::read_file_bounded;
-use ::pc_model::{BUILTIN, Builtin, Document, Model, Source};
+use ::pc_model::{Builtin, Document, Model, Source};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -160,14 +160,14 @@ pub unsafe extern "C" fn pc_model_builtin(
 /// The number of models that come with the library.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_builtin_count() -> usize {
-    BUILTIN.len()
+    Builtin::all().count()
 }
 
 /// The name of such a model, from 0; NULL beyond the last. Static.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
     static NAMES: OnceLock<Vec<CString>> = OnceLock::new();
-    nth(NAMES.get_or_init(|| BUILTIN.iter().map(|builtin| c_string(builtin.name)).collect()), index)
+    nth(NAMES.get_or_init(|| Builtin::all().map(|builtin| c_string(builtin.name)).collect()), index)
 }
 
 /// A copy that can be changed by itself.

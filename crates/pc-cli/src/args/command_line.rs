@@ -3,7 +3,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::args::options::{
-    CheckArguments, DeriveArguments, EmitArguments, ModelsArguments, RunArguments, TheoryArguments,
+    CheckArguments, DeriveArguments, EmitArguments, ImportArguments, ModelsArguments, RunArguments,
+    TheoryArguments,
 };
 use crate::args::sweep::SweepArguments;
 
@@ -40,6 +41,8 @@ pub enum Command {
     Sweep(Box<SweepArguments>),
     /// Write the equations as C or Rust source that needs nothing of this program
     Emit(EmitArguments),
+    /// Make a model of a robot in URDF
+    Import(ImportArguments),
     /// List the models that come with the program, or print one
     Models(ModelsArguments),
 }

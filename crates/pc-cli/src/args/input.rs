@@ -7,7 +7,7 @@ use pc_expr::Limits;
 use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::document::{read_bounded, read_file_bounded};
-use pc_model::{Assembly, BUILTIN, Builtin, Document, Model, ModelError};
+use pc_model::{Assembly, Builtin, Document, Model, ModelError};
 
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
@@ -82,7 +82,7 @@ fn document(name: &str) -> Result<Document, CliError> {
 /// That there is no model of this name, with the one whose name is nearest.
 pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
-    let nearest = nearest(stem, BUILTIN.iter().map(|model| model.name));
+    let nearest = nearest(stem, Builtin::all().map(|model| model.name));
     let nearest = nearest.and_then(Builtin::named).map(|model| model.name);
     CliError::NoSuchModel { name: name.to_owned(), nearest }
 }

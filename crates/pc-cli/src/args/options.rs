@@ -244,6 +244,20 @@ pub enum Lang {
     Rust,
 }
 
+/// Arguments of `pc import`.
+#[derive(Clone, Debug, Args)]
+pub struct ImportArguments {
+    /// The robot, in URDF, macros expanded
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Let the root link move freely; it stands still otherwise
+    #[arg(long)]
+    pub floating: bool,
+    /// The model to write; standard output if it is not given
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
 /// Arguments of `pc models`.
 #[derive(Clone, Debug, Args)]
 pub struct ModelsArguments {

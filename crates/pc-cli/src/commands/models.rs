@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use pc_algebra::{CATALOGUE, LieAlgebra};
-use pc_model::{BUILTIN, Builtin};
+use pc_model::Builtin;
 use pc_print::{columns, combination};
 
 use crate::args::input::no_such_model;
@@ -26,8 +26,8 @@ pub fn command(arguments: &ModelsArguments) -> Result<(), CliError> {
 }
 
 fn models(out: &mut dyn Write) -> io::Result<()> {
-    let width = BUILTIN.iter().map(|model| columns(model.name)).max().unwrap_or(0);
-    for model in BUILTIN {
+    let width = Builtin::all().map(|model| columns(model.name)).max().unwrap_or(0);
+    for model in Builtin::all() {
         writeln!(out, "{:width$}  {}", model.name, described(model))?;
     }
     Ok(())

@@ -63,6 +63,8 @@ impl<'g> Assembler<'g, '_> {
         let parameters: Vec<(Expr<'g>, f64)> =
             self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
         let given = self.given_start(&parameters)?;
+        self.check_rotations(&parameters)?;
+        self.check_quaternions(&given.values)?;
         let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
         let mut constraints = self.constraints()?;
         let mut at = parameters.clone();
@@ -86,6 +88,7 @@ impl<'g> Assembler<'g, '_> {
             .collect();
         let lagrangian = self.lagrangian(&x_dot)?;
         let bodies = self.bodies(&eta, &x_dot)?;
+        let tree = self.tree(&x_dot)?;
         let gravity = self.gravity()?;
         let dissipation = self.dissipation(&x_dot)?;
         let rates = self.state_rates(&x_dot)?;
@@ -121,6 +124,9 @@ impl<'g> Assembler<'g, '_> {
                 SystemBody::Particle(particle) => builder.particle(|_, _, _| particle),
                 SystemBody::Rigid(body) => builder.rigid_body(|_, _, _| *body),
             };
+        }
+        if let Some(tree) = tree {
+            builder = builder.tree(tree);
         }
         for (symbol, rate) in states.into_iter().zip(rates) {
             builder = builder.state(symbol, |_, _, _| rate);
@@ -269,12 +275,11 @@ impl<'g> Assembler<'g, '_> {
     fn with_velocities(&self, value: Expr<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let graph = self.graph;
         let eta = self.scope.quasi_velocities();
-        let mut rates: Vec<(Expr<'g>, Expr<'g>)> = x_dot
-            .iter()
-            .filter_map(|(velocity, rate)| {
-                let name = velocity.symbol_name()?;
-                Some((graph.symbol(name.strip_suffix('\'')?), *rate))
-            })
+        // Of the velocities that are not put in, x' is a quasi-velocity itself.
+        let rate = |velocity: Expr<'g>| x_dot.iter().find(|(symbol, _)| *symbol == velocity);
+        let coordinates = self.scope.coordinates().into_iter().zip(self.scope.velocities());
+        let mut rates: Vec<(Expr<'g>, Expr<'g>)> = coordinates
+            .map(|(x, velocity)| (x, rate(velocity).map_or(velocity, |(_, rate)| *rate)))
             .collect();
         rates.extend(eta.iter().map(|eta| (*eta, graph.symbol(&format!("{eta}'")))));
         rates.push((graph.symbol("t"), Expr::ONE));

@@ -4,9 +4,9 @@ use pc_mech::{Expr, Graph};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::{Expression, Name};
+use crate::document::{Expression, Name, QuasiVelocity};
 use crate::model::model::Model;
-use crate::names::scope::Scope;
+use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 /// Puts a model together as expressions of a graph; each part has a file of its own.
@@ -20,6 +20,22 @@ impl<'g> Assembler<'g, '_> {
     /// Whether η_s = ẋ_s because no quasi-velocity is declared.
     pub(super) fn is_lagrangian_form(&self) -> bool {
         self.model.document().quasi_velocities.is_empty()
+    }
+
+    /// Whether joints give all quasi-velocities, but for those that are velocities x'.
+    pub(super) fn is_moved_by_joints(&self) -> bool {
+        !self.model.document().tree.is_empty() && self.first_own_quasi_velocity().is_none()
+    }
+
+    /// The first quasi-velocity that is neither of a joint nor a velocity x'.
+    pub(super) fn first_own_quasi_velocity(&self) -> Option<&QuasiVelocity> {
+        let document = self.model.document();
+        let of_joints: usize = document.tree.iter().map(|body| body.joint.quasi_velocities.len()).sum();
+        let is_velocity = |eta: &&QuasiVelocity| {
+            let coordinate = eta.name.text.strip_suffix('\'');
+            coordinate.is_some_and(|x| entry(&document.coordinates, x).is_some())
+        };
+        document.quasi_velocities.iter().skip(of_joints).find(|eta| !is_velocity(eta))
     }
 
     pub(super) fn not_a_coordinate(&self, name: &Name) -> ModelError {

@@ -89,7 +89,7 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// Functions of the motion, with ẋ = b η + b_0 put in.
-    fn all_dynamic<const N: usize>(
+    pub(super) fn all_dynamic<const N: usize>(
         &mut self,
         list: &[Expression; N],
         x_dot: &[(Expr<'g>, Expr<'g>)],

@@ -67,7 +67,8 @@ impl<'g> Assembler<'g, '_> {
         let n = document.coordinates.len();
         let place_of = |name: &str| document.coordinates.iter().position(|x| x.name.text == name);
         let refuse = |fault| Err(self.model.document().error(&reset.name.place, fault));
-        if let Some(coordinate) = name.strip_suffix('\'') {
+        let declared = document.quasi_velocities.iter().position(|eta| eta.name.text == name);
+        if let Some(coordinate) = name.strip_suffix('\'').filter(|_| declared.is_none()) {
             let Some(place) = place_of(coordinate) else {
                 let mut name = reset.name.clone();
                 name.text = coordinate.to_owned();
@@ -85,7 +86,7 @@ impl<'g> Assembler<'g, '_> {
         if let Some(place) = place_of(name) {
             return Ok(place);
         }
-        if let Some(place) = document.quasi_velocities.iter().position(|eta| eta.name.text == name) {
+        if let Some(place) = declared {
             return match vanishes(constraints, self.graph.symbol(name)) {
                 true => refuse(self.not_reset(
                     name,

@@ -27,7 +27,9 @@ impl<'g> Assembler<'g, '_> {
         {
             return Err(self.not_a_coordinate(&stray.name));
         }
+        let own = self.first_own_quasi_velocity();
         let defined = document.quasi_velocities.iter().find(|q| q.is.is_some());
+        let defined = own.filter(|own| own.is.is_some()).or(defined);
         let frame = match (defined, document.kinematics.first()) {
             (Some(defined), Some(_)) => Err(self
                 .model
@@ -36,6 +38,7 @@ impl<'g> Assembler<'g, '_> {
             (Some(_), None) => return self.frame_of_definitions(time, x, constraints, at),
             (None, Some(_)) => self.frame_of_kinematics(time, x),
             (None, None) if self.is_lagrangian_form() => Ok(Frame::coordinate(self.graph, time, x)),
+            (None, None) if self.is_moved_by_joints() => self.frame_of_kinematics(time, x),
             (None, None) if x.is_empty() => {
                 let k = document.quasi_velocities.len();
                 let b = pc_mech::Matrix::from_fn(0, k, |_, _| Expr::ZERO);
@@ -43,7 +46,7 @@ impl<'g> Assembler<'g, '_> {
                     .map_err(|e| self.model.document().algebra_error(e))
             }
             (None, None) => {
-                let name = &document.quasi_velocities[0].name;
+                let name = &own.unwrap_or(&document.quasi_velocities[0]).name;
                 Err(self
                     .model
                     .document()
@@ -55,8 +58,12 @@ impl<'g> Assembler<'g, '_> {
 
     fn frame_of_kinematics(&mut self, time: Expr<'g>, x: Vec<Expr<'g>>) -> Result<Frame<'g>, ModelError> {
         let document = self.model.document();
-        let mut velocities = Vec::new();
-        for coordinate in &document.coordinates {
+        let mut velocities = self.joint_velocities()?;
+        for coordinate in &document.coordinates[velocities.len()..] {
+            if document.kinematics.is_empty() {
+                velocities.push(self.scope.velocity(&coordinate.name.text));
+                continue;
+            }
             let Some(kinematics) = entry(&document.kinematics, &coordinate.name.text) else {
                 let coordinate = coordinate.name.text.clone();
                 return Err(self.model.document().error(

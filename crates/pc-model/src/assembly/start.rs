@@ -67,7 +67,7 @@ impl<'g> Assembler<'g, '_> {
             for coordinate in &document.coordinates {
                 let place = names().position(|name| *name == coordinate.name.text);
                 values.push(place.map_or(0.0, |place| velocities[place]));
-                is_given.push(true);
+                is_given.push(place.is_some());
             }
             velocities.clear();
         }
@@ -118,19 +118,30 @@ impl<'g> Assembler<'g, '_> {
         start.resize(n + eta.len(), 0.0);
         let velocities = self.scope.velocities();
         let is_complete = eta[declared..].iter().all(|extra| !velocities.contains(extra));
-        if self.is_lagrangian_form() || (is_complete && given.velocities.is_empty()) {
-            return Ok(start);
-        }
         let unit = |s: usize| (0..eta.len()).map(|r| f64::from(u8::from(r == s))).collect::<Vec<f64>>();
+        let mut conditions: Vec<(Vec<f64>, f64)> = Vec::new();
+        if !(0..declared).all(|s| given.is_given[n + s]) || !is_complete || !given.velocities.is_empty() {
+            for (row, rest) in constraints.iter().filter_map(|c| self.condition(c, frame, eta)) {
+                let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
+                let is_known = values.iter().all(|v| v.is_finite());
+                if let Some((rest, row)) = values.split_last().filter(|_| is_known) {
+                    conditions.push((row.to_vec(), -rest));
+                }
+            }
+        }
+        if is_complete && given.velocities.is_empty() {
+            let mut written = Equations::default();
+            (0..eta.len()).for_each(|s| _ = written.add(&unit(s), start[n + s]));
+            if conditions.iter().all(|(row, value)| written.add(row, *value).is_none()) {
+                return Ok(start);
+            }
+        }
         let mut equations = Equations::default();
         for s in (0..declared).filter(|&s| given.is_given[n + s]) {
             equations.add(&unit(s), start[n + s]);
         }
-        for (row, rest) in constraints.iter().filter_map(|c| self.condition(c, frame, eta)) {
-            let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
-            if let Some((rest, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite())) {
-                equations.add(row, -rest); // one that is contradicted is off at the start, which is looked at later
-            }
+        for (row, value) in &conditions {
+            equations.add(row, *value); // one that is contradicted is off at the start, which is looked at later
         }
         self.add_velocities(&mut equations, frame, at, &given.velocities)?;
         for s in (0..declared).filter(|&s| !given.is_given[n + s]) {

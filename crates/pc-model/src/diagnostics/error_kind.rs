@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use crate::diagnostics::category::Category;
 use crate::diagnostics::meaning::MeaningError;
+use crate::diagnostics::words::{listed, suggest};
 
 /// The ways in which a model can be wrong.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -113,6 +114,44 @@ pub enum ErrorKind {
         without: &'static str,
         /// How this could be written.
         example: &'static str,
+    },
+    /// An entry that joints of this kind do not have.
+    #[error("joints of this kind have no `{key}`")]
+    OfOtherJoints {
+        /// Its key.
+        key: String,
+        /// What would go with it, or in its place.
+        example: &'static str,
+    },
+    /// A body that is no part of a tree.
+    #[error("no body with a joint is called `{name}`")]
+    NotInTree {
+        /// The name.
+        name: String,
+        /// The bodies there are.
+        known: Vec<String>,
+    },
+    /// Bodies that hang on each other.
+    #[error("no body of these hangs on the world: {}", hanging(bodies))]
+    CircularParents {
+        /// The bodies, each on the next and the last on the first.
+        bodies: Vec<String>,
+    },
+    /// A statement of how something moves that a joint moves.
+    #[error("the joint of `{body}` says how `{name}` moves")]
+    OfJoint {
+        /// The name.
+        name: String,
+        /// The body.
+        body: String,
+    },
+    /// Definitions by velocities beside quaternions.
+    #[error(
+        "the joint of `{body}` has an angular velocity, beside which no quasi-velocity is defined by `is`"
+    )]
+    DefinedBesideTurning {
+        /// The body.
+        body: String,
     },
     /// Two entries of which only one may be given.
     #[error("`{first}` and `{second}` exclude each other")]
@@ -239,6 +278,10 @@ pub enum Role {
     Output,
     /// A constant of `[hamilton_jacobi]`.
     Constant,
+    /// A component of a point, of `[points.NAME]` or of `[loops.NAME]`.
+    Point,
+    /// An entry of `[constraints]`.
+    Constraint,
 }
 
 impl fmt::Display for Role {
@@ -253,6 +296,8 @@ impl fmt::Display for Role {
             Self::Integral => "an integral",
             Self::Output => "an output",
             Self::Constant => "a constant of the action",
+            Self::Point => "a component of a point",
+            Self::Constraint => "a constraint",
         })
     }
 }
@@ -271,6 +316,8 @@ pub(crate) const SECTIONS: &[&str] = &[
     "constraints",
     "lagrangian",
     "bodies",
+    "points",
+    "loops",
     "gravity",
     "forces",
     "integrals",
@@ -318,6 +365,15 @@ impl ErrorKind {
             Self::Missing { example, .. } => format!("add `{example}`"),
             Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
             Self::Exclusive { help, .. } => (*help).into(),
+            Self::OfOtherJoints { key, example } => format!("write `{example}`, or leave `{key}` out"),
+            Self::NotInTree { name, known } => {
+                suggest(name, known, &format!("the bodies with joints are {}; \"world\" is what they hang on in the end", listed(known)))
+            }
+            Self::CircularParents { .. } => "leave the `parent` of one of them out: it hangs on the world then".into(),
+            Self::OfJoint { .. } => "give its start value alone, or leave it out".into(),
+            Self::DefinedBesideTurning { .. } => {
+                "give the velocities of what belongs to no joint in [kinematics]".into()
+            }
             Self::NotAName { key } if key.len() > 255 => "a name has at most 255 bytes".into(),
             Self::NotAName { .. } => {
                 "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()
@@ -349,6 +405,12 @@ impl ErrorKind {
     }
 }
 
+/// `a` on `b`, `b` on `a`
+fn hanging(bodies: &[String]) -> String {
+    let next = bodies.iter().cycle().skip(1);
+    bodies.iter().zip(next).map(|(body, on)| format!("`{body}` on `{on}`")).collect::<Vec<_>>().join(", ")
+}
+
 fn possible(nearest: Option<&str>, what: &str, words: &[&str]) -> String {
     let words = words.join(", ");
     match nearest {
@@ -362,6 +424,7 @@ fn reserved(name: &str) -> String {
         "t" => "it is the time".into(),
         "pi" => "it is the number π".into(),
         "energy" => "it is the energy column that every run has".into(),
+        "world" => "it is what bodies hang on in the end".into(),
         _ => match FUNCTIONS.iter().find(|function| function.name == name) {
             Some(function) => format!("it is the function `{}`", function.usage),
             None => "it has a meaning of its own".into(),

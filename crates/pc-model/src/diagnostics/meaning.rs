@@ -334,6 +334,31 @@ pub enum MeaningError {
         /// The quasi-velocities without an equation.
         undetermined: Vec<String>,
     },
+    /// An axis without direction.
+    #[error("the axis has length 0")]
+    ZeroAxis,
+    /// A matrix that is no rotation.
+    #[error("these nine entries are no rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
+    NotARotation {
+        /// The largest entry of R Rᵀ − 1.
+        defect: f64,
+        /// The determinant.
+        determinant: f64,
+    },
+    /// The quaternion of a joint at the start.
+    #[error("the quaternion of `{body}` has length {length} at the start, not 1")]
+    QuaternionNotUnit {
+        /// The body.
+        body: String,
+        /// Its length.
+        length: f64,
+    },
+    /// A body that moves by itself without mass.
+    #[error("`{body}` can move, and neither it nor what hangs on it has mass or inertia")]
+    Massless {
+        /// The body.
+        body: String,
+    },
     /// A parameter that is an expression without a value.
     #[error("`{text}` is {value}")]
     ParameterNotFinite {
@@ -411,6 +436,10 @@ impl MeaningError {
             | MeaningError::NotClosed { .. }
             | MeaningError::Contradiction { .. }
             | MeaningError::Degenerate { .. }
+            | MeaningError::ZeroAxis
+            | MeaningError::NotARotation { .. }
+            | MeaningError::QuaternionNotUnit { .. }
+            | MeaningError::Massless { .. }
             | MeaningError::NotHolonomic { .. }
             | MeaningError::StartOpen { .. }
             | MeaningError::StartVelocity { .. }
@@ -515,6 +544,14 @@ impl MeaningError {
             }
             MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             MeaningError::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            MeaningError::ZeroAxis => "give it a direction, such as `[0, 0, 1]`".into(),
+            MeaningError::NotARotation { .. } => {
+                "its rows are orthogonal unit vectors; angles about axes are given by `turns`".into()
+            }
+            MeaningError::QuaternionNotUnit { .. } => {
+                "a turn by the angle a about the unit vector u has the quaternion cos(a/2), u*sin(a/2)".into()
+            }
+            MeaningError::Massless { .. } => "give it a mass, or make its joint `fixed`".into(),
             MeaningError::BadTable { help, .. } => (*help).into(),
             MeaningError::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
             MeaningError::ParameterNotFinite { .. } => "give the parameters in it other values".into(),

@@ -1,21 +1,31 @@
 //! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
+use super::tree;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::contents::{Body, Gravity, Inertia, Orientation};
+use crate::document::joints::TreeBody;
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
 const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";
 const POSITION: &str = "position = [\"x\", \"y\", \"z\"]";
 
-pub(super) fn bodies(table: &Table<'_>) -> Result<Vec<Body>, ModelError> {
-    table.items().map(|item| body(&item)).collect()
+/// The bodies with a position, and those with a joint.
+pub(super) fn bodies(table: &Table<'_>) -> Result<(Vec<Body>, Vec<TreeBody>), ModelError> {
+    let (mut placed, mut hanging) = (Vec::new(), Vec::new());
+    for item in table.items() {
+        let table = item.section(&format!("bodies.{}", item.new_label()?.text), "[bodies.NAME]")?;
+        match table.has("joint") || table.has("parent") || table.has("center") {
+            true => hanging.push(tree::body(&item, &table)?),
+            false => placed.push(body(&item, &table)?),
+        }
+    }
+    Ok((placed, hanging))
 }
 
-fn body(item: &Item<'_>) -> Result<Body, ModelError> {
+fn body(item: &Item<'_>, table: &Table<'_>) -> Result<Body, ModelError> {
     let name = item.new_label()?;
-    let table = item.section(&format!("bodies.{}", name.text), "[bodies.NAME]")?;
     let (mut mass, mut position, mut inertia, mut force, mut torque) = (None, None, None, None, None);
     let (mut orientation, mut turning) = (None, None);
     for part in table.items() {
@@ -67,7 +77,7 @@ pub(super) fn gravity(table: &Table<'_>) -> Result<Gravity, ModelError> {
     }
 }
 
-fn inertia(item: &Item<'_>) -> Result<Inertia, ModelError> {
+pub(super) fn inertia(item: &Item<'_>) -> Result<Inertia, ModelError> {
     let (expected, example) = ("3 or 6 expressions", INERTIA);
     let list = item.list(&[3, 6], expected, example)?;
     let list = match <[_; 3]>::try_from(list) {

@@ -10,7 +10,7 @@ use crate::document::expression::Name;
 
 /// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
-    if !document.bodies.is_empty() {
+    if !document.bodies.is_empty() || !document.tree.is_empty() {
         return Ok(());
     }
     match &document.lagrangian {
@@ -26,7 +26,7 @@ pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
 /// Gravity must have something to act on.
 pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
     match &document.gravity {
-        Some(gravity) if document.bodies.is_empty() => {
+        Some(gravity) if document.bodies.is_empty() && document.tree.is_empty() => {
             let (key, example) = ("[gravity]".to_owned(), "[bodies.NAME]");
             let kind = ErrorKind::NoEffect { key, without: "bodies", example };
             Err(document.source.error(&gravity.place, kind))
@@ -51,7 +51,9 @@ impl Document {
         let states = self.states.iter().map(|state| (&state.name, Role::State));
         let action = self.hamilton_jacobi.iter().flat_map(|action| &action.constants);
         let constants = action.map(|(name, _)| (name, Role::Constant));
-        let mut names: Vec<(&Name, Role)> = quasi.chain(states).chain(inputs).chain(constants).collect();
+        let points = self.points.iter().flat_map(|point| &point.components).map(|name| (name, Role::Point));
+        let mut names: Vec<(&Name, Role)> =
+            quasi.chain(states).chain(inputs).chain(constants).chain(points).collect();
         for (entries, role) in [
             (&self.parameters, Role::Parameter),
             (&self.definitions, Role::Definition),

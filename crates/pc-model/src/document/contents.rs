@@ -5,6 +5,7 @@ use pc_mech::Interpolation;
 
 use crate::diagnostics::source::{Place, Source};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
+use crate::document::joints::{Point, TreeBody};
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -19,9 +20,10 @@ pub struct Document {
     pub inputs: Vec<Input>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
-    /// `[coordinates]`, each with its start value.
+    /// Coordinates, each with its start value: those of joints, then what else is in `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// `[quasi_velocities]` but for entries `"x'"`.
+    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in `[quasi_velocities]` but for
+    /// entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
     /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
     pub start_velocities: Vec<NamedExpression>,
@@ -31,12 +33,16 @@ pub struct Document {
     pub kinematics: Vec<NamedExpression>,
     /// `[algebra]`
     pub algebra: Option<Algebra>,
-    /// `[constraints]`
+    /// `[constraints]`, then those that close `[loops.NAME]`.
     pub constraints: Vec<Constraint>,
     /// `[lagrangian]`; given unless there are bodies.
     pub lagrangian: Option<Lagrangian>,
-    /// `[bodies.NAME]`
+    /// `[bodies.NAME]` with a position.
     pub bodies: Vec<Body>,
+    /// `[bodies.NAME]` with a joint.
+    pub tree: Vec<TreeBody>,
+    /// `[points.NAME]`, then the points where `[loops.NAME]` are closed.
+    pub points: Vec<Point>,
     /// `[gravity]`
     pub gravity: Option<Gravity>,
     /// `[forces]`, by the names of quasi-velocities or coordinates.

@@ -51,6 +51,13 @@ impl Expression {
         Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
     }
 
+    /// An expression that is not written, but follows from what stands at a place.
+    pub(super) fn following(source: &Source, text: String, place: &Place) -> Result<Expression, ModelError> {
+        let ast = parse(&text).map_err(|error| source.error(place, error))?;
+        let map = TextMap::standing_for(place.span.clone(), text.len());
+        Ok(Expression { text, ast, entry: place.entry.clone(), map })
+    }
+
     /// Bytes of the file at which a part of the expression stands.
     pub fn locate(&self, span: Span) -> Range<usize> {
         self.map.locate(span.start..span.end)

@@ -15,8 +15,9 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, SECTIONS};
 use crate::diagnostics::source::Source;
 use crate::document::contents::Document;
+use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
-use crate::document::{bodies, checks, inputs, sections, simulation, syntax};
+use crate::document::{bodies, checks, hanging, inputs, sections, simulation, syntax, tree};
 
 impl Document {
     /// The document of a model file.
@@ -28,11 +29,12 @@ impl Document {
     }
 
     fn parsed(source: Source) -> Result<Self, ModelError> {
-        let mut document = Self::default();
+        let (mut document, mut loops) = (Self::default(), Vec::new());
         for item in Table::root(&source, &syntax::table(&source)?).items() {
-            document.read(&item)?;
+            document.read(&item, &mut loops)?;
         }
         document.source = source;
+        hanging::declare(&mut document, loops)?;
         checks::check_names(&document)?;
         checks::require_motion(&document)?;
         checks::require_energy(&document)?;
@@ -49,7 +51,7 @@ impl Document {
     }
 
     /// Reads one section.
-    fn read(&mut self, item: &Item<'_>) -> Result<(), ModelError> {
+    fn read(&mut self, item: &Item<'_>, loops: &mut Vec<Loop>) -> Result<(), ModelError> {
         let key = item.key();
         if !SECTIONS.contains(&key) {
             let name = key.to_owned();
@@ -72,9 +74,11 @@ impl Document {
             "algebra" => self.algebra = Some(sections::algebra(&table)?),
             "constraints" => self.constraints = sections::constraints(&table)?,
             "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
-            "bodies" => self.bodies = bodies::bodies(&table)?,
+            "bodies" => (self.bodies, self.tree) = bodies::bodies(&table)?,
+            "points" => self.points = tree::points(&table)?,
+            "loops" => *loops = loops::loops(&table)?,
             "gravity" => self.gravity = Some(bodies::gravity(&table)?),
-            "forces" => self.forces = table.expressions()?,
+            "forces" => self.forces = table.on_velocities()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
             "hamilton_jacobi" => self.hamilton_jacobi = Some(sections::hamilton_jacobi(&table)?),

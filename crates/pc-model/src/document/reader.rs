@@ -33,6 +33,11 @@ pub(super) struct Item<'a> {
     value: &'a DeValue<'a>,
 }
 
+/// Whether a name has a meaning of its own.
+fn is_reserved(name: &str) -> bool {
+    matches!(name, "t" | "pi" | "energy") || FUNCTIONS.iter().any(|function| function.name == name)
+}
+
 impl<'a> Table<'a> {
     /// The whole file.
     pub(super) fn root(source: &'a Source, entries: &'a DeTable<'a>) -> Self {
@@ -57,6 +62,25 @@ impl<'a> Table<'a> {
         self.source.error(&self.place, kind)
     }
 
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
+    /// An expression that follows from what stands at a place.
+    pub(super) fn following(&self, text: String, place: &Place) -> Result<Expression, ModelError> {
+        Expression::following(self.source, text, place)
+    }
+
+    /// The entries as `name = "expression"`, the names being those of things declared elsewhere, the velocity `x'` of a
+    /// coordinate standing for this.
+    pub(super) fn on_velocities(&self) -> Result<Vec<NamedExpression>, ModelError> {
+        let entry = |item: Item<'a>| {
+            let name = item.velocity().map_or_else(|| item.name(), Ok)?;
+            Ok(NamedExpression { name, expression: item.expression()? })
+        };
+        self.items().map(entry).collect()
+    }
+
     /// The entries as `name = "expression"`, the names being those of things declared elsewhere.
     pub(super) fn expressions(&self) -> Result<Vec<NamedExpression>, ModelError> {
         self.items()
@@ -73,6 +97,10 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Item<'a> {
+    pub(super) fn place(&self) -> Place {
+        self.place.clone()
+    }
+
     pub(super) fn key(&self) -> &'a str {
         self.key
     }
@@ -141,11 +169,29 @@ impl<'a> Item<'a> {
     /// The key as a name declared by this entry.
     pub(super) fn new_name(&self) -> Result<Name, ModelError> {
         let name = self.name()?;
-        let taken = |function: &pc_expr::parse::Function| function.name == name.text;
-        if matches!(name.text.as_str(), "t" | "pi" | "energy") || FUNCTIONS.iter().any(taken) {
-            return Err(self.key_error(ErrorKind::Reserved { name: name.text }));
+        match is_reserved(&name.text) {
+            true => Err(self.key_error(ErrorKind::Reserved { name: name.text })),
+            false => Ok(name),
         }
-        Ok(name)
+    }
+
+    /// A name made of the key, which stands for it.
+    pub(super) fn derived_name(&self, text: String) -> Result<Name, ModelError> {
+        match text.as_str() {
+            name if !is_name(name) => Err(self.key_error(ErrorKind::NotAName { key: text })),
+            name if is_reserved(name) => Err(self.key_error(ErrorKind::Reserved { name: text })),
+            _ => Ok(Name { text, place: self.label().place }),
+        }
+    }
+
+    /// The value as a name that it declares.
+    pub(super) fn value_as_name(&self) -> Result<Name, ModelError> {
+        let Located { value: text, place } = self.text()?;
+        match text.as_str() {
+            name if !is_name(name) => Err(self.error(ErrorKind::NotAName { key: text })),
+            name if is_reserved(name) => Err(self.error(ErrorKind::Reserved { name: text })),
+            _ => Ok(Name { text, place }),
+        }
     }
 
     /// The key `x'`, as the name `x`.
@@ -300,6 +346,23 @@ impl<'a> Item<'a> {
             return Err(self.error(ErrorKind::WrongLength { expected, found: array.len(), example }));
         }
         self.elements(array).map(|element| element.expression()).collect()
+    }
+
+    /// The value as a list of one of the given lengths, whatever its elements are.
+    pub(super) fn parts(
+        &self,
+        lengths: &[usize],
+        expected: &'static str,
+        example: &'static str,
+    ) -> Result<Vec<Item<'a>>, ModelError> {
+        let DeValue::Array(array) = self.value else {
+            let value = example.split_once(" = ").map_or(example, |(_, value)| value);
+            return Err(self.wrong_type(expected, value));
+        };
+        if !lengths.contains(&array.len()) {
+            return Err(self.error(ErrorKind::WrongLength { expected, found: array.len(), example }));
+        }
+        Ok(self.elements(array).collect())
     }
 
     fn elements(&self, array: &'a DeArray<'a>) -> impl Iterator<Item = Item<'a>> {

@@ -36,6 +36,11 @@ impl TextMap {
         Self { pieces: vec![Piece { decoded: whole.clone(), file: whole }], end: text.len() }
     }
 
+    /// That of a text of so many bytes that stands for a place as a whole.
+    pub(crate) fn standing_for(place: Range<usize>, length: usize) -> Self {
+        Self { end: place.end, pieces: vec![Piece { decoded: 0..length, file: place }] }
+    }
+
     /// Place in the file of a place in the value.
     pub fn locate(&self, span: Range<usize>) -> Range<usize> {
         let start = self.place(span.start).map_or(self.end, |(piece, file)| file.unwrap_or(piece.file.start));

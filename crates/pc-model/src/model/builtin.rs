@@ -19,7 +19,7 @@ macro_rules! models {
     };
 }
 
-/// All models that come with the library.
+/// Models that come with the library, one of each kind of mechanics.
 pub const BUILTIN: &[Builtin] = models![
     "heavy-top-lagrange",
     "heavy-top-kovalevskaya",
@@ -70,10 +70,26 @@ pub const BUILTIN: &[Builtin] = models![
     "appell-hamel",
 ];
 
+/// Models of bodies on joints that come with the library, too: larger ones, whose equations fill pages.
+pub const TREES: &[Builtin] = models![
+    "puma-560",
+    "four-bar-loop",
+    "slider-crank-loop",
+    "spatial-chain",
+    "satellite",
+    "quadruped",
+    "stewart-platform",
+];
+
 impl Builtin {
+    /// All models that come with the library.
+    pub fn all() -> impl Iterator<Item = &'static Builtin> {
+        BUILTIN.iter().chain(TREES)
+    }
+
     /// The model of that name.
     pub fn named(name: &str) -> Option<&'static Builtin> {
-        BUILTIN.iter().find(|model| model.name == name)
+        Builtin::all().find(|model| model.name == name)
     }
 
     /// Its document.

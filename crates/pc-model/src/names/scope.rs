@@ -11,7 +11,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::{Body, Document, Expression, NamedExpression};
+use crate::document::{Body, Document, Expression, NamedExpression, TreeBody};
 use crate::names::functions::call;
 use crate::names::stage::Stage;
 
@@ -61,6 +61,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) context: Context<'g>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
+    /// The components of points, once one has been named.
+    pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// Forces and torques of reactions that were named, each with a place.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
 }
@@ -88,6 +90,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             uses: Vec::new(),
             context: Context::default(),
             written: Vec::new(),
+            points: None,
             resultants: Vec::new(),
         }
     }
@@ -288,10 +291,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_quasi_velocity = document.quasi_velocities.iter().any(|q| q.name.text == name);
         let is_state = document.states.iter().any(|state| state.name.text == name);
         let is_input = document.inputs.iter().any(|input| input.name.text == name);
+        let is_point = self.is_point(name);
         match stage {
             _ if is_input => match stage {
                 Stage::Parameter
                 | Stage::Start
+                | Stage::Joint
                 | Stage::Definition
                 | Stage::Kinematics
                 | Stage::Position
@@ -306,8 +311,8 @@ impl<'g, 'd> Scope<'g, 'd> {
                 | Stage::Observation => Ok(self.graph.symbol(name)),
             },
             Stage::Parameter if self.places.contains_key(name) => refuse(self),
-            Stage::Parameter | Stage::Start
-                if name == "t" || is_coordinate || is_quasi_velocity || is_state =>
+            Stage::Parameter | Stage::Start | Stage::Joint
+                if name == "t" || is_coordinate || is_quasi_velocity || is_state || is_point =>
             {
                 refuse(self)
             }
@@ -316,8 +321,9 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             Stage::Inertia if is_quasi_velocity => refuse(self),
             Stage::Kinematics | Stage::Constraint if is_state => refuse(self),
-            Stage::Gravity if is_coordinate || is_quasi_velocity || is_state => refuse(self),
+            Stage::Gravity if is_coordinate || is_quasi_velocity || is_state || is_point => refuse(self),
             _ if name == "t" => Ok(self.time),
+            _ if is_point => self.point(name),
             _ if is_coordinate || is_quasi_velocity || is_state => Ok(self.graph.symbol(name)),
             Stage::Action if self.is_constant(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
@@ -352,8 +358,17 @@ impl<'g, 'd> Scope<'g, 'd> {
             force_names(constraint, &body.name.text).iter().any(|known| known == name)
                 || turns && torque_names(constraint, &body.name.text).iter().any(|known| known == name)
         };
-        let constraints = &self.document.constraints;
-        constraints.iter().any(|c| self.document.bodies.iter().any(|body| of_body(&c.name.text, body)))
+        let of_tree = |constraint: &str, body: &TreeBody| {
+            let mut names = force_names(constraint, &body.name.text)
+                .into_iter()
+                .chain(torque_names(constraint, &body.name.text));
+            names.any(|known| known == name)
+        };
+        let Document { constraints, bodies, tree, .. } = self.document;
+        constraints.iter().map(|c| &c.name.text).any(|constraint| {
+            bodies.iter().any(|body| of_body(constraint, body))
+                || tree.iter().any(|body| of_tree(constraint, body))
+        })
     }
 
     fn known(&self) -> Vec<String> {
@@ -376,7 +391,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
         let coordinates = &self.document.coordinates;
-        if !coordinates.iter().any(|c| c.name.text == name) {
+        let is_point = self.is_point(name);
+        if !is_point && !coordinates.iter().any(|c| c.name.text == name) {
             let fault = |_| MeaningError::NotACoordinate {
                 name: name.to_owned(),
                 coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
@@ -386,6 +402,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         match stage {
             Stage::Parameter
             | Stage::Start
+            | Stage::Joint
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
@@ -395,6 +412,11 @@ impl<'g, 'd> Scope<'g, 'd> {
                 place: stage.place(),
                 allowed: stage.allowed(),
             })),
+            _ if is_point => {
+                let place = self.point(name)?;
+                let rates: Vec<_> = self.coordinates().into_iter().zip(self.velocities()).collect();
+                Ok(self.graph.directional(&[place], &rates)[0])
+            }
             _ => Ok(self.velocity(name)),
         }
     }
@@ -410,6 +432,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         let refused = match stage {
             Stage::Parameter
             | Stage::Start
+            | Stage::Joint
             | Stage::Kinematics
             | Stage::Position
             | Stage::Inertia
@@ -442,7 +465,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         let rate = |symbol: &Expr<'g>| (*symbol, self.graph.symbol(&format!("{symbol}'")));
         let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
         rates.extend(velocities.iter().map(rate));
-        rates.extend(eta.iter().map(rate));
+        rates.extend(eta.iter().filter(|eta| !velocities.contains(eta)).map(rate));
         rates.push((self.time, Expr::ONE));
         for (z, state) in self.states().into_iter().zip(&self.document.states) {
             if !value.depends_on(z) {

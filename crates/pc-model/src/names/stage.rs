@@ -11,6 +11,8 @@ pub(crate) enum Stage {
     Definition,
     /// Kinematics: coordinates, t, and quasi-velocities.
     Kinematics,
+    /// What stays the same of a body with a joint, of the joint, and of a point: parameters, and definitions made of them.
+    Joint,
     /// Mass, inertia, place and attitude of a body: coordinates and t.
     Position,
     /// Mass and inertia of a body: coordinates, first-order states and t.
@@ -40,6 +42,7 @@ impl Stage {
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
+            Stage::Joint => "a joint, a point, or the mass of a body with a joint",
             Stage::Position | Stage::Inertia => "the mass, inertia, position or rotation of a body",
             Stage::Rate => "the rate of a first-order state",
             Stage::Gravity => "the acceleration of gravity",
@@ -55,7 +58,7 @@ impl Stage {
     pub(super) fn allowed(self) -> &'static str {
         match self {
             Stage::Parameter => "numbers and parameters before it",
-            Stage::Start => "numbers, parameters and definitions made of them",
+            Stage::Start | Stage::Joint => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",
             Stage::Position | Stage::Inertia => "parameters, coordinates and t",

@@ -1,0 +1,42 @@
+//! `pc import`: models in other formats, as text models.
+
+use std::io::Write;
+
+use pc_model::Source;
+use pc_model::document::read_file_bounded;
+
+use crate::args::options::ImportArguments;
+use crate::error::CliError;
+use crate::import::model_of_urdf;
+use crate::output::place::Place;
+use crate::output::standard_output::print;
+use crate::report::text::say;
+
+/// Writes the text model of a robot in URDF.
+///
+/// # Errors
+/// [`CliError`].
+pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
+    let path = &arguments.file;
+    let name = path.display().to_string();
+    let place = arguments.output.as_ref().map(|output| (output, Place::new(output)));
+    let place = place
+        .map(|(output, place)| place.map_err(|source| CliError::no_place(output, source)))
+        .transpose()?;
+    let bytes = read_file_bounded(path).map_err(|source| CliError::Read { name: name.clone(), source })?;
+    let source = match String::from_utf8(bytes) {
+        Ok(text) => Source::new(name, text),
+        Err(error) => {
+            let source = std::io::Error::new(std::io::ErrorKind::InvalidData, error);
+            return Err(CliError::Read { name, source });
+        }
+    };
+    let (text, left_out) = model_of_urdf(&source, arguments.floating)?;
+    left_out.iter().for_each(|left| say(format_args!("note: {left}\n")));
+    match place {
+        None => print(|out| out.write_all(text.as_bytes())),
+        Some(place) => place
+            .write(|out| out.write_all(text.as_bytes()))
+            .map_err(|source| CliError::cannot_write(place.path(), source)),
+    }
+}

@@ -1,0 +1,12 @@
+//! Models in other formats, as text models.
+//!
+//! In goes a robot in URDF, out comes the text of a model. Read `robot` first, what such a file says; `urdf` reads it, with an
+//! `error` that shows the place, and `text` writes the model.
+
+pub(crate) mod error;
+pub(crate) mod robot;
+pub(crate) mod text;
+pub(crate) mod urdf;
+
+pub use error::UrdfError;
+pub use text::model_of_urdf;

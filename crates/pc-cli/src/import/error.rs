@@ -1,0 +1,28 @@
+//! Errors in a file of another format, shown like those of a model.
+
+use std::ops::Range;
+
+use pc_model::{Diagnostic, Place, Source};
+
+/// Something in a URDF file that is wrong, or has no place in a model.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{rendered}")]
+pub struct UrdfError {
+    /// File, line and column, the message, the line and what would be right.
+    pub rendered: String,
+}
+
+impl UrdfError {
+    /// The error at these bytes of the file, which stand in that element.
+    pub(crate) fn at(
+        source: &Source,
+        span: Range<usize>,
+        entry: impl Into<String>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> UrdfError {
+        let place = Place { entry: entry.into(), span };
+        let diagnostic = Diagnostic { place, message: message.into(), help: Some(help.into()) };
+        UrdfError { rendered: diagnostic.render(source) }
+    }
+}

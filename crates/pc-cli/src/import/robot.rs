@@ -1,0 +1,91 @@
+//! What a URDF file says of a robot.
+
+use std::ops::Range;
+
+/// A robot: links, and joints between them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Robot {
+    pub(crate) name: String,
+    pub(crate) links: Vec<Link>,
+    pub(crate) joints: Vec<Joint>,
+    /// Elements that a model has no place for, each with how often it stands there.
+    pub(crate) left_out: Vec<(String, usize)>,
+}
+
+/// A link: a body.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    pub(crate) name: String,
+    pub(crate) span: Range<usize>,
+    pub(crate) inertial: Option<Inertial>,
+    /// The files of its meshes.
+    pub(crate) meshes: Vec<String>,
+}
+
+/// Mass, mass centre and inertia of a link.
+#[derive(Clone, Debug)]
+pub(crate) struct Inertial {
+    pub(crate) origin: Pose,
+    pub(crate) mass: f64,
+    /// Ixx, Iyy, Izz, Ixy, Iyz, Ixz along the axes of `origin`.
+    pub(crate) inertia: [f64; 6],
+}
+
+/// A place, and turns by roll, pitch and yaw about fixed axes x, y and z.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Pose {
+    pub(crate) xyz: [f64; 3],
+    pub(crate) rpy: [f64; 3],
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    pub(crate) span: Range<usize>,
+    pub(crate) kind: Kind,
+    pub(crate) parent: String,
+    pub(crate) child: String,
+    pub(crate) origin: Pose,
+    pub(crate) axis: [f64; 3],
+    pub(crate) limits: Vec<(&'static str, f64)>,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
+    pub(crate) mimic: Option<Mimic>,
+}
+
+/// What a joint lets move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Fixed,
+    Revolute,
+    Continuous,
+    Prismatic,
+    Floating,
+    Planar,
+}
+
+impl Kind {
+    /// The kinds by their words.
+    pub(crate) const ALL: [(&'static str, Kind); 6] = [
+        ("fixed", Kind::Fixed),
+        ("revolute", Kind::Revolute),
+        ("continuous", Kind::Continuous),
+        ("prismatic", Kind::Prismatic),
+        ("floating", Kind::Floating),
+        ("planar", Kind::Planar),
+    ];
+
+    /// Whether one coordinate moves it.
+    pub(crate) fn is_single(self) -> bool {
+        matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
+    }
+}
+
+/// That a joint follows another: x = multiplier · other + offset.
+#[derive(Clone, Debug)]
+pub(crate) struct Mimic {
+    pub(crate) joint: String,
+    pub(crate) multiplier: f64,
+    pub(crate) offset: f64,
+}

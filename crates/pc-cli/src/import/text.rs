@@ -1,0 +1,392 @@
+//! From a robot to the text of a model.
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+use std::path::Path;
+
+use pc_expr::parse::{FUNCTIONS, is_name};
+use pc_model::Source;
+
+use crate::import::error::UrdfError;
+use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
+use crate::import::urdf;
+
+/// The text of the model of a robot in URDF, and what was left out of it, a line each.
+///
+/// Bodies have the names of links, coordinates those of joints, each as far as it is a name; the root link stands still, or is
+/// free if `floats`. Limits and meshes stay as remarks.
+///
+/// # Errors
+/// [`UrdfError`] with file, line and column.
+pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<String>), UrdfError> {
+    let robot = urdf::read(source)?;
+    let tree = Tree::of(source, &robot)?;
+    tree.check_masses()?;
+    let starts = tree.starts()?;
+    Ok((tree.text(floats, &starts), tree.left_out()))
+}
+
+/// The links of a robot in the order of a tree.
+struct Tree<'a> {
+    source: &'a Source,
+    robot: &'a Robot,
+    /// Links, each after that it hangs on, with the joint between them.
+    order: Vec<(&'a Link, Option<&'a Joint>)>,
+    /// Links by what their bodies are called, joints by what their coordinates are.
+    bodies: HashMap<&'a str, String>,
+    coordinates: HashMap<&'a str, String>,
+}
+
+impl<'a> Tree<'a> {
+    fn of(source: &'a Source, robot: &'a Robot) -> Result<Tree<'a>, UrdfError> {
+        let link = |name: &str| robot.links.iter().find(|link| link.name == name);
+        for joint in &robot.joints {
+            let entry = format!("<joint {}>", joint.name);
+            let fault = |message: String, help: &str| {
+                Err(UrdfError::at(source, joint.span.clone(), entry.clone(), message, help))
+            };
+            for (what, name) in [("parent", &joint.parent), ("child", &joint.child)] {
+                if link(name).is_none() {
+                    return fault(
+                        format!("its {what}, the link `{name}`, is not there"),
+                        "declare the link, or correct its name",
+                    );
+                }
+            }
+            let others = robot.joints.iter().take_while(|other| other.name != joint.name);
+            if let Some(other) = others.into_iter().find(|other| other.child == joint.child) {
+                let message =
+                    format!("the link `{}` is the child of the joint `{}` already", joint.child, other.name);
+                return fault(message, "a link hangs on one other; loops have no place in URDF");
+            }
+        }
+        let joint_of = |link: &Link| robot.joints.iter().find(|joint| joint.child == link.name);
+        let mut roots = robot.links.iter().filter(|link| joint_of(link).is_none());
+        let Some(root) = roots.next() else {
+            let (span, name) = (robot.links[0].span.clone(), &robot.links[0].name);
+            let message = "every link hangs on another: there is no root";
+            return Err(UrdfError::at(
+                source,
+                span,
+                format!("<link {name}>"),
+                message,
+                "one link is the child of no joint",
+            ));
+        };
+        if let Some(second) = roots.next() {
+            let message =
+                format!("`{}` and `{}` hang on nothing: there are two roots", root.name, second.name);
+            let entry = format!("<link {}>", second.name);
+            return Err(UrdfError::at(source, second.span.clone(), entry, message, "join them by a joint"));
+        }
+        let mut order: Vec<(&Link, Option<&Joint>)> = vec![(root, None)];
+        let mut next = 0;
+        while let Some(&(parent, _)) = order.get(next) {
+            let hanging = robot.joints.iter().filter(|joint| joint.parent == parent.name);
+            order.extend(hanging.filter_map(|joint| Some((link(&joint.child)?, Some(joint)))));
+            next += 1;
+        }
+        if let Some(lost) =
+            robot.links.iter().find(|link| !order.iter().any(|(known, _)| known.name == link.name))
+        {
+            let message =
+                format!("`{}` hangs on itself by others, not on the root `{}`", lost.name, root.name);
+            let entry = format!("<link {}>", lost.name);
+            return Err(UrdfError::at(
+                source,
+                lost.span.clone(),
+                entry,
+                message,
+                "leave a joint of the circle out",
+            ));
+        }
+        let mut taken: HashSet<String> =
+            HashSet::from(["world", "t", "pi", "energy", "g"].map(str::to_owned));
+        taken.extend(FUNCTIONS.iter().map(|function| function.name.to_owned()));
+        let mut coordinates = HashMap::new();
+        for joint in robot.joints.iter().filter(|joint| joint.kind.is_single()) {
+            coordinates.insert(joint.name.as_str(), unused(&joint.name, &mut taken));
+        }
+        // The names of bodies are labels, but those of free and planar bodies begin the names of their coordinates.
+        let mut bodies = HashMap::new();
+        let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
+        for (place, (link, joint)) in order.iter().enumerate() {
+            let names =
+                place == 0 || joint.is_some_and(|joint| !joint.kind.is_single() && joint.kind != Kind::Fixed);
+            let label = unused(&link.name, if names { &mut taken } else { &mut labels });
+            labels.insert(label.clone());
+            bodies.insert(link.name.as_str(), label);
+        }
+        Ok(Tree { source, robot, order, bodies, coordinates })
+    }
+
+    /// That what moves has mass.
+    fn check_masses(&self) -> Result<(), UrdfError> {
+        let mut carries: HashSet<&str> = HashSet::new();
+        for (link, joint) in self.order.iter().rev() {
+            let has_mass = link.inertial.as_ref().is_some_and(|inertial| {
+                inertial.mass > 0.0 || inertial.inertia.iter().any(|&moment| moment != 0.0)
+            });
+            if has_mass {
+                carries.insert(&link.name);
+            }
+            let Some(joint) = joint else { continue };
+            if carries.contains(link.name.as_str()) {
+                carries.insert(&joint.parent);
+            } else if joint.kind != Kind::Fixed {
+                let message = format!(
+                    "the link `{}` can move, and neither it nor what hangs on it has mass",
+                    link.name
+                );
+                let entry = format!("<link {}>", link.name);
+                let help = "give it an <inertial>, or make its joint `fixed`";
+                return Err(UrdfError::at(self.source, link.span.clone(), entry, message, help));
+            }
+        }
+        Ok(())
+    }
+
+    /// The start values of joints that follow others, which are 0 themselves.
+    fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
+        let mut starts = Vec::new();
+        for first in self.robot.joints.iter().filter(|joint| joint.mimic.is_some()) {
+            // x = m (m' (… ) + o') + o
+            let (mut factor, mut start, mut joint) = (1.0, 0.0, first);
+            let mut seen: Vec<&str> = vec![&joint.name];
+            while let Some(mimic) = &joint.mimic {
+                start += factor * mimic.offset;
+                factor *= mimic.multiplier;
+                let entry = format!("<joint {}>", joint.name);
+                let fault = |message: String, help: &str| {
+                    UrdfError::at(self.source, joint.span.clone(), entry.clone(), message, help)
+                };
+                let followed = self.robot.joints.iter().find(|known| known.name == mimic.joint);
+                let followed = followed.ok_or_else(|| {
+                    fault(format!("it mimics `{}`, which is not there", mimic.joint), "name another joint")
+                })?;
+                if !(joint.kind.is_single() && followed.kind.is_single()) {
+                    let help = "revolute, continuous and prismatic joints can";
+                    return Err(fault(format!("it cannot mimic `{}`", followed.name), help));
+                }
+                if seen.contains(&followed.name.as_str()) {
+                    let help = "one of them has to move by itself";
+                    return Err(fault(format!("it mimics itself by way of `{}`", followed.name), help));
+                }
+                seen.push(&followed.name);
+                joint = followed;
+            }
+            starts.push((first, start));
+        }
+        Ok(starts)
+    }
+
+    fn left_out(&self) -> Vec<String> {
+        let elements = self.robot.left_out.iter().map(|(name, count)| match count {
+            1 => format!("one <{name}> is left out"),
+            _ => format!("{count} <{name}> are left out"),
+        });
+        let dry = self.robot.joints.iter().filter(|joint| joint.friction != 0.0);
+        let dry = dry.map(|joint| {
+            format!("the dry friction {} of the joint `{}` is left out", joint.friction, joint.name)
+        });
+        elements.chain(dry).collect()
+    }
+
+    fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
+        let mut text = String::new();
+        let mut line = |line: String| {
+            text += &line;
+            text.push('\n');
+        };
+        let file = Path::new(self.source.name())
+            .file_name()
+            .map_or_else(|| "-".into(), |name| name.to_string_lossy());
+        line(format!("# Made of the URDF file {} by `pc import`.", one_line(&file)));
+        self.left_out().iter().for_each(|left| line(format!("# {}.", one_line(left))));
+        line("\n[model]".into());
+        line(format!("name = {}", quoted(&self.robot.name)));
+        line("\n[parameters]\ng = 9.81 # URDF says nothing of gravity".into());
+        for joint in self.robot.joints.iter().filter(|joint| self.is_damped(joint)) {
+            line(format!("{}_damping = {:?}", self.coordinates[joint.name.as_str()], joint.damping));
+        }
+        line("\n[gravity]\nacceleration = [0, 0, \"-g\"]".into());
+        let apart: Vec<_> = starts.iter().filter(|(_, start)| *start != 0.0).collect();
+        if !apart.is_empty() {
+            line("\n[coordinates]".into());
+            apart.iter().for_each(|(joint, start)| {
+                line(format!("{} = {start:?}", self.coordinates[joint.name.as_str()]));
+            });
+        }
+        for (link, joint) in &self.order {
+            line(self.body(link, *joint, floats));
+        }
+        if !starts.is_empty() {
+            line("\n[constraints]".into());
+        }
+        for (joint, _) in starts {
+            let (Some(mimic), own) = (&joint.mimic, &self.coordinates[joint.name.as_str()]) else { continue };
+            let other = &self.coordinates[mimic.joint.as_str()];
+            let factor = match mimic.multiplier {
+                1.0 => String::new(),
+                multiplier => format!("({multiplier:?})*"),
+            };
+            let offset = match mimic.offset {
+                0.0 => String::new(),
+                offset if offset < 0.0 => format!(" + {:?}", -offset),
+                offset => format!(" - {offset:?}"),
+            };
+            line(format!("mimic_{own} = \"{own} - {factor}{other}{offset}\""));
+        }
+        if self.robot.joints.iter().any(|joint| self.is_damped(joint)) {
+            line("\n[forces]".into());
+        }
+        for joint in self.robot.joints.iter().filter(|joint| self.is_damped(joint)) {
+            let x = &self.coordinates[joint.name.as_str()];
+            line(format!("\"{x}'\" = \"-{x}_damping*{x}'\""));
+        }
+        text
+    }
+
+    fn is_damped(&self, joint: &Joint) -> bool {
+        joint.damping != 0.0 && joint.kind.is_single()
+    }
+
+    /// The section of a body.
+    fn body(&self, link: &Link, joint: Option<&Joint>, floats: bool) -> String {
+        let mut text = format!("\n[bodies.{}]", self.bodies[link.name.as_str()]);
+        let mut line = |line: String| {
+            text.push('\n');
+            text += &line;
+        };
+        if link.name != self.bodies[link.name.as_str()] {
+            line(format!("# the link {}", one_line(&link.name)));
+        }
+        link.meshes.iter().for_each(|mesh| line(format!("# mesh: {}", one_line(mesh))));
+        match joint {
+            None => line(format!("joint = {{ kind = \"{}\" }}", if floats { "free" } else { "fixed" })),
+            Some(joint) => {
+                if !joint.limits.is_empty() {
+                    let limits: Vec<String> =
+                        joint.limits.iter().map(|(key, value)| format!("{key} {value}")).collect();
+                    line(format!("# limits of the joint {}: {}", one_line(&joint.name), limits.join(", ")));
+                }
+                line(format!("parent = \"{}\"", self.bodies[joint.parent.as_str()]));
+                line(self.joint(joint));
+            }
+        }
+        if let Some(inertial) = &link.inertial {
+            line(format!("mass = {:?}", inertial.mass));
+            if inertial.origin.xyz != [0.0; 3] {
+                line(format!("center = {}", list(&inertial.origin.xyz)));
+            }
+            line(format!("inertia = {}", list(&along_axes_of_the_link(inertial))));
+        }
+        text
+    }
+
+    fn joint(&self, joint: &Joint) -> String {
+        let kind = match joint.kind {
+            Kind::Fixed => "fixed",
+            Kind::Revolute | Kind::Continuous => "revolute",
+            Kind::Prismatic => "prismatic",
+            Kind::Floating => "free",
+            Kind::Planar => "planar",
+        };
+        let mut text = format!("joint = {{ kind = \"{kind}\"");
+        if joint.kind.is_single() || joint.kind == Kind::Planar {
+            let _ = write!(text, ", axis = {}", list(&joint.axis));
+        }
+        let Pose { xyz, rpy: [roll, pitch, yaw] } = joint.origin;
+        if xyz != [0.0; 3] {
+            let _ = write!(text, ", at = {}", list(&xyz));
+        }
+        let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);
+        let turns: Vec<String> =
+            turns.map(|(axis, angle)| format!("[\"{axis}\", {}]", self::angle(angle))).collect();
+        if !turns.is_empty() {
+            let _ = write!(text, ", turns = [{}]", turns.join(", "));
+        }
+        match self.coordinates.get(joint.name.as_str()) {
+            Some(x) if *x != self.bodies[joint.child.as_str()] => {
+                let _ = write!(text, ", coordinates = [\"{x}\"]");
+            }
+            _ => {}
+        }
+        text + " }"
+    }
+}
+
+/// An angle; what is a multiple of a quarter turn to the digits of a file is one.
+fn angle(angle: f64) -> String {
+    let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
+    if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {
+        return match quarters as i64 {
+            1 => "\"pi/2\"".into(),
+            -1 => "\"-pi/2\"".into(),
+            2 => "\"pi\"".into(),
+            -2 => "\"-pi\"".into(),
+            count => format!("\"{count}*pi/2\""),
+        };
+    }
+    format!("{angle:?}")
+}
+
+fn list(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers
+        .iter()
+        .map(|number| if *number == 0.0 { "0".into() } else { format!("{number:?}") })
+        .collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+/// R I Rᵀ with the rotation of the inertial's origin: three moments where the others vanish.
+fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
+    let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
+    let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let [roll, pitch, yaw] = inertial.origin.rpy;
+    let [xx, yy, zz, xy, yz, xz] = if inertial.origin.rpy == [0.0; 3] {
+        inertial.inertia
+    } else {
+        let product = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]| -> [[f64; 3]; 3] {
+            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|l| a[i][l] * b[l][j]).sum()))
+        };
+        let (a, b, c) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+        let about_x = [[1.0, 0.0, 0.0], [0.0, a.1, -a.0], [0.0, a.0, a.1]];
+        let about_y = [[b.1, 0.0, b.0], [0.0, 1.0, 0.0], [-b.0, 0.0, b.1]];
+        let about_z = [[c.1, -c.0, 0.0], [c.0, c.1, 0.0], [0.0, 0.0, 1.0]];
+        let r = product(&about_z, &product(&about_y, &about_x));
+        let transposed = std::array::from_fn(|i| std::array::from_fn(|j| r[j][i]));
+        let turned = product(&r, &product(&own, &transposed));
+        [turned[0][0], turned[1][1], turned[2][2], turned[0][1], turned[1][2], turned[0][2]]
+    };
+    match [xy, yz, xz] == [0.0; 3] {
+        true => vec![xx, yy, zz],
+        false => vec![xx, yy, zz, xy, yz, xz],
+    }
+}
+
+/// The name as far as it is one, made longer where it is taken.
+fn unused(name: &str, taken: &mut HashSet<String>) -> String {
+    let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if !is_name(&own) {
+        own.insert(0, '_');
+        own.truncate(200); // a name has at most 255 bytes
+    }
+    while !taken.insert(own.clone()) {
+        own.push('_');
+    }
+    own
+}
+
+fn quoted(text: &str) -> String {
+    let escaped: String = text
+        .chars()
+        .flat_map(|c| if c.is_control() { ' '.escape_default() } else { c.escape_default() })
+        .collect();
+    let plain = text.chars().all(|c| !c.is_control() && c != '"' && c != '\\');
+    if plain { format!("\"{text}\"") } else { format!("\"{}\"", escaped.replace("\\'", "'")) }
+}
+
+fn one_line(text: &str) -> String {
+    text.replace(|c: char| c.is_control() || pc_model::document::is_hidden(c), "\u{fffd}")
+}

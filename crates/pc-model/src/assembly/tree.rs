@@ -1,0 +1,108 @@
+//! Bodies on joints: their expressions, resolved and checked where they stand.
+
+use pc_mech::{Expr, Inertia, Tree};
+
+use crate::assembly::assembler::Assembler;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::{self, Expression, JointRotation};
+use crate::names::points::hung;
+use crate::names::stage::Stage;
+
+/// By how much a matrix of constants may miss being a rotation, and a quaternion its length: the rounding of numbers written
+/// with nine digits.
+const OFF: f64 = 1e-8;
+
+impl<'g> Assembler<'g, '_> {
+    /// The bodies on joints; `x_dot` are the symbols x' with b η + b_0. None where there are none.
+    pub(super) fn tree(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Option<Tree<'g>>, ModelError> {
+        let document = self.model.document();
+        if document.tree.is_empty() {
+            return Ok(None);
+        }
+        let mut bodies = Vec::with_capacity(document.tree.len());
+        for body in &document.tree {
+            let mut made = hung(body, self.scope.joint(&body.joint)?);
+            if let Some(mass) = &body.mass {
+                made = made.mass(self.scope.resolve(mass, Stage::Joint)?);
+            }
+            if let Some(center) = &body.center {
+                made = made.centre(self.scope.constants(center)?);
+            }
+            if let Some(inertia) = &body.inertia {
+                made = made.inertia(match inertia {
+                    document::Inertia::Principal(moments) => Inertia::from(self.scope.constants(moments)?),
+                    document::Inertia::Full(entries) => Inertia::from(self.scope.constants(entries)?),
+                });
+            }
+            if let Some(force) = &body.force {
+                made = made.force(self.all_dynamic(force, x_dot)?);
+            }
+            if let Some(torque) = &body.torque {
+                made = made.torque(self.all_dynamic(torque, x_dot)?);
+            }
+            bodies.push(made);
+        }
+        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error.into()))?;
+        Ok(Some(tree))
+    }
+
+    /// ẋ of the coordinates of joints, which come first, in terms of η.
+    pub(super) fn joint_velocities(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
+        let document = self.model.document();
+        let mut bodies = Vec::with_capacity(document.tree.len());
+        for body in &document.tree {
+            bodies.push(hung(body, self.scope.joint(&body.joint)?));
+        }
+        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error.into()))?;
+        Ok(tree.velocities())
+    }
+
+    /// That the rotations of joints are some, with these values of the parameters.
+    pub(super) fn check_rotations(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
+        for body in &self.model.document().tree {
+            if let Some(JointRotation::Matrix(entries)) = &body.joint.rotation {
+                let values = self.scope.constants(entries)?;
+                let r = self.graph.evaluate(&values, parameters).unwrap_or_default();
+                self.check_rotation(entries, &r)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_rotation(&self, entries: &[Expression; 9], r: &[f64]) -> Result<(), ModelError> {
+        let entry = |i: usize, j: usize| {
+            let product: f64 = (0..3).map(|l| r[3 * i + l] * r[3 * j + l]).sum();
+            (product - f64::from(u8::from(i == j))).abs()
+        };
+        // NaN is larger than what is allowed.
+        let defect = (0..9).map(|ij| entry(ij / 3, ij % 3)).fold(0.0, |a: f64, b| if b <= a { a } else { b });
+        let minor = |i: usize, j: usize| r[3 + i] * r[6 + j] - r[3 + j] * r[6 + i];
+        let determinant = r[0] * minor(1, 2) - r[1] * minor(0, 2) + r[2] * minor(0, 1);
+        if defect <= OFF && determinant > 0.0 {
+            return Ok(());
+        }
+        let (first, last) = (entries[0].whole(), entries[8].whole());
+        let place = crate::diagnostics::source::Place { span: first.span.start..last.span.end, ..first };
+        Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
+    }
+
+    /// That quaternions have length 1 at the start; `start` are the values of the coordinates.
+    pub(super) fn check_quaternions(&self, start: &[f64]) -> Result<(), ModelError> {
+        let document = self.model.document();
+        let mut first = 0;
+        for body in &document.tree {
+            let own = &start[first..first + body.joint.coordinates.len()];
+            if let Some(scalar) = body.joint.kind.quaternion() {
+                let length = own[scalar..].iter().fold(0.0, |length: f64, q| length.hypot(*q));
+                if (length - 1.0).abs() > OFF {
+                    let place = document.coordinates[first + scalar].expression.whole();
+                    let fault = MeaningError::QuaternionNotUnit { body: body.name.text.clone(), length };
+                    return Err(document.error(&place, fault));
+                }
+            }
+            first += own.len();
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,198 @@
+//! Bodies that hang on others by joints, as written.
+
+use crate::diagnostics::source::Place;
+use crate::document::contents::Inertia;
+use crate::document::expression::{Expression, Located, Name};
+
+/// What stands for the fixed axes where a body is named.
+pub const WORLD: &str = "world";
+
+/// A body that hangs on another, or on the world, by a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TreeBody {
+    /// Its label, outside the namespace of the model.
+    pub name: Name,
+    /// The section's header.
+    pub place: Place,
+    /// The body it hangs on; the world where it is left out.
+    pub parent: Option<Located<String>>,
+    /// How it hangs there.
+    pub joint: Joint,
+    /// Its mass; 0 where it is left out.
+    pub mass: Option<Expression>,
+    /// The mass centre in body axes, from the joint; the joint itself where it is left out.
+    pub center: Option<[Expression; 3]>,
+    /// Inertia about the mass centre, in body axes.
+    pub inertia: Option<Inertia>,
+    /// Force at the mass centre, along fixed axes.
+    pub force: Option<[Expression; 3]>,
+    /// Torque along body axes.
+    pub torque: Option<[Expression; 3]>,
+}
+
+impl TreeBody {
+    /// The body it hangs on, none where this is the world.
+    pub fn parent(&self) -> Option<&str> {
+        self.parent.as_ref().map(|parent| parent.value.as_str()).filter(|parent| *parent != WORLD)
+    }
+}
+
+/// How a body moves against the one it hangs on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Where it is written.
+    pub place: Place,
+    /// What it lets move.
+    pub kind: JointKind,
+    /// The directions that its kind has, in the joint's axes; of any length but 0.
+    pub axes: Vec<[f64; 3]>,
+    /// Of a screw, the advance per radian.
+    pub pitch: Option<Expression>,
+    /// Where it is, in the axes of the body it hangs on, from the origin of that; the origin where it is left out.
+    pub at: Option<[Expression; 3]>,
+    /// From the joint's axes to those of the body it hangs on; none where they are parallel.
+    pub rotation: Option<JointRotation>,
+    /// The names of its coordinates.
+    pub coordinates: Vec<Name>,
+    /// The names of its quasi-velocities, `x'` being the velocity of the coordinate `x`.
+    pub quasi_velocities: Vec<Name>,
+}
+
+impl Joint {
+    /// Whether each quasi-velocity is the velocity of the coordinate at its place.
+    pub fn is_plain(&self) -> bool {
+        self.kind.is_of_velocities()
+            && self.coordinates.iter().zip(&self.quasi_velocities).all(|(x, eta)| eta.text == prime(&x.text))
+    }
+}
+
+/// `x'`
+pub(crate) fn prime(coordinate: &str) -> String {
+    format!("{coordinate}'")
+}
+
+/// What a joint lets move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Nothing.
+    Fixed,
+    /// A turn about an axis.
+    Revolute,
+    /// A slide along an axis.
+    Prismatic,
+    /// A turn about an axis with an advance along it.
+    Screw,
+    /// A slide along an axis and a turn about it.
+    Cylindrical,
+    /// Turns about an axis of the one body and an axis of the other.
+    Universal,
+    /// Slides across a normal and a turn about it.
+    Planar,
+    /// All turns.
+    Spherical,
+    /// All motions.
+    Free,
+}
+
+impl JointKind {
+    /// The kinds by their words.
+    pub(crate) const ALL: &'static [(&'static str, JointKind)] = &[
+        ("fixed", JointKind::Fixed),
+        ("revolute", JointKind::Revolute),
+        ("prismatic", JointKind::Prismatic),
+        ("screw", JointKind::Screw),
+        ("cylindrical", JointKind::Cylindrical),
+        ("universal", JointKind::Universal),
+        ("planar", JointKind::Planar),
+        ("spherical", JointKind::Spherical),
+        ("free", JointKind::Free),
+    ];
+
+    /// How many axes it has.
+    pub fn axes(self) -> usize {
+        match self {
+            JointKind::Fixed | JointKind::Spherical | JointKind::Free => 0,
+            JointKind::Universal => 2,
+            _ => 1,
+        }
+    }
+
+    /// The names of the coordinates of a joint called `name`.
+    pub(crate) fn coordinates(self, name: &str) -> Vec<String> {
+        let ends: &[&str] = match self {
+            JointKind::Fixed => &[],
+            JointKind::Revolute | JointKind::Prismatic | JointKind::Screw => &[""],
+            JointKind::Cylindrical => &["_z", "_φ"],
+            JointKind::Universal => &["_1", "_2"],
+            JointKind::Planar => &["_x", "_y", "_φ"],
+            JointKind::Spherical => &["_q0", "_q1", "_q2", "_q3"],
+            JointKind::Free => &["_x", "_y", "_z", "_q0", "_q1", "_q2", "_q3"],
+        };
+        ends.iter().map(|end| format!("{name}{end}")).collect()
+    }
+
+    /// The names of its quasi-velocities, where its coordinates have these names.
+    pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
+        let ends: &[&str] = match self {
+            JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],
+            JointKind::Free => &["_v1", "_v2", "_v3", "_ω1", "_ω2", "_ω3"],
+            _ => return coordinates.iter().map(|x| prime(x)).collect(),
+        };
+        ends.iter().map(|end| format!("{name}{end}")).collect()
+    }
+
+    /// The place of the first component of its quaternion among its coordinates.
+    pub fn quaternion(self) -> Option<usize> {
+        match self {
+            JointKind::Spherical => Some(0),
+            JointKind::Free => Some(3),
+            _ => None,
+        }
+    }
+
+    /// Whether its quasi-velocities are the velocities of its coordinates.
+    pub fn is_of_velocities(self) -> bool {
+        self.quaternion().is_none()
+    }
+}
+
+/// A constant rotation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JointRotation {
+    /// The rows of the matrix.
+    Matrix(Box<[Expression; 9]>),
+    /// Turns about axes, 0 to 2, each about the axes as turned by those before it.
+    Turns(Vec<(usize, Expression)>),
+}
+
+/// A point of a body, whose place and attitude have names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Its label.
+    pub name: Name,
+    /// The body it belongs to.
+    pub body: Located<String>,
+    /// Where it is, in body axes from the origin of the body; this origin where it is left out.
+    pub at: Option<[Expression; 3]>,
+    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its body, row after row.
+    pub components: Vec<Name>,
+}
+
+impl Point {
+    const ENDS: [&'static str; 12] = ["x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33"];
+
+    pub(super) fn new(name: Name, body: Located<String>, at: Option<[Expression; 3]>) -> Point {
+        let component = |end| Name { text: format!("{}_{end}", name.text), place: name.place.clone() };
+        Point { components: Self::ENDS.map(component).to_vec(), name, body, at }
+    }
+
+    /// The body it belongs to, none where this is the world.
+    pub fn body(&self) -> Option<&str> {
+        Some(self.body.value.as_str()).filter(|body| *body != WORLD)
+    }
+
+    /// The number of a component.
+    pub fn component(&self, name: &str) -> Option<usize> {
+        self.components.iter().position(|component| component.text == name)
+    }
+}

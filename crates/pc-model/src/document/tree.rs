@@ -1,0 +1,222 @@
+//! The sections of bodies that hang on others by joints, and of points of bodies.
+
+use super::reader::{Item, Table};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::bodies::inertia;
+use crate::document::expression::Name;
+use crate::document::joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
+
+const KEYS: &[&str] = &["parent", "joint", "mass", "center", "inertia", "force", "torque"];
+const JOINT_KEYS: &[&str] =
+    &["kind", "axis", "axes", "pitch", "at", "rotation", "turns", "coordinates", "quasi_velocities"];
+pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
+const AXIS: &str = "axis = [0, 0, 1]";
+const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
+const AT: &str = "at = [0, 0, 0]";
+const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
+
+/// A body with an entry `joint`.
+pub(super) fn body(item: &Item<'_>, table: &Table<'_>) -> Result<TreeBody, ModelError> {
+    let name = item.new_label()?;
+    if name.text == WORLD {
+        return Err(item.key_error(ErrorKind::Reserved { name: name.text }));
+    }
+    let (mut parent, mut hangs, mut mass, mut center) = (None, None, None, None);
+    let (mut moments, mut force, mut torque) = (None, None, None);
+    for part in table.items() {
+        match part.key() {
+            "parent" => parent = Some(part.text()?),
+            "joint" => hangs = Some(joint(&part, item)?),
+            "mass" => mass = Some(part.expression()?),
+            "center" => center = Some(part.array("3 expressions", "center = [0, 0, \"l/2\"]")?),
+            "inertia" => moments = Some(inertia(&part)?),
+            "force" => force = Some(part.array("3 expressions", "force = [\"0\", \"0\", \"-m*g\"]")?),
+            "torque" => torque = Some(part.array("3 expressions", "torque = [\"0\", \"0\", \"M\"]")?),
+            "position" => return Err(placed_twice(&part, "position")),
+            "rotation" => return Err(placed_twice(&part, "rotation")),
+            "angular_velocity" => return Err(placed_twice(&part, "angular_velocity")),
+            _ => return Err(part.unknown(KEYS)),
+        }
+    }
+    let joint = hangs.ok_or_else(|| table.error(ErrorKind::Missing { key: "joint", example: JOINT }))?;
+    Ok(TreeBody {
+        name,
+        place: table.place.clone(),
+        parent,
+        joint,
+        mass,
+        center,
+        inertia: moments,
+        force,
+        torque,
+    })
+}
+
+fn placed_twice(part: &Item<'_>, second: &'static str) -> ModelError {
+    part.key_error(ErrorKind::Exclusive {
+        first: "joint",
+        second,
+        help: "a body with a joint has its place and its attitude from that: `at` and `rotation` are the joint's",
+    })
+}
+
+/// The joint at `item` of the body at `body`.
+fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
+    let table = item.table("a table", "{ kind = \"revolute\", axis = [0, 0, 1] }")?;
+    let (mut kind, mut axes, mut pitch, mut at, mut rotation) = (None, None, None, None, None);
+    let (mut coordinates, mut quasi_velocities) = (None, None);
+    for part in table.items() {
+        match part.key() {
+            "kind" => kind = Some(part.choice(JointKind::ALL)?),
+            "axis" => axes = Some((part.clone(), vec![direction(&part, AXIS)?])),
+            "axes" => {
+                let both = part.parts(&[2], "2 axes", AXES)?;
+                let both = both.iter().map(|axis| direction(axis, AXES));
+                axes = Some((part.clone(), both.collect::<Result<_, _>>()?));
+            }
+            "pitch" => pitch = Some((part.clone(), part.expression()?)),
+            "at" => at = Some(part.array("3 expressions", AT)?),
+            "rotation" | "turns" => {
+                let this = self::rotation(&part)?;
+                if rotation.replace(this).is_some() {
+                    return Err(part.key_error(ErrorKind::Exclusive {
+                        first: "rotation",
+                        second: "turns",
+                        help: "`rotation` has the nine entries of a matrix, `turns` angles about axes; give one of them",
+                    }));
+                }
+            }
+            "coordinates" => coordinates = Some(part),
+            "quasi_velocities" => quasi_velocities = Some(part),
+            _ => return Err(part.unknown(JOINT_KEYS)),
+        }
+    }
+    let missing = |key, example| table.error(ErrorKind::Missing { key, example });
+    let kind = kind.ok_or_else(|| missing("kind", "kind = \"revolute\""))?.value;
+    let axes = match (kind.axes(), axes) {
+        (0, None) => Vec::new(),
+        (1, None) => return Err(missing("axis", AXIS)),
+        (_, None) => return Err(missing("axes", AXES)),
+        (1, Some((part, list))) if list.len() == 1 => {
+            check_normal(kind, &part, list[0])?;
+            list
+        }
+        (2, Some((_, list))) if list.len() == 2 => list,
+        (_, Some((part, _))) => return Err(without_effect(&part, kind)),
+    };
+    let pitch = match (kind, pitch) {
+        (JointKind::Screw, None) => return Err(missing("pitch", "pitch = 0.01")),
+        (JointKind::Screw, Some((_, pitch))) => Some(pitch),
+        (_, Some((part, _))) => return Err(without_effect(&part, kind)),
+        (_, None) => None,
+    };
+    let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
+    let own: Vec<String> = coordinates.iter().map(|name| name.text.clone()).collect();
+    let usual = kind.quasi_velocities(body.key(), &own);
+    let quasi_velocities = match &quasi_velocities {
+        None if kind.is_of_velocities() => {
+            let velocity = |x: &Name| Name { text: prime(&x.text), place: x.place.clone() };
+            coordinates.iter().map(velocity).collect()
+        }
+        given => names(given.as_ref(), body, usual)?,
+    };
+    Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
+}
+
+/// The components of a direction.
+pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 3], ModelError> {
+    let components = item.parts(&[3], "3 numbers", example)?;
+    let mut direction = [0.0; 3];
+    for (value, component) in direction.iter_mut().zip(&components) {
+        *value = component.number()?.value;
+    }
+    match direction == [0.0; 3] {
+        true => Err(item.error(MeaningError::ZeroAxis)),
+        false => Ok(direction),
+    }
+}
+
+/// The slides of a planar joint are along the axes of the joint that follow its normal, so that this is one of them.
+fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<(), ModelError> {
+    if kind != JointKind::Planar
+        || (0..3).any(|i| normal[i] > 0.0 && normal[(i + 1) % 3] == 0.0 && normal[(i + 2) % 3] == 0.0)
+    {
+        return Ok(());
+    }
+    let found = format!("[{}, {}, {}]", normal[0], normal[1], normal[2]);
+    Err(part.error(ErrorKind::OutOfRange {
+        expected: "[1, 0, 0], [0, 1, 0] or [0, 0, 1] as the normal of a planar joint, whose axes `rotation` or `turns` can turn",
+        found,
+        example: AXIS,
+    }))
+}
+
+/// An entry that joints of this kind do not have.
+fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
+    let example = match kind.axes() {
+        0 => "kind = \"revolute\"",
+        1 if part.key() == "axes" => AXIS,
+        1 => "kind = \"screw\"",
+        _ => AXES,
+    };
+    part.key_error(ErrorKind::OfOtherJoints { key: part.key().to_owned(), example })
+}
+
+/// The names that an entry lists, else the usual ones.
+fn names(list: Option<&Item<'_>>, body: &Item<'_>, usual: Vec<String>) -> Result<Vec<Name>, ModelError> {
+    let Some(list) = list else {
+        return usual.into_iter().map(|name| body.derived_name(name)).collect();
+    };
+    let (expected, example) = match (usual.len(), list.key()) {
+        (0, _) => ("no names", "kind = \"fixed\""),
+        (1, "coordinates") => ("1 name", "coordinates = [\"x\"]"),
+        (2, "coordinates") => ("2 names", "coordinates = [\"x\", \"y\"]"),
+        (3, "coordinates") => ("3 names", "coordinates = [\"x\", \"y\", \"z\"]"),
+        (4, "coordinates") => ("4 names", "coordinates = [\"q0\", \"q1\", \"q2\", \"q3\"]"),
+        (_, "coordinates") => {
+            ("7 names", "coordinates = [\"x\", \"y\", \"z\", \"q0\", \"q1\", \"q2\", \"q3\"]")
+        }
+        (1, _) => ("1 name", "quasi_velocities = [\"u\"]"),
+        (2, _) => ("2 names", "quasi_velocities = [\"u\", \"v\"]"),
+        (3, _) => ("3 names", "quasi_velocities = [\"p\", \"q\", \"r\"]"),
+        (_, _) => ("6 names", "quasi_velocities = [\"u\", \"v\", \"w\", \"p\", \"q\", \"r\"]"),
+    };
+    list.parts(&[usual.len()], expected, example)?.iter().map(Item::value_as_name).collect()
+}
+
+fn rotation(part: &Item<'_>) -> Result<JointRotation, ModelError> {
+    if part.key() == "rotation" {
+        let example = "rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]";
+        return Ok(JointRotation::Matrix(Box::new(part.array("9 expressions", example)?)));
+    }
+    let turns = part.parts(&[1, 2, 3], "1 to 3 turns", TURNS)?;
+    let turn = |turn: &Item<'_>| {
+        let parts = turn.parts(&[2], "an axis and an angle", TURNS)?;
+        let axis = parts[0].choice(&[("x", 0), ("y", 1), ("z", 2)])?;
+        Ok((axis.value, parts[1].expression()?))
+    };
+    Ok(JointRotation::Turns(turns.iter().map(turn).collect::<Result<_, ModelError>>()?))
+}
+
+/// `[points.NAME]`
+pub(super) fn points(table: &Table<'_>) -> Result<Vec<Point>, ModelError> {
+    table.items().map(|item| point(&item)).collect()
+}
+
+fn point(item: &Item<'_>) -> Result<Point, ModelError> {
+    let name = item.new_name()?;
+    let table = item.section(&format!("points.{}", name.text), "[points.NAME]")?;
+    let (mut body, mut at) = (None, None);
+    for part in table.items() {
+        match part.key() {
+            "body" => body = Some(part.text()?),
+            "at" => at = Some(part.array("3 expressions", AT)?),
+            _ => return Err(part.unknown(&["body", "at"])),
+        }
+    }
+    let body =
+        body.ok_or_else(|| table.error(ErrorKind::Missing { key: "body", example: "body = \"…\"" }))?;
+    Ok(Point::new(name, body, at))
+}

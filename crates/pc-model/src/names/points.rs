@@ -1,0 +1,149 @@
+//! Bodies on joints as the mechanics knows them, and the points on them that have names.
+
+use std::collections::HashMap;
+
+use pc_mech::{Expr, Joint, Matrix, Tree, TreeBody};
+
+use crate::diagnostics::error::ModelError;
+use crate::document::{self, Expression, JointKind, JointRotation};
+use crate::names::scope::Scope;
+use crate::names::stage::Stage;
+
+impl<'g> Scope<'g, '_> {
+    /// Whether it is a component of a point.
+    pub(super) fn is_point(&self, name: &str) -> bool {
+        self.document.points.iter().any(|point| point.component(name).is_some())
+    }
+
+    /// A component of a point, as a function of the coordinates.
+    pub(super) fn point(&mut self, name: &str) -> Result<Expr<'g>, ModelError> {
+        let points = match self.points.take() {
+            Some(points) => points,
+            None => self.all_points()?,
+        };
+        let value = points.get(name).copied().unwrap_or(Expr::ZERO); // a point that there is
+        self.points = Some(points);
+        Ok(value)
+    }
+
+    fn all_points(&mut self) -> Result<HashMap<String, Expr<'g>>, ModelError> {
+        let document = self.document;
+        let mut bodies = Vec::with_capacity(document.tree.len());
+        for body in &document.tree {
+            bodies.push(hung(body, self.joint(&body.joint)?));
+        }
+        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))?;
+        let motions = tree.motions();
+        let mut points = HashMap::new();
+        for point in &document.points {
+            let mut at = [Expr::ZERO; 3];
+            for (value, part) in at.iter_mut().zip(point.at.iter().flatten()) {
+                *value = self.resolve(part, Stage::Joint)?;
+            }
+            let unit = || Matrix::from_fn(3, 3, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
+            let (origin, rotation) = match point.body() {
+                None => ([Expr::ZERO; 3], unit()),
+                Some(body) => (
+                    motions.place(body).unwrap_or([Expr::ZERO; 3]), // bodies of points are of the tree
+                    motions.rotation(body).unwrap_or_else(unit),
+                ),
+            };
+            let place = |i: usize| {
+                let arm = self.graph.dot((0..3).map(|j| rotation[(i, j)]), at.iter().copied());
+                origin[i] + arm
+            };
+            let rotation = (0..9).map(|ij| rotation[(ij / 3, ij % 3)]);
+            let values = (0..3).map(place).chain(rotation);
+            points.extend(point.components.iter().map(|name| name.text.clone()).zip(values));
+        }
+        Ok(points)
+    }
+
+    /// A joint, its constants resolved.
+    pub(crate) fn joint(&mut self, joint: &document::Joint) -> Result<Joint<'g>, ModelError> {
+        let made = match (joint.kind, joint.axes.as_slice()) {
+            (JointKind::Revolute, &[axis]) => Joint::revolute(axis),
+            (JointKind::Prismatic, &[axis]) => Joint::prismatic(axis),
+            (JointKind::Screw, &[axis]) => {
+                let pitch =
+                    joint.pitch.as_ref().map(|pitch| self.resolve(pitch, Stage::Joint)).transpose()?;
+                Joint::screw(axis, pitch.unwrap_or(Expr::ZERO))
+            }
+            (JointKind::Cylindrical, &[axis]) => Joint::cylindrical(axis),
+            (JointKind::Universal, &[first, second]) => Joint::universal(first, second),
+            (JointKind::Planar, &[normal]) => Joint::planar(normal),
+            (JointKind::Spherical, _) => Joint::spherical(),
+            (JointKind::Free, _) => Joint::free(),
+            _ => Joint::fixed(),
+        };
+        let named = |names: &[document::Name]| names.iter().map(|name| name.text.clone()).collect::<Vec<_>>();
+        let made = made.named(named(&joint.coordinates), named(&joint.quasi_velocities));
+        let made = match &joint.at {
+            Some(at) => made.at(self.constants(at)?),
+            None => made,
+        };
+        Ok(match &joint.rotation {
+            None => made,
+            Some(rotation) => made.rotated(&self.constant_rotation(rotation)?),
+        })
+    }
+
+    fn constant_rotation(&mut self, rotation: &JointRotation) -> Result<Matrix<Expr<'g>>, ModelError> {
+        match rotation {
+            JointRotation::Matrix(entries) => {
+                let entries = self.constants(entries)?;
+                Ok(Matrix::from_fn(3, 3, |i, j| entries[3 * i + j]))
+            }
+            JointRotation::Turns(turns) => {
+                let mut all = Matrix::from_fn(3, 3, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
+                for (axis, angle) in turns {
+                    let angle = self.resolve(angle, Stage::Joint)?;
+                    let turn = about(*axis, angle);
+                    let graph = self.graph;
+                    all = Matrix::from_fn(3, 3, |i, j| {
+                        graph.dot((0..3).map(|l| all[(i, l)]), (0..3).map(|l| turn[(l, j)]))
+                    });
+                }
+                Ok(all)
+            }
+        }
+    }
+
+    /// Functions of parameters.
+    pub(crate) fn constants<const N: usize>(
+        &mut self,
+        list: &[Expression; N],
+    ) -> Result<[Expr<'g>; N], ModelError> {
+        let mut values = [Expr::ZERO; N];
+        for (value, expression) in values.iter_mut().zip(list) {
+            *value = self.resolve(expression, Stage::Joint)?;
+        }
+        Ok(values)
+    }
+}
+
+/// A body of a tree on its joint.
+pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<'g> {
+    let hung = TreeBody::new(&body.name.text, joint);
+    match body.parent() {
+        Some(parent) => hung.on(parent),
+        None => hung,
+    }
+}
+
+/// The turn by an angle about the axis of that number.
+fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    Matrix::from_fn(3, 3, |i, j| match (i, j) {
+        (i, j) if i == j => {
+            if i == axis {
+                Expr::ONE
+            } else {
+                angle.cos()
+            }
+        }
+        (i, j) if (i, j) == (next, last) => -angle.sin(),
+        (i, j) if (i, j) == (last, next) => angle.sin(),
+        _ => Expr::ZERO,
+    })
+}

@@ -1,0 +1,13 @@
+//! Bodies on joints in text models: against the same bodies placed by hand, against mechanisms written in angles, loops and
+//! their reactions, what is refused and with which words, and robots in URDF.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod joints {
+    mod by_hand;
+    mod library;
+    mod loops;
+    mod refused;
+    mod run;
+    mod text;
+}
