@@ -259,5 +259,6 @@ pub use transform::quasi_velocities::QuasiVelocityChange;
 pub use transform::velocities::VelocityTransform;
 pub use tree::body::TreeBody;
 pub use tree::joint::Joint;
-pub use tree::kinematics::Motions;
+pub use tree::kinematics::{JointMotion, Motions};
+pub use tree::reactions::JointReaction;
 pub use tree::tree::Tree;

@@ -2,7 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use pc_mech::{Expr, Graph, Joint, Matrix, RigidBody, System, Tree, TreeBody, TreeError, VectorField};
+use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_mech::{
+    CompileOptions, Expr, Graph, Joint, Matrix, RigidBody, System, SystemBuilder, Tree, TreeBody,
+    TreeElimination, TreeError, VectorField,
+};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 
@@ -36,7 +40,7 @@ fn axis() -> impl Strategy<Value = [f64; 3]> {
     ]
 }
 
-fn hung(index: usize) -> impl Strategy<Value = Hung> {
+fn body(index: usize) -> impl Strategy<Value = Hung> {
     let vector = || prop::array::uniform3(-1.0..1.0f64);
     let tilt = prop_oneof![Just([0.0; 3]), vector()];
     let parts = (0..KINDS, axis(), axis(), 0..=index, vector(), tilt);
@@ -63,7 +67,7 @@ fn hung(index: usize) -> impl Strategy<Value = Hung> {
 }
 
 fn tree_of(count: usize) -> impl Strategy<Value = Vec<Hung>> {
-    (0..count).map(hung).collect::<Vec<_>>()
+    (0..count).map(body).collect::<Vec<_>>()
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -170,33 +174,47 @@ impl Hung {
 
 const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
 
+const LOAD: [f64; 3] = [0.5, -0.25, 0.125];
+const TORQUE: [f64; 3] = [-0.1, 0.2, 0.3];
+
+fn tree<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> Tree<'g> {
+    let hung = bodies.iter().enumerate().map(|(i, body)| {
+        let hung = TreeBody::new(format!("b{i}"), body.joint())
+            .mass(body.mass)
+            .centre(body.centre)
+            .inertia(inertia(&body.spread));
+        let hung = if loaded { hung.force(LOAD).torque(TORQUE) } else { hung };
+        match body.parent {
+            Some(parent) => hung.on(format!("b{parent}")),
+            None => hung,
+        }
+    });
+    Tree::new(graph, hung).unwrap()
+}
+
+fn names(list: &[Expr<'_>]) -> Vec<String> {
+    list.iter().map(Expr::to_string).collect()
+}
+
+/// A system that moves as the joints of a tree do.
+fn started<'g>(graph: &'g Graph, tree: &Tree<'g>, loaded: bool) -> SystemBuilder<'g> {
+    let velocities = tree.velocities();
+    let system = System::builder(graph)
+        .coordinates(names(&tree.coordinates()))
+        .quasi_velocities(names(&tree.quasi_velocities()))
+        .kinematics(|_, _, _| velocities);
+    if loaded { system.gravity(|_| GRAVITY.map(Expr::from)) } else { system }
+}
+
+fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
+    let tree = tree(graph, bodies, loaded);
+    started(graph, &tree, loaded).tree(tree).build().unwrap()
+}
+
 /// The tree, and the same bodies placed by hand.
 fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
-    let tree = Tree::new(
-        graph,
-        bodies.iter().enumerate().map(|(i, body)| {
-            let hung = TreeBody::new(format!("b{i}"), body.joint())
-                .mass(body.mass)
-                .centre(body.centre)
-                .inertia(inertia(&body.spread))
-                .force([0.5, -0.25, 0.125])
-                .torque([-0.1, 0.2, 0.3]);
-            match body.parent {
-                Some(parent) => hung.on(format!("b{parent}")),
-                None => hung,
-            }
-        }),
-    )
-    .unwrap();
-    let names = |list: Vec<Expr<'g>>| list.iter().map(Expr::to_string).collect::<Vec<_>>();
-    let start = || {
-        let velocities = tree.velocities();
-        System::builder(graph)
-            .coordinates(names(tree.coordinates()))
-            .quasi_velocities(names(tree.quasi_velocities()))
-            .kinematics(|_, _, _| velocities)
-            .gravity(|_| GRAVITY.map(Expr::from))
-    };
+    let tree = tree(graph, bodies, true);
+    let start = || started(graph, &tree, true);
     let x = tree.coordinates();
     let mut by_hand = start();
     let mut placed: Vec<([Expr<'g>; 3], Rows<'g>)> = Vec::new();
@@ -220,12 +238,11 @@ fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
                 inertia(&body.spread),
                 Matrix::from_fn(3, 3, |i, j| rotation[i][j]),
             )
-            .force([0.5, -0.25, 0.125])
-            .torque([-0.1, 0.2, 0.3])
+            .force(LOAD)
+            .torque(TORQUE)
         });
     }
-    let system = start().tree(tree).build().unwrap();
-    (system, by_hand.build().unwrap())
+    (hung(graph, bodies, true), by_hand.build().unwrap())
 }
 
 /// A state with unit quaternions.
@@ -255,32 +272,222 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs())) / largest
 }
 
-#[test]
-fn bodies_hung_by_joints_move_as_those_placed_by_hand() {
+/// Random trees of `count` bodies, with numbers for their states.
+fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
     let config = ProptestConfig {
-        cases: 24,
+        cases,
         rng_seed: RngSeed::Fixed(20),
         failure_persistence: None,
+        max_shrink_iters: 0, // smaller numbers are masses without inertia
         ..ProptestConfig::default()
     };
-    let strategy = (tree_of(3), prop::collection::vec(-1.0..1.0f64, 60));
+    let strategy = (tree_of(count), prop::collection::vec(-1.0..1.0f64, 20 * count));
     let outcome = TestRunner::new(config).run(&strategy, |(bodies, numbers)| {
         prop_assume!(bodies.iter().any(|body| body.kind != 0));
-        let graph = Graph::new();
-        let (hung, placed) = systems(&graph, &bodies);
-        let y = state(&bodies, &numbers);
-        let rates = |system: &System<'_>| -> Vec<f64> {
-            let mut motion = system.poincare().unwrap().compile().unwrap();
-            let mut rates = vec![0.0; y.len()];
-            motion.rhs(0.0, &y, &mut rates).unwrap();
-            rates
-        };
-        let (hung, placed) = (rates(&hung), rates(&placed));
-        // Condition of the mass matrix times rounding.
-        prop_assert!(difference(&hung, &placed) < 1e-10, "{hung:?}\n{placed:?}");
+        check(&bodies, &numbers);
         Ok(())
     });
     outcome.unwrap();
+}
+
+/// Condition of mass matrices of a few bodies times rounding.
+const ROUNDING: f64 = 1e-10;
+
+#[test]
+fn bodies_hung_by_joints_move_as_those_placed_by_hand() {
+    trees(16, 3, |bodies, numbers| {
+        let graph = Graph::new();
+        let (hung, placed) = systems(&graph, bodies);
+        let y = state(bodies, numbers);
+        let rates = |system: &System<'_>, elimination: TreeElimination| -> Vec<f64> {
+            let options = CompileOptions::default().jacobian(false).elimination(elimination);
+            system.poincare().unwrap().compile_for(options).unwrap().rates(0.0, &y).unwrap()
+        };
+        let placed = rates(&placed, TreeElimination::Whole);
+        for elimination in [TreeElimination::ByJoints, TreeElimination::Whole, TreeElimination::Shorter] {
+            let hung = rates(&hung, elimination);
+            assert!(difference(&hung, &placed) < ROUNDING, "{elimination:?}: {hung:?}\n{placed:?}");
+        }
+    });
+}
+
+/// A direction along which quaternions stay unit quaternions: off these what is derived in two ways is not the same function.
+fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut direction: Vec<f64> = numbers.take(y.len()).collect();
+    let mut first = 0;
+    for body in bodies {
+        let quaternion = match body.kind {
+            7 => first..first + 4,
+            8 => first + 3..first + 7,
+            _ => 0..0,
+        };
+        first += body.sizes().0;
+        let q = &y[quaternion.clone()];
+        let across: f64 = q.iter().zip(&direction[quaternion.clone()]).map(|(q, v)| q * v).sum();
+        direction[quaternion.clone()].iter_mut().zip(q).for_each(|(v, q)| *v -= across * q);
+    }
+    direction
+}
+
+#[test]
+fn joint_after_joint_is_the_whole_tree_at_once() {
+    trees(12, 3, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let direction = along_spheres(bodies, &y, numbers.iter().rev().copied());
+        let derivatives = |elimination: TreeElimination| {
+            let options = CompileOptions::default().jvp(true).elimination(elimination);
+            let mut motion = equations.compile_for(options).unwrap();
+            let n = y.len();
+            let (mut jacobian, mut product) = (vec![0.0; n * n], vec![0.0; n]);
+            motion.jacobian(0.0, &y, &mut jacobian).unwrap();
+            motion.jvp(0.0, &y, &direction, &mut product).unwrap();
+            let by_columns =
+                (0..n).map(|i| (0..n).map(|j| jacobian[j * n + i] * direction[j]).sum()).collect();
+            (motion.rates(0.0, &y).unwrap(), product, by_columns)
+        };
+        let (by_joints, whole) =
+            (derivatives(TreeElimination::ByJoints), derivatives(TreeElimination::Whole));
+        assert!(difference(&by_joints.0, &whole.0) < ROUNDING);
+        let products: [Vec<f64>; 4] = [by_joints.1, by_joints.2, whole.1, whole.2];
+        assert!(products.iter().all(|product| difference(product, &products[0]) < ROUNDING));
+    });
+}
+
+/// Values of expressions of (x, η, η̇).
+fn values(system: &System<'_>, expressions: &[Expr<'_>], y: &[f64], accelerations: &[f64]) -> Vec<f64> {
+    let inputs = Inputs {
+        time: Some(system.frame().time()),
+        state: system.state().into_iter().chain(system.accelerations()).collect(),
+        parameters: Vec::new(),
+    };
+    let program = Program::new(system.graph(), &inputs, expressions).unwrap();
+    let mut values = vec![0.0; expressions.len()];
+    let state = [y, accelerations].concat();
+    Evaluator::new(program, Backend::Interpreter).eval(0.0, &state, &[], &mut values);
+    values
+}
+
+#[test]
+fn inverse_dynamics_inverts_forward_dynamics() {
+    // More links than are looked at whole, so that both go from body to body.
+    trees(12, 8, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let rates =
+            equations.compile_for(CompileOptions::default().jacobian(false)).unwrap().rates(0.0, &y).unwrap();
+        let n = system.frame().coordinates().len();
+        let found = equations.inverse_dynamics();
+        let missing = values(&system, &found, &y, &rates[n..]);
+        let other: Vec<f64> = rates[n..].iter().map(|rate| rate + 1.0).collect();
+        let taken = values(&system, &found, &y, &other);
+        // Against what unit accelerations take.
+        let size = taken.iter().fold(1.0f64, |size, force| size.max(force.abs()));
+        assert!(missing.iter().all(|force| force.abs() < 1e-11 * size), "{missing:?} of {size}");
+    });
+}
+
+#[test]
+fn a_free_tree_keeps_its_momenta_and_its_energy() {
+    trees(16, 5, |bodies, numbers| {
+        let mut bodies = bodies.to_vec();
+        // One tree, with a free base.
+        for (i, body) in bodies.iter_mut().enumerate() {
+            body.parent = body.parent.or(i.checked_sub(1));
+        }
+        bodies[0].kind = 8;
+        let graph = Graph::new();
+        let system = hung(&graph, &bodies, false);
+        let y = state(&bodies, numbers);
+        let motion = system.poincare().unwrap().compile_for(CompileOptions::default().jacobian(false));
+        let rates = motion.unwrap().rates(0.0, &y).unwrap();
+        let tree = tree(&graph, &bodies, false);
+        let motions = tree.motions();
+        let mut kept = vec![Expr::ZERO; 7];
+        for body in tree.bodies() {
+            let linear = motions.momentum(body.name()).unwrap();
+            let angular = motions.angular_momentum(body.name()).unwrap();
+            for (kept, part) in kept.iter_mut().zip(linear.into_iter().chain(angular)) {
+                *kept += part;
+            }
+            kept[6] += motions.kinetic_energy(body.name()).unwrap();
+        }
+        let n = system.frame().coordinates().len();
+        let x = system.frame().coordinates().iter().copied().zip(tree.velocities());
+        let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
+        let along: Vec<_> = x.chain(eta).collect();
+        let change = values(&system, &graph.directional(&kept, &along), &y, &rates[n..]);
+        // Of the accelerations that would change it.
+        let size = rates.iter().fold(1.0f64, |size, rate| size.max(rate.abs()));
+        assert!(change.iter().all(|rate| rate.abs() < ROUNDING * size), "{change:?} of {size}");
+    });
+}
+
+/// Whether nothing between a body and the world moves.
+fn is_fixed(bodies: &[Hung], i: usize) -> bool {
+    bodies[i].kind == 0 && bodies[i].parent.is_none_or(|parent| is_fixed(bodies, parent))
+}
+
+#[test]
+fn what_joints_bear_changes_the_momenta() {
+    trees(8, 4, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let y = state(bodies, numbers);
+        let motion = system.poincare().unwrap().compile_for(CompileOptions::default().jacobian(false));
+        let rates = motion.unwrap().rates(0.0, &y).unwrap();
+        let tree = tree(&graph, bodies, true);
+        let motions = tree.motions();
+        let n = system.frame().coordinates().len();
+        let x = system.frame().coordinates().iter().copied().zip(tree.velocities());
+        let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
+        let along: Vec<_> = x.chain(eta).collect();
+        // The momentum of all is changed by weights, loads and what the joints of the world bear.
+        let mut change = [Expr::ZERO; 3];
+        let mut borne = [Expr::ZERO; 3];
+        let fixed = |i: usize| is_fixed(bodies, i);
+        for (i, body) in tree.bodies().iter().enumerate().filter(|(i, _)| !fixed(*i)) {
+            let rate = graph.directional(&motions.momentum(body.name()).unwrap(), &along);
+            for c in 0..3 {
+                change[c] += rate[c];
+                borne[c] += bodies[i].mass * GRAVITY[c] + LOAD[c];
+            }
+        }
+        for reaction in system.joint_reactions() {
+            let i = tree.bodies().iter().position(|body| body.name() == reaction.body()).unwrap();
+            // Bodies that hang on the world, or on what is fixed to it.
+            if bodies[i].parent.is_none_or(fixed) {
+                let rotation = motions.rotation(reaction.body()).unwrap();
+                for c in 0..3 {
+                    borne[c] += graph.dot(rotation.row(c).to_vec(), reaction.force().iter().copied());
+                }
+            }
+        }
+        let change = values(&system, &change, &y, &rates[n..]);
+        let borne = values(&system, &borne, &y, &rates[n..]);
+        assert!(difference(&change, &borne) < ROUNDING, "{change:?} {borne:?}");
+    });
+}
+
+#[test]
+fn a_pendulum_pulls_at_its_joint() {
+    let graph = Graph::new();
+    let [m, l, g] = graph.symbols(["m", "l", "g"]);
+    let bob = TreeBody::new("bob", Joint::revolute([0.0, 1.0, 0.0])).mass(m).centre([0.into(), 0.into(), -l]);
+    let pendulum = System::builder(&graph)
+        .coordinates(["bob"])
+        .gravity(|_| [0.into(), 0.into(), -g])
+        .tree(Tree::new(&graph, [bob]).unwrap())
+        .build()
+        .unwrap();
+    let [angle, rate] = graph.symbols(["bob", "bob'"]);
+    let tension = m * (g * angle.cos() + l * rate.square());
+    assert_eq!(pendulum.joint_reactions()[0].force()[2], tension);
+    assert_eq!(pendulum.joint_reactions()[0].moment()[1], pendulum.poincare().unwrap().inverse_dynamics()[0]);
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! In goes an [`Assembly`](pc_model::Assembly), out comes text. Read `form` and `derived` first, the equations with what belongs
 //! to them; then `sheet`, what is printed of them, and `operations`, what they cost; `part` and `layout`, headings and lines,
 //! with `lines` and `constraints`, words and columns, and `visible`, by which text of others is no more than text; then `text`,
-//! `latex` and `json`, the three ways to print, and `page`, which chooses.
+//! `latex` and `json`, the three ways to print, `bodies`, how large trees of bodies are printed, and `page`, which chooses.
 //! `theory` has what can be said of motions, `words` numbers and lists for it.
 //!
 //! ```
@@ -23,6 +23,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bodies;
 mod constraints;
 mod derived;
 mod form;

@@ -10,7 +10,7 @@ use crate::layout::Layout;
 use crate::operations::Operations;
 use crate::sheet::Sheet;
 use crate::visible::{one_line, visible, visible_json};
-use crate::{json, latex, text};
+use crate::{bodies, json, latex, text};
 
 /// How equations are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +36,13 @@ pub fn page(
 ) -> Result<String, ModelError> {
     let (name, derived) = Derived::new(form, assembly)?;
     let paper = assembly.system.graph().page(Folding::Structural);
+    let system = derived.equations.system();
+    if let (Form::Poincare, Some(tree)) = (form, system.large_tree()) {
+        let operations = assembly.placed(Operations::of(&derived.equations).map_err(MechError::from))?;
+        let heading = format!("{}: {name}", one_line(title));
+        let printed = bodies::page(&heading, (title, system, tree), &operations, (page, layout), &paper);
+        return Ok(if page == Page::Text { on_terminal(printed) } else { printed });
+    }
     let (name, sheet, operations) = match form.variables().filter(|variables| variables.has_momenta()) {
         Some(variables) => {
             let equations = assembly.placed(assembly.free_form(variables)?.system.canonical())?;

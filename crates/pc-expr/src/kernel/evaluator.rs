@@ -18,10 +18,10 @@ pub enum Backend {
 }
 
 /// Machine code of more operations would take longer to make, and more memory, than it saves.
-const LONGEST_MACHINE_CODE: usize = 100_000;
+const LONGEST_MACHINE_CODE: usize = 250_000;
 
 /// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made or the program has
-/// more than 100 000 operations.
+/// more than 250 000 operations.
 pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
     if program.code().len() <= LONGEST_MACHINE_CODE

@@ -1,5 +1,6 @@
 //! First-order systems whose rates contain the solution of linear equations.
 
+use std::cell::OnceCell;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -70,6 +71,13 @@ pub(crate) struct Implicit<'g> {
 pub(crate) struct TreeEquations<'g> {
     pub(crate) system: TreeSystem<'g>,
     pub(crate) dynamics: TreeDynamics<'g>,
+}
+
+impl TreeEquations<'_> {
+    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    pub(crate) fn is_large(&self) -> bool {
+        self.system.is_large()
+    }
 }
 
 impl<'g> FirstOrder<'g> {
@@ -232,8 +240,8 @@ pub(crate) struct Linearised<'a, 'g> {
     factors: &'a Factors<'g>,
     /// g, then F.
     rows: Vec<Expr<'g>>,
-    /// The rows that each symbol stands in, by its name.
-    rows_with: HashMap<Option<String>, Vec<usize>>,
+    /// The rows that each symbol stands in, by its name; known when derivatives by single symbols are asked for.
+    rows_with: OnceCell<HashMap<Option<String>, Vec<usize>>>,
     /// ∂g/∂w: what is not 0 in each row, with its column.
     coupling: Vec<SparseColumn<'g>>,
     /// The symbols w with their expressions in t and y.
@@ -252,20 +260,31 @@ impl<'a, 'g> Linearised<'a, 'g> {
         let nonzero = |row: &Vec<Expr<'g>>| sparse(&graph.substitute(row, &values));
         let coupling = system.coupling().iter().map(nonzero).collect();
         let rows: Vec<Expr<'g>> = system.rates.iter().copied().chain(system.balance()).collect();
-        let mut rows_with: HashMap<_, Vec<usize>> = HashMap::new();
-        for (place, &row) in rows.iter().enumerate() {
-            for symbol in graph.symbols_of(&[row]) {
-                rows_with.entry(symbol.symbol_name()).or_default().push(place);
+        Linearised { graph, factors, rows, rows_with: OnceCell::new(), coupling, values }
+    }
+
+    fn rows_with(&self) -> &HashMap<Option<String>, Vec<usize>> {
+        self.rows_with.get_or_init(|| {
+            let mut rows_with: HashMap<_, Vec<usize>> = HashMap::new();
+            for (place, &row) in self.rows.iter().enumerate() {
+                for symbol in self.graph.symbols_of(&[row]) {
+                    rows_with.entry(symbol.symbol_name()).or_default().push(place);
+                }
             }
-        }
-        Linearised { graph, factors, rows, rows_with, coupling, values }
+            rows_with
+        })
     }
 
     /// ẏ′ when each symbol of `direction` changes at the rate beside it.
     pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let graph = self.graph;
-        let places = direction.iter().filter_map(|(symbol, _)| self.rows_with.get(&symbol.symbol_name()));
-        let places: BTreeSet<usize> = places.flatten().copied().collect();
+        // Along all of the state every row changes.
+        let places: BTreeSet<usize> = if direction.len() >= self.coupling.len() {
+            (0..self.rows.len()).collect()
+        } else {
+            let of = |(symbol, _): &(Expr<'g>, Expr<'g>)| self.rows_with().get(&symbol.symbol_name());
+            direction.iter().filter_map(of).flatten().copied().collect()
+        };
         let moved: Vec<Expr<'g>> = places.iter().map(|&place| self.rows[place]).collect();
         let moved = graph.substitute(&graph.directional(&moved, direction), &self.values);
         let mut change = vec![Expr::ZERO; self.rows.len()];

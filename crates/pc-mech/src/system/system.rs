@@ -6,6 +6,7 @@ use pc_expr::{Expr, Graph};
 use crate::error::{FrameError, MechError, shape};
 use crate::system::bodies::velocity::Bodies;
 use crate::tree::system::TreeSystem;
+use crate::tree::tree::Tree;
 
 /// A holonomic system in quasi-velocities: ẋ = b η + b_0 (3), L(t, x, η) and generalised forces Q_s (8).
 ///
@@ -78,6 +79,16 @@ impl<'g> System<'g> {
     /// The parameters with their values, in the order of declaration.
     pub fn parameters(&self) -> &[(Expr<'g>, f64)] {
         &self.parameters
+    }
+
+    /// The bodies joined by joints, of a system that has no other inertia.
+    pub fn tree(&self) -> Option<&Tree<'g>> {
+        self.tree.as_ref().map(|tree| &tree.tree)
+    }
+
+    /// That tree, if its equations are too long to be written out whole: they are derived, compiled and printed from body to body.
+    pub fn large_tree(&self) -> Option<&Tree<'g>> {
+        self.tree().filter(|tree| tree.is_large())
     }
 
     /// The parameters that are [functions of time](crate::SystemBuilder::signal).

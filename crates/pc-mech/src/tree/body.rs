@@ -1,5 +1,6 @@
 //! A body of a tree.
 
+use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::system::bodies::rigid_body::Inertia;
@@ -69,6 +70,21 @@ impl<'g> TreeBody<'g> {
     #[must_use]
     pub fn torque(self, torque: [impl Into<Expr<'g>>; 3]) -> TreeBody<'g> {
         TreeBody { torque: torque.map(Into::into), ..self }
+    }
+
+    /// The name of the body that it hangs on; none is the world.
+    pub fn parent(&self) -> Option<&str> {
+        self.parent.as_deref()
+    }
+
+    /// Its mass m, mass centre c and inertia I about it, along body axes.
+    pub fn mass_properties(&self) -> (Expr<'g>, [Expr<'g>; 3], Matrix<Expr<'g>>) {
+        (self.mass, self.centre, self.inertia.matrix())
+    }
+
+    /// The force at its mass centre, along the axes of the world, and the torque, along body axes.
+    pub fn loads(&self) -> ([Expr<'g>; 3], [Expr<'g>; 3]) {
+        (self.force, self.torque)
     }
 
     /// Its name.

@@ -14,7 +14,7 @@
 
 use pc_expr::{Expr, Graph};
 
-use crate::tree::articulated::{Articulated, Spatial, force_seen, joined};
+use crate::tree::articulated::{Articulated, Eliminated, Spatial, force_seen, joined};
 use crate::tree::link::Link;
 use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, vector};
 use crate::tree::tree::{MassOnLink, Tree};
@@ -112,24 +112,42 @@ impl<'g> TreeDynamics<'g> {
         relative.into_iter().zip(&dropped).map(total).collect()
     }
 
-    /// τ less the forces that the accelerations `unknowns` take, link after link: zero where these are the right ones.
-    pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
+    /// The same with each mass where it is.
+    pub(crate) fn with_own_masses(self, tree: &Tree<'g>) -> TreeDynamics<'g> {
+        TreeDynamics { masses: (0..tree.links.len()).map(|link| tree.mass_on(link)).collect(), ..self }
+    }
+
+    /// The moments and forces on the links by their joints that the accelerations `unknowns` take, beside `loads`.
+    pub(crate) fn forces_on_joints(
+        &self,
+        unknowns: &[Vec<Expr<'g>>],
+        loads: &[Spatial<'g>],
+    ) -> Vec<Spatial<'g>> {
         let graph = self.graph;
         let (motions, _) = self.motions(Some(unknowns));
-        let mut forces: Vec<Spatial<'g>> =
-            motions.iter().zip(&self.masses).map(|(motion, mass)| motion.force(graph, mass)).collect();
-        let mut balance = Vec::with_capacity(self.links.len());
+        let taken =
+            |((motion, mass), load): ((&Acceleration<'g>, &MassOnLink<'g>), &Spatial<'g>)| -> Spatial<'g> {
+                let force = motion.force(graph, mass);
+                std::array::from_fn(|c| graph.keep(force[c] - load[c]))
+            };
+        let mut forces: Vec<Spatial<'g>> = motions.iter().zip(&self.masses).zip(loads).map(taken).collect();
         for (i, link) in self.articulated.links.iter().enumerate().rev() {
-            let p = forces[i];
-            let left = link.freedoms.iter().zip(&self.applied[i]);
-            balance.push(left.map(|(freedom, &applied)| applied - freedom.along(&p)).collect());
             if let Some(parent) = link.parent {
-                let seen = force_seen(graph, &link.turning, &link.place, &p);
+                let seen = force_seen(graph, &link.turning, &link.place, &forces[i]);
                 forces[parent] = std::array::from_fn(|c| graph.keep(forces[parent][c] + seen[c]));
             }
         }
-        balance.reverse();
-        balance
+        forces
+    }
+
+    /// τ less the forces that the accelerations `unknowns` take, link after link: zero where these are the right ones.
+    pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
+        let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
+        let left = |(i, link): (usize, &Eliminated<'g>)| {
+            let applied = link.freedoms.iter().zip(&self.applied[i]);
+            applied.map(|(freedom, &applied)| applied - freedom.along(&forces[i])).collect()
+        };
+        self.articulated.links.iter().enumerate().map(left).collect()
     }
 
     /// How the links accelerate with these η̇, or in the reference motion, of which the components left out are answered.

@@ -1,12 +1,12 @@
 //! How bodies move: from each body to those that hang on it.
 
-use pc_algebra::{LieGroup, Side, UnitQuaternions};
+use pc_algebra::{LieGroup, Matrix, Side, UnitQuaternions};
 use pc_expr::{Expr, Graph};
 
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{
-    Tensor, Vector, ZERO, add, apply, apply_transpose, cross, entries_of, product, scaled, tensor, unit,
-    vector,
+    Tensor, Vector, ZERO, add, apply, apply_transpose, cross, dot, entries_of, matrix_of, product, scaled,
+    tensor, transpose, unit, vector,
 };
 use crate::tree::tree::{Stand, Tree};
 
@@ -58,7 +58,7 @@ impl<'a, 'g> Motions<'a, 'g> {
     }
 
     pub(crate) fn of_body(&self, name: &str) -> Option<(LinkMotion<'g>, Stand<'g>)> {
-        let body = self.tree.bodies.iter().position(|body| body.name == name)?;
+        let body = self.tree.place_of(name)?;
         let stand = self.tree.stands[body];
         Some((self.of_stand(&stand), stand))
     }
@@ -80,6 +80,99 @@ impl<'a, 'g> Motions<'a, 'g> {
     pub fn angular_velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let graph = self.tree.graph;
         self.of_body(body).map(|(motion, stand)| apply_transpose(graph, &stand.rotation, &motion.omega))
+    }
+}
+
+/// How a body moves against its parent.
+#[derive(Clone, Debug)]
+pub struct JointMotion<'g> {
+    /// From the axes of the body to those of its parent, 3 × 3.
+    pub rotation: Matrix<Expr<'g>>,
+    /// The place of the origin of the body, along the axes of its parent from the origin of this.
+    pub place: [Expr<'g>; 3],
+    /// Its angular velocity against the parent, along its axes.
+    pub angular_velocity: [Expr<'g>; 3],
+    /// The velocity of its origin against the parent, along its axes.
+    pub velocity: [Expr<'g>; 3],
+    /// The quasi-velocities of the joint.
+    pub quasi_velocities: Vec<Expr<'g>>,
+}
+
+impl<'g> Tree<'g> {
+    /// How a body moves against its parent, or the world: what its joint does.
+    pub fn joint_motion(&self, body: &str) -> Option<JointMotion<'g>> {
+        let (graph, i) = (self.graph, self.place_of(body)?);
+        let world = Stand { link: None, place: ZERO, rotation: unit() };
+        let parent = self.bodies[i].parent.as_ref().and_then(|parent| self.place_of(parent));
+        let parent = parent.map_or(world, |parent| self.stands[parent]);
+        let mut moved = AT_REST();
+        for link in &self.links[self.own[i].clone()] {
+            moved = link.motion(graph, &moved);
+        }
+        let stand = &self.stands[i];
+        let place = add(&moved.place, &apply(graph, &moved.rotation, &stand.place));
+        let from_parent = vector(|c| place[c] - parent.place[c]);
+        let rotation =
+            product(graph, &product(graph, &transpose(&parent.rotation), &moved.rotation), &stand.rotation);
+        let links = &self.links[self.own[i].clone()];
+        Some(JointMotion {
+            rotation: matrix_of(&rotation),
+            place: apply_transpose(graph, &parent.rotation, &from_parent),
+            angular_velocity: apply_transpose(graph, &stand.rotation, &moved.omega),
+            velocity: apply_transpose(graph, &stand.rotation, &moved.velocity),
+            quasi_velocities: links.iter().flat_map(|link| link.hinge.quasi_velocities()).collect(),
+        })
+    }
+}
+
+impl<'g> Motions<'_, 'g> {
+    /// The velocity of the mass centre along the axes of the link, with the place of this there.
+    fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {
+        let (graph, stand) = (self.tree.graph, &self.tree.stands[body]);
+        let motion = self.of_stand(stand);
+        let centre = stand.point(graph, &self.tree.bodies[body].centre);
+        let velocity = add(&motion.velocity, &cross(&motion.omega, &centre));
+        (motion, centre, velocity)
+    }
+
+    /// ½ m |v_c|² + ½ ω·Iω of a body.
+    pub fn kinetic_energy(&self, body: &str) -> Option<Expr<'g>> {
+        let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
+        let (motion, _, velocity) = self.centre(i);
+        let spin = apply(graph, &self.tree.stands[i].inertia(graph, &self.tree.bodies[i]), &motion.omega);
+        let moving = self.tree.bodies[i].mass * dot(graph, &velocity, &velocity);
+        Some((moving + dot(graph, &motion.omega, &spin)) / 2.0)
+    }
+
+    /// m v_c of a body, along the axes of the world.
+    pub fn momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let i = self.tree.place_of(body)?;
+        let (motion, _, velocity) = self.centre(i);
+        Some(scaled(self.tree.bodies[i].mass, &apply(self.tree.graph, &motion.rotation, &velocity)))
+    }
+
+    /// r_c × m v_c + I ω of a body: its angular momentum about the origin of the world, along the axes of this.
+    pub fn angular_momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
+        let (motion, centre, velocity) = self.centre(i);
+        let spin = apply(graph, &self.tree.stands[i].inertia(graph, &self.tree.bodies[i]), &motion.omega);
+        let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
+        let momentum = scaled(self.tree.bodies[i].mass, &apply(graph, &motion.rotation, &velocity));
+        Some(add(&cross(&place, &momentum), &apply(graph, &motion.rotation, &spin)))
+    }
+
+    /// Σ m r_c/Σ m of all bodies, along the axes of the world.
+    pub fn centre_of_mass(&self) -> [Expr<'g>; 3] {
+        let graph = self.tree.graph;
+        let masses = graph.sum(self.tree.bodies.iter().map(|body| body.mass));
+        let places: Vec<Vector<'g>> = (0..self.tree.bodies.len())
+            .map(|i| {
+                let (motion, centre, _) = self.centre(i);
+                let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
+                scaled(self.tree.bodies[i].mass, &place)
+            })
+            .collect();
+        vector(|c| graph.sum(places.iter().map(|place| place[c])) / masses)
     }
 }
 

@@ -71,6 +71,15 @@ impl<'g> TreeSystem<'g> {
         TreeDynamics::new(&self.tree, self.gravity, applied)
     }
 
+    /// Q + X U without the forces and torques on its bodies: the forces on its joints.
+    fn joint_forces(&self, system: &System<'g>) -> Vec<Expr<'g>> {
+        let graph = self.tree.graph;
+        let frame = &system.frame;
+        let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
+        let loads = self.tree.motions().share(&self.gravity, &system.quasi_velocities).forces;
+        (0..slopes.len()).map(|s| system.forces[s] + slopes[s] - loads[s]).collect()
+    }
+
     /// Components given link after link, in the order of the quasi-velocities of the system.
     pub(crate) fn in_order(&self, by_link: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let count = self.places.iter().map(Vec::len).sum();
@@ -94,6 +103,14 @@ impl<'g> TreeSystem<'g> {
             others: put(self.others),
             places: self.places.clone(),
         }
+    }
+}
+
+impl<'g> System<'g> {
+    /// The generalised forces on the joints of its [tree](System::tree), k of them: of Q + X U what does not come from forces
+    /// and torques on bodies, or from their weight. Without a tree it is Q.
+    pub fn joint_forces(&self) -> Vec<Expr<'g>> {
+        self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
     }
 }
 

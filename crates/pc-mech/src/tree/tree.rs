@@ -1,6 +1,7 @@
 //! The tree: which body hangs on which, and what moves it.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph};
@@ -53,8 +54,8 @@ pub struct Tree<'g> {
     pub(crate) stands: Vec<Stand<'g>>,
     /// Each after the one that it hangs on.
     pub(crate) links: Vec<Link<'g>>,
-    /// The links in the order in which the bodies they belong to are declared.
-    declared: Vec<usize>,
+    /// The links of each body.
+    pub(crate) own: Vec<Range<usize>>,
 }
 
 /// Elementary joints up to which a tree is also looked at as a whole: the equations of more do not fit on a page.
@@ -83,7 +84,7 @@ impl<'g> Tree<'g> {
     ) -> Result<Tree<'g>, MechError> {
         let bodies: Vec<TreeBody<'g>> = bodies.into_iter().collect();
         let order = from_root_to_tip(&bodies)?;
-        let mut tree = Tree { graph, stands: Vec::new(), links: Vec::new(), declared: Vec::new(), bodies };
+        let mut tree = Tree { graph, stands: Vec::new(), links: Vec::new(), own: Vec::new(), bodies };
         let world = Stand { link: None, place: ZERO, rotation: unit() };
         let mut stands = vec![world; tree.bodies.len()];
         let mut own = vec![0..0; tree.bodies.len()];
@@ -92,29 +93,29 @@ impl<'g> Tree<'g> {
             stands[body] = tree.hang(body, parent.map_or(world, |parent| stands[parent]))?;
             own[body] = first..tree.links.len();
         }
-        tree.declared = own.into_iter().flatten().collect();
+        tree.own = own;
         tree.stands = stands;
         Ok(tree)
     }
 
     /// x, joint after joint.
     pub fn coordinates(&self) -> Vec<Expr<'g>> {
-        self.declared.iter().flat_map(|&link| self.links[link].hinge.coordinates()).collect()
+        self.declared().flat_map(|link| self.links[link].hinge.coordinates()).collect()
     }
 
     /// η, joint after joint.
     pub fn quasi_velocities(&self) -> Vec<Expr<'g>> {
-        self.declared.iter().flat_map(|&link| self.links[link].hinge.quasi_velocities()).collect()
+        self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
     }
 
     /// ẋ in terms of η (3).
     pub fn velocities(&self) -> Vec<Expr<'g>> {
-        self.declared.iter().flat_map(|&link| rates(self.graph, &self.links[link].hinge)).collect()
+        self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
     }
 
     /// |q|² of each quaternion, which are 1.
     pub fn norms(&self) -> Vec<(String, Expr<'g>)> {
-        let quaternions = self.declared.iter().filter_map(|&link| match &self.links[link].hinge {
+        let quaternions = self.declared().filter_map(|link| match &self.links[link].hinge {
             Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(quaternion),
             Hinge::Turn { .. } | Hinge::Slide { .. } => None,
         });
@@ -130,6 +131,22 @@ impl<'g> Tree<'g> {
     /// How all bodies move, as expressions of x and η.
     pub fn motions(&self) -> Motions<'_, 'g> {
         Motions::of(self)
+    }
+
+    /// The coordinates of the joint of a body; none of a body that there is not.
+    pub fn joint_coordinates(&self, body: &str) -> Vec<Expr<'g>> {
+        let links = self.place_of(body).map_or(0..0, |body| self.own[body].clone());
+        self.links[links].iter().flat_map(|link| link.hinge.coordinates()).collect()
+    }
+
+    /// The place of a body in the order of declaration.
+    pub(crate) fn place_of(&self, body: &str) -> Option<usize> {
+        self.bodies.iter().position(|known| known.name == body)
+    }
+
+    /// The links in the order in which the bodies they belong to are declared.
+    fn declared(&self) -> impl Iterator<Item = usize> {
+        self.own.iter().cloned().flatten()
     }
 
     /// Adds the links of a body, and answers where it stands.

@@ -1,5 +1,6 @@
 //! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
 
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
@@ -19,7 +20,7 @@ pub(crate) struct Unrolled {
     rates: Evaluator,
     outputs: Vec<f64>,
     pivots: Pivots,
-    jacobian: Option<Columns>,
+    jacobian: Option<Jacobian>,
     /// Of the state (y, v).
     jvp: Option<Evaluator>,
     /// y, v
@@ -27,6 +28,16 @@ pub(crate) struct Unrolled {
     parameter_jacobian: Option<Columns>,
     time_derivative: Option<Columns>,
     observables: Evaluator,
+}
+
+/// ∂ẏ/∂y
+#[derive(Clone, Debug)]
+enum Jacobian {
+    /// Each entry an expression.
+    Columns(Columns),
+    /// Column after column as products with unit vectors: of large trees, whose entries would be as many expressions as there are
+    /// pairs of bodies, each of them long.
+    Products(Pattern),
 }
 
 impl Unrolled {
@@ -43,20 +54,27 @@ impl Unrolled {
         let outputs: Vec<Expr<'_>> = rates.iter().chain(&moving).copied().collect();
         let program = Program::new(graph, &inputs, &outputs)?;
 
-        let linearised = Linearised::new(system, &factors, &unknowns);
+        let linearised = LazyCell::new(|| Linearised::new(system, &factors, &unknowns));
         let columns = |wanted: bool, symbols: &[Expr<'_>]| {
             wanted
                 .then(|| Columns::new(graph, &inputs, linearised.columns(symbols), options.backend))
                 .transpose()
         };
+        let by_products = system.tree.as_ref().is_some_and(|tree| tree.is_large());
+        let wants_products = options.jvp || options.jacobian && by_products;
         let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
         let observed = Program::new(graph, &inputs, &graph.substitute(&observed, &values))?;
         Ok(Unrolled {
             outputs: vec![0.0; program.outputs_len()],
             rates: Evaluator::new(program, options.backend),
             pivots,
-            jacobian: columns(options.jacobian, &system.state)?,
-            jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
+            jacobian: match options.jacobian {
+                true if by_products => {
+                    Some(Jacobian::Products(Pattern::full(system.state.len(), system.state.len())))
+                }
+                wanted => columns(wanted, &system.state)?.map(Jacobian::Columns),
+            },
+            jvp: wants_products.then(|| jvp(system, &linearised, options.backend)).transpose()?,
             known: vec![0.0; 2 * system.state.len()],
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: columns(options.time_derivative, &[system.time])?,
@@ -129,7 +147,23 @@ impl Unrolled {
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
         let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
-        jacobian.eval(Point { t, y, p }, entries, storage)
+        match jacobian {
+            Jacobian::Columns(columns) => columns.eval(Point { t, y, p }, entries, storage),
+            // Full in both storages.
+            Jacobian::Products(_) => {
+                let what = "product with its Jacobian";
+                let jvp = self.jvp.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
+                self.known[..y.len()].copy_from_slice(y);
+                self.known[y.len()..].fill(0.0);
+                for (column, entries) in entries.chunks_exact_mut(y.len()).enumerate() {
+                    self.known[y.len() + column] = 1.0;
+                    jvp.eval(t, &self.known, p, entries);
+                    self.known[y.len() + column] = 0.0;
+                    check_finite(entries, jvp, Point { t, y: &self.known, p })?;
+                }
+                Ok(())
+            }
+        }
     }
 
     pub(crate) fn parameter_jacobian(
@@ -168,7 +202,10 @@ impl Unrolled {
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
-        self.jacobian.as_ref().map(Columns::pattern)
+        self.jacobian.as_ref().map(|jacobian| match jacobian {
+            Jacobian::Columns(columns) => columns.pattern(),
+            Jacobian::Products(pattern) => pattern,
+        })
     }
 }
 

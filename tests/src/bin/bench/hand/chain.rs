@@ -4,13 +4,27 @@
 //! Featherstone's articulated-body algorithm as one writes it for this chain: three-vectors along body axes, classical accelerations
 //! replaced by velocity products, zeros of the axis and of the offset used, all sines and cosines first.
 
+use std::hint::black_box;
+
 use super::{Hand, fma, for_this_host};
 
 const GRAVITY: f64 = 9.81;
-const CENTRE: f64 = -0.5;
-const BELOW: f64 = -1.0;
-/// About the joint.
-const INERTIA: [f64; 3] = [0.10 + CENTRE * CENTRE, 0.12 + CENTRE * CENTRE, 0.05];
+
+/// What a link is. The compiler does not know the numbers: so it is in the libraries of robotics.
+#[derive(Clone, Copy)]
+struct Constants {
+    mass: f64,
+    /// m c
+    moment: f64,
+    /// To the next joint.
+    below: f64,
+    /// About the joint.
+    inertia: Vector,
+}
+
+fn constants() -> Constants {
+    black_box(Constants { mass: 1.0, moment: -0.5, below: -1.0, inertia: [0.35, 0.37, 0.05] })
+}
 
 type Vector = [f64; 3];
 
@@ -55,16 +69,22 @@ fn turned<const FMA: bool>(axis: usize, cos: f64, sin: f64, v: Vector) -> Vector
 
 /// v + ω × r for r one link down.
 #[inline(always)]
-fn carried<const FMA: bool>(v: Vector, omega: Vector) -> Vector {
-    [fma::<FMA>(omega[1], BELOW, v[0]), fma::<FMA>(-omega[0], BELOW, v[1]), v[2]]
+fn carried<const FMA: bool>(v: Vector, omega: Vector, below: f64) -> Vector {
+    [fma::<FMA>(omega[1], below, v[0]), fma::<FMA>(-omega[0], below, v[1]), v[2]]
 }
 
 impl Link {
     #[inline(always)]
-    fn new<const FMA: bool>(axis: usize, (sin, cos): (f64, f64), rate: f64, parent: &Link) -> Link {
+    fn new<const FMA: bool>(
+        axis: usize,
+        (sin, cos): (f64, f64),
+        rate: f64,
+        parent: &Link,
+        below: f64,
+    ) -> Link {
         let (p, q) = next(axis);
         let mut omega = turned::<FMA>(axis, cos, -sin, parent.omega);
-        let velocity = turned::<FMA>(axis, cos, -sin, carried::<FMA>(parent.velocity, parent.omega));
+        let velocity = turned::<FMA>(axis, cos, -sin, carried::<FMA>(parent.velocity, parent.omega, below));
         omega[axis] += rate;
         let (mut turning, mut moving) = ([0.0; 3], [0.0; 3]);
         (turning[p], turning[q]) = (omega[q] * rate, -omega[p] * rate);
@@ -74,27 +94,29 @@ impl Link {
 
     /// Adds the link itself, eliminates its joint, and answers what the parent feels about its own joint.
     #[inline(always)]
-    fn eliminate<const FMA: bool>(&mut self, axis: usize, on: &Articulated) -> Articulated {
+    fn eliminate<const FMA: bool>(&mut self, axis: usize, on: &Articulated, of: &Constants) -> Articulated {
         let (p, q) = next(axis);
         let Link { cos, sin, omega: w, velocity: v, turning, moving, .. } = *self;
         let Articulated { mut j, mut h, mut m, mut n, mut f } = *on;
         // Momenta of the link about its joint.
-        let of_mass = [fma::<FMA>(w[1], CENTRE, v[0]), fma::<FMA>(-w[0], CENTRE, v[1]), v[2]];
+        let Constants { mass, moment, below, inertia } = *of;
+        let of_mass =
+            [fma::<FMA>(w[1], moment, mass * v[0]), fma::<FMA>(-w[0], moment, mass * v[1]), mass * v[2]];
         let spin = [
-            fma::<FMA>(-CENTRE, v[1], INERTIA[0] * w[0]),
-            fma::<FMA>(CENTRE, v[0], INERTIA[1] * w[1]),
-            INERTIA[2] * w[2],
+            fma::<FMA>(-moment, v[1], inertia[0] * w[0]),
+            fma::<FMA>(moment, v[0], inertia[1] * w[1]),
+            inertia[2] * w[2],
         ];
         for i in 0..3 {
             let (k, l) = next(i);
-            j[i][i] += INERTIA[i];
-            m[i][i] += 1.0;
+            j[i][i] += inertia[i];
+            m[i][i] += mass;
             n[i] += fma::<FMA>(w[k], spin[l], -(w[l] * spin[k]))
                 + fma::<FMA>(v[k], of_mass[l], -(v[l] * of_mass[k]));
             f[i] += fma::<FMA>(w[k], of_mass[l], -(w[l] * of_mass[k]));
         }
-        h[0][1] -= CENTRE;
-        h[1][0] += CENTRE;
+        h[0][1] -= moment;
+        h[1][0] += moment;
 
         let inverse = 1.0 / j[axis][axis];
         let (column, row) = ([j[0][axis], j[1][axis], j[2][axis]], h[axis]);
@@ -162,24 +184,24 @@ impl Link {
             turned_mass[r][c] = turned_mass[c][r];
         }
 
-        // About the joint of the parent, r = (0, 0, BELOW): G = Hᵀ − M r̂, J ← J − H r̂ + r̂ G, H ← Gᵀ.
+        // About the joint of the parent, r = (0, 0, below): G = Hᵀ − M r̂, J ← J − H r̂ + r̂ G, H ← Gᵀ.
         let mut g = [[0.0; 3]; 3];
         for i in 0..3 {
-            g[i][0] = fma::<FMA>(-BELOW, turned_mass[i][1], h[0][i]);
-            g[i][1] = fma::<FMA>(BELOW, turned_mass[i][0], h[1][i]);
+            g[i][0] = fma::<FMA>(-below, turned_mass[i][1], h[0][i]);
+            g[i][1] = fma::<FMA>(below, turned_mass[i][0], h[1][i]);
             g[i][2] = h[2][i];
         }
-        j[0][0] = fma::<FMA>(-BELOW, h[0][1] + g[1][0], j[0][0]);
-        j[0][1] = fma::<FMA>(BELOW, h[0][0] - g[1][1], j[0][1]);
-        j[0][2] = fma::<FMA>(-BELOW, g[1][2], j[0][2]);
-        j[1][1] = fma::<FMA>(BELOW, h[1][0] + g[0][1], j[1][1]);
-        j[1][2] = fma::<FMA>(BELOW, g[0][2], j[1][2]);
+        j[0][0] = fma::<FMA>(-below, h[0][1] + g[1][0], j[0][0]);
+        j[0][1] = fma::<FMA>(below, h[0][0] - g[1][1], j[0][1]);
+        j[0][2] = fma::<FMA>(-below, g[1][2], j[0][2]);
+        j[1][1] = fma::<FMA>(below, h[1][0] + g[0][1], j[1][1]);
+        j[1][2] = fma::<FMA>(below, g[0][2], j[1][2]);
         (j[1][0], j[2][0], j[2][1]) = (j[0][1], j[0][2], j[1][2]);
         let mut about = [[0.0; 3]; 3];
         for (r, row) in about.iter_mut().enumerate() {
             *row = [g[0][r], g[1][r], g[2][r]];
         }
-        let n = [fma::<FMA>(-BELOW, f[1], n[0]), fma::<FMA>(BELOW, f[0], n[1]), n[2]];
+        let n = [fma::<FMA>(-below, f[1], n[0]), fma::<FMA>(below, f[0], n[1]), n[2]];
         Articulated { j, h: about, m: turned_mass, n, f }
     }
 
@@ -189,8 +211,9 @@ impl Link {
         &self,
         axis: usize,
         (alpha, a): (Vector, Vector),
+        below: f64,
     ) -> (f64, Vector, Vector) {
-        let moved = carried::<FMA>(a, alpha);
+        let moved = carried::<FMA>(a, alpha, below);
         let mut alpha = turned::<FMA>(axis, self.cos, -self.sin, alpha);
         let mut a = turned::<FMA>(axis, self.cos, -self.sin, moved);
         let mut rate = self.impulse;
@@ -244,6 +267,7 @@ fn articulated<const FMA: bool, const N: usize>(
     [velocities, accelerations]: &mut [[f64; N]; 2],
 ) {
     *velocities = *rates;
+    let of = constants();
     let trigonometry = sines::<FMA, N>(angles);
     let mut links = [Link::default(); N];
     // The first joint is at the origin: nothing that would carry it there moves.
@@ -251,23 +275,23 @@ fn articulated<const FMA: bool, const N: usize>(
     for i in 0..N {
         let axis = i & 1;
         parent = match axis {
-            0 => Link::new::<FMA>(0, trigonometry[i], rates[i], &parent),
-            _ => Link::new::<FMA>(1, trigonometry[i], rates[i], &parent),
+            0 => Link::new::<FMA>(0, trigonometry[i], rates[i], &parent, of.below),
+            _ => Link::new::<FMA>(1, trigonometry[i], rates[i], &parent, of.below),
         };
         links[i] = parent;
     }
     let mut on = Articulated::default();
     for (i, link) in links.iter_mut().enumerate().rev() {
         on = match i & 1 {
-            0 => link.eliminate::<FMA>(0, &on),
-            _ => link.eliminate::<FMA>(1, &on),
+            0 => link.eliminate::<FMA>(0, &on, &of),
+            _ => link.eliminate::<FMA>(1, &on, &of),
         };
     }
     let mut moving = ([0.0; 3], [0.0, 0.0, GRAVITY]);
     for (i, link) in links.iter().enumerate() {
         let (rate, alpha, a) = match i & 1 {
-            0 => link.accelerate::<FMA>(0, moving),
-            _ => link.accelerate::<FMA>(1, moving),
+            0 => link.accelerate::<FMA>(0, moving, of.below),
+            _ => link.accelerate::<FMA>(1, moving, of.below),
         };
         (accelerations[i], moving) = (rate, (alpha, a));
     }

@@ -1,0 +1,79 @@
+//! What joints bear.
+
+use pc_expr::Expr;
+
+use crate::system::system::System;
+use crate::tree::articulated::{Spatial, moving_part, turning_part};
+use crate::tree::spatial::{apply, apply_transpose, cross};
+use crate::tree::system::TreeSystem;
+
+/// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
+///
+/// Along the axes of the body, the moment about its origin. Their components in which the joint is free are the generalised
+/// forces that act on it.
+#[derive(Clone, Debug)]
+pub struct JointReaction<'g> {
+    pub(crate) body: String,
+    pub(crate) force: [Expr<'g>; 3],
+    pub(crate) moment: [Expr<'g>; 3],
+}
+
+impl<'g> JointReaction<'g> {
+    /// The name of the body.
+    pub fn body(&self) -> &str {
+        &self.body
+    }
+
+    /// The force.
+    pub fn force(&self) -> &[Expr<'g>; 3] {
+        &self.force
+    }
+
+    /// The moment about the origin of the body.
+    pub fn moment(&self) -> &[Expr<'g>; 3] {
+        &self.moment
+    }
+}
+
+impl<'g> System<'g> {
+    /// What the joints of a [tree](crate::Tree) exert on their bodies (Newton's and Euler's equations from the tips to the root); none
+    /// of a system that is no tree, nor of bodies that are fixed to others. As [outputs](System::with_more_outputs) they
+    /// are watched along a motion.
+    pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
+        let Some(tree) = &self.tree else { return Vec::new() };
+        tree.reactions(self)
+    }
+}
+
+impl<'g> TreeSystem<'g> {
+    fn reactions(&self, system: &System<'g>) -> Vec<JointReaction<'g>> {
+        let graph = self.tree.graph;
+        let dynamics = self.dynamics(system).with_own_masses(&self.tree);
+        let unknowns = self.by_link(&system.accelerations());
+        let motions = self.tree.motions();
+        // F and N act beside the joints.
+        let mut loads: Vec<Spatial<'g>> = vec![[Expr::ZERO; 6]; self.tree.links.len()];
+        for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
+            let Some(link) = stand.link else { continue };
+            let force = apply_transpose(graph, &motions.links[link].rotation, &body.force);
+            let arm = cross(&stand.point(graph, &body.centre), &force);
+            let torque = apply(graph, &stand.rotation, &body.torque);
+            for i in 0..3 {
+                loads[link][i] += torque[i] + arm[i];
+                loads[link][i + 3] += force[i];
+            }
+        }
+        let borne = dynamics.forces_on_joints(&unknowns, &loads);
+        let mut reactions = Vec::new();
+        for (body, (stand, own)) in self.tree.bodies.iter().zip(self.tree.stands.iter().zip(&self.tree.own)) {
+            let Some(link) = stand.link.filter(|_| !own.is_empty()) else { continue };
+            let (n, f) = (turning_part(&borne[link]), moving_part(&borne[link]));
+            reactions.push(JointReaction {
+                body: body.name.clone(),
+                force: apply_transpose(graph, &stand.rotation, &f),
+                moment: apply_transpose(graph, &stand.rotation, &n),
+            });
+        }
+        reactions
+    }
+}

@@ -1,0 +1,236 @@
+//! The equations of large trees of bodies, from body to body.
+//!
+//! Written out whole they would be longer than a page, and the longer the more bodies there are; from body to body each has the
+//! same few equations, with its own rotation, place and mass.
+
+use std::fmt::Write as _;
+
+use pc_expr::Style;
+use pc_mech::{Expr, Graph, Matrix, System, Tree};
+use serde_json::{Value, json};
+
+use crate::layout::Layout;
+use crate::operations::Operations;
+use crate::page::Page;
+use crate::visible::visible_json;
+
+/// What is the same for all bodies, for people and for a paper.
+const LAWS: [(&str, &str, &str); 5] = [
+    (
+        "Velocities of a body against those of its parent p",
+        "ω = Rᵀ ω_p + ω_r,   v = Rᵀ (v_p + ω_p × r) + v_r",
+        r"\omega &= R^{T} \omega_{p} + \omega_{r}, & v &= R^{T} (v_{p} + \omega_{p} \times r) + v_{r}",
+    ),
+    (
+        "Accelerations, those of the world being 0 and -g",
+        "α = Rᵀ α_p + ω × ω_r + ω_r',   a = Rᵀ (a_p + α_p × r + ω_p × (ω_p × r)) + (2 ω - ω_r) × v_r + v_r'",
+        r"\alpha &= R^{T} \alpha_{p} + \omega \times \omega_{r} + \dot\omega_{r}, & a &= R^{T} \bigl(a_{p} + \alpha_{p} \times r + \omega_{p} \times (\omega_{p} \times r)\bigr) + (2\omega - \omega_{r}) \times v_{r} + \dot v_{r}",
+    ),
+    (
+        "Force and moment that its joint exerts, the sums over the bodies k that hang on it",
+        "f = m (a + α × c + ω × (ω × c)) - F + Σ R_k f_k",
+        r"f &= m \bigl(a + \alpha \times c + \omega \times (\omega \times c)\bigr) - F + \sum_{k} R_{k} f_{k}",
+    ),
+    (
+        "",
+        "n = I α + ω × I ω + c × (m (a + α × c + ω × (ω × c)) - F) - N + Σ (R_k n_k + r_k × R_k f_k)",
+        r"n &= I \alpha + \omega \times I \omega + c \times \bigl(m (a + \alpha \times c + \omega \times (\omega \times c)) - F\bigr) - N + \sum_{k} (R_{k} n_{k} + r_{k} \times R_{k} f_{k})",
+    ),
+    (
+        "Equation of each quasi-velocity η of its joint",
+        "n · ∂ω_r/∂η + f · ∂v_r/∂η = Q_η",
+        r"n \cdot \frac{\partial \omega_{r}}{\partial \eta} + f \cdot \frac{\partial v_{r}}{\partial \eta} &= Q_{\eta}",
+    ),
+];
+
+/// The page of a tree; `heading` is its title with the name of the form.
+pub(crate) fn page(
+    heading: &str,
+    (title, system, tree): (&str, &System<'_>, &Tree<'_>),
+    operations: &Operations,
+    (kind, layout): (Page, &Layout),
+    paper: &Graph,
+) -> String {
+    let bodies = bodies(system, tree, paper);
+    match kind {
+        Page::Text => text(heading, &bodies, operations, layout),
+        Page::Latex => latex(heading, &bodies),
+        Page::Json => visible_json(&programs(title, system, &bodies, operations)) + "\n",
+    }
+}
+
+/// A body with what is its own.
+struct BodyOnPage<'p> {
+    name: String,
+    parent: String,
+    /// Letters of a book, those of a program, and what they are.
+    vectors: Vec<(&'static str, &'static str, [Expr<'p>; 3])>,
+    matrices: Vec<(&'static str, &'static str, Matrix<Expr<'p>>)>,
+    mass: Expr<'p>,
+    /// η with Q_η, loads on bodies left out.
+    forces: Vec<(Expr<'p>, Expr<'p>)>,
+    kinematics: Vec<(Expr<'p>, Expr<'p>)>,
+}
+
+fn bodies<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> Vec<BodyOnPage<'p>> {
+    let graph = system.graph();
+    let one = |expression: Expr<'_>| graph.typeset(&[expression], paper)[0];
+    let all = |vector: [Expr<'_>; 3]| vector.map(one);
+    let applied = system.joint_forces();
+    let rates = system.frame().velocities(system.quasi_velocities());
+    let rate = |name: &str| {
+        let place = system.frame().coordinates().iter().position(|x| x.to_string() == name);
+        place.map(|place| one(rates[place]))
+    };
+    let body = |body: &pc_mech::TreeBody<'_>| {
+        let joint = tree.joint_motion(body.name())?;
+        let (mass, centre, inertia) = body.mass_properties();
+        let (force, torque) = body.loads();
+        let force_of = |eta: &Expr<'_>| {
+            let place = system.quasi_velocities().iter().position(|known| known == eta);
+            place.map(|place| (one(*eta), one(applied[place])))
+        };
+        let of_joint = tree.joint_coordinates(body.name());
+        let kinematic = |x: &Expr<'_>| rate(&x.to_string()).map(|rate| (one(*x), rate));
+        Some(BodyOnPage {
+            name: body.name().to_owned(),
+            parent: body.parent().unwrap_or("world").to_owned(),
+            vectors: vec![
+                ("r", "place", all(joint.place)),
+                ("ω_r", "angular_velocity", all(joint.angular_velocity)),
+                ("v_r", "velocity", all(joint.velocity)),
+                ("c", "center", all(centre)),
+                ("F", "force", all(force)),
+                ("N", "torque", all(torque)),
+            ],
+            matrices: vec![("R", "rotation", joint.rotation.map(one)), ("I", "inertia", inertia.map(one))],
+            mass: one(mass),
+            forces: joint.quasi_velocities.iter().filter_map(force_of).collect(),
+            kinematics: of_joint.iter().filter_map(kinematic).collect(),
+        })
+    };
+    tree.bodies().iter().filter_map(body).collect()
+}
+
+fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
+    vector.iter().all(|component| component.is_zero())
+}
+
+fn text(heading: &str, bodies: &[BodyOnPage<'_>], operations: &Operations, layout: &Layout) -> String {
+    let mut page = crate::text::underlined(heading);
+    page +=
+        "Written from body to body: as a whole the equations would be longer than a page.\n\nFor each body\n";
+    for (about, law, _) in LAWS {
+        if !about.is_empty() {
+            page += &format!("  {about}\n");
+        }
+        page += &format!("    {law}\n");
+    }
+    page += "  F is a force at the mass centre c, along the axes of the body as all vectors, N a torque.\n";
+    for body in bodies {
+        page += &format!("\n{} on {}\n", body.name, body.parent);
+        let written = |expression: &Expr<'_>| expression.display(Style::Book);
+        let mut put = |left: &str, right: String| {
+            let terms: Vec<String> = right.split(' ').map(str::to_owned).collect();
+            for line in layout.flowed(&format!("{left} = "), &terms) {
+                page += &format!("  {line}\n");
+            }
+        };
+        for (letter, _, matrix) in &body.matrices {
+            if matrix.entries().iter().all(|entry| entry.is_zero()) {
+                continue;
+            }
+            let rows = matrix.to_rows();
+            let rows: Vec<String> =
+                rows.iter().map(|row| row.iter().map(written).collect::<Vec<_>>().join(", ")).collect();
+            put(letter, format!("({})", rows.join("; ")));
+        }
+        put("m", written(&body.mass));
+        for (letter, _, vector) in body.vectors.iter().filter(|(.., vector)| !vanishes(vector)) {
+            put(letter, format!("({})", vector.iter().map(written).collect::<Vec<_>>().join(", ")));
+        }
+        for (eta, force) in body.forces.iter().filter(|(_, force)| !force.is_zero()) {
+            put(&format!("Q_{}", written(eta)), written(force));
+        }
+        for (x, rate) in body.kinematics.iter().filter(|(x, rate)| rate.to_string() != format!("{x}'")) {
+            put(&format!("{}'", written(x)), written(rate));
+        }
+    }
+    page += "\nOperations of one right-hand side\n";
+    operations.lines().iter().for_each(|line| page += &format!("  {line}\n"));
+    page
+}
+
+fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
+    let mut page =
+        format!("% {heading}, from body to body (needs amsmath)\n\n% For each body\n\\begin{{align*}}\n");
+    page += &LAWS.map(|(_, _, law)| law).join(" \\\\\n");
+    page += "\n\\end{align*}\n";
+    for body in bodies {
+        let set = |expression: &Expr<'_>| expression.display(Style::Latex);
+        let mut lines = Vec::new();
+        for (letter, _, matrix) in &body.matrices {
+            if matrix.entries().iter().all(|entry| entry.is_zero()) {
+                continue;
+            }
+            let rows = matrix.to_rows();
+            let rows: Vec<String> =
+                rows.iter().map(|row| row.iter().map(set).collect::<Vec<_>>().join(" & ")).collect();
+            lines.push(format!("{letter} &= \\begin{{pmatrix}} {} \\end{{pmatrix}}", rows.join(" \\\\ ")));
+        }
+        lines.push(format!("m &= {}", set(&body.mass)));
+        for (letter, _, vector) in body.vectors.iter().filter(|(.., vector)| !vanishes(vector)) {
+            let letter = letter.replace("ω_r", "\\omega_{r}").replace("v_r", "v_{r}");
+            let components = vector.iter().map(set).collect::<Vec<_>>().join(", \\; ");
+            lines.push(format!("{letter} &= ({components})"));
+        }
+        for (eta, force) in body.forces.iter().filter(|(_, force)| !force.is_zero()) {
+            lines.push(format!("Q_{{{}}} &= {}", set(eta), set(force)));
+        }
+        // Writing to a string cannot fail.
+        let _ = write!(
+            page,
+            "\n% {} on {}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n",
+            crate::visible::one_line(&body.name),
+            crate::visible::one_line(&body.parent),
+            lines.join(" \\\\\n")
+        );
+    }
+    page
+}
+
+fn programs(title: &str, system: &System<'_>, bodies: &[BodyOnPage<'_>], operations: &Operations) -> Value {
+    let text = |expression: &Expr<'_>| expression.to_string();
+    let list = |vector: &[Expr<'_>; 3]| vector.iter().map(text).collect::<Vec<_>>();
+    let body = |body: &BodyOnPage<'_>| {
+        let mut object = serde_json::Map::new();
+        object.insert("name".to_owned(), json!(body.name));
+        object.insert("parent".to_owned(), json!(body.parent));
+        object.insert("mass".to_owned(), json!(text(&body.mass)));
+        for (_, key, vector) in &body.vectors {
+            object.insert((*key).to_owned(), json!(list(vector)));
+        }
+        for (_, key, matrix) in &body.matrices {
+            let rows: Vec<Vec<String>> =
+                matrix.to_rows().iter().map(|row| row.iter().map(text).collect()).collect();
+            object.insert((*key).to_owned(), json!(rows));
+        }
+        let named = |pairs: &[(Expr<'_>, Expr<'_>)]| -> Value {
+            Value::Object(pairs.iter().map(|(name, value)| (name.to_string(), json!(text(value)))).collect())
+        };
+        object.insert("forces".to_owned(), named(&body.forces));
+        object.insert("rates".to_owned(), named(&body.kinematics));
+        Value::Object(object)
+    };
+    let names = |list: &[Expr<'_>]| list.iter().map(Expr::to_string).collect::<Vec<_>>();
+    let parameters = system.parameters().iter().map(|(name, value)| (name.to_string(), json!(value)));
+    json!({
+        "model": title,
+        "coordinates": names(system.frame().coordinates()),
+        "quasi_velocities": names(system.quasi_velocities()),
+        "parameters": Value::Object(parameters.collect()),
+        "laws": LAWS.map(|(_, law, _)| law),
+        "bodies": bodies.iter().map(body).collect::<Vec<_>>(),
+        "operations": operations.object(),
+    })
+}
