@@ -121,13 +121,22 @@ fn the_page_names_every_section_key_function_and_algebra() {
     let help = refusal("[nonsense]\n").unwrap().kind().help();
     let (_, sections) = help.split_once("the sections are ").unwrap();
     for section in sections.split(", ") {
-        let suffix = if matches!(section, "bodies" | "events") { ".NAME" } else { "" };
+        let suffix = if matches!(section, "bodies" | "events" | "points" | "loops") { ".NAME" } else { "" };
         look_for(format!("### `[{section}{suffix}]`\n"));
     }
-    for place in
-        ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a", "hamilton_jacobi"]
-    {
+    let sections =
+        ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a", "points.a"];
+    for place in sections.into_iter().chain(["loops.a", "hamilton_jacobi"]) {
         allowed(&format!("[{place}]\nwrong = 1\n")).iter().for_each(|key| look_for(format!("`{key}`")));
+    }
+    for (place, joint) in [("center = [0, 0, 0]\nwrong", "1"), ("joint", "{ wrong = 1 }")] {
+        let text = format!("[bodies.a]\n{place} = {joint}\n");
+        allowed(&text).iter().for_each(|key| look_for(format!("`{key}`")));
+    }
+    for kind in
+        ["fixed", "revolute", "prismatic", "screw", "cylindrical", "universal", "planar", "spherical", "free"]
+    {
+        look_for(format!("`\"{kind}\"`"));
     }
     for place in ["inputs", "quasi_velocities", "states", "constraints"] {
         for key in allowed(&format!("[{place}]\na = {{ wrong = 1 }}\n")) {

@@ -201,7 +201,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     (
         "<robot>\nLINK<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n</robot>",
-        "r.urdf:4:83: <joint j>: the axis has length 0\n    …e=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n                                                                         ^^^^^\n  help: give it a direction, such as `0 0 1`",
+        "r.urdf:4:79: <joint j>: the axis has length 0\n    …pe=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n                                                                 ^^^^^\n  help: give it a direction, such as `0 0 1`",
     ),
     (
         "<robot>\nLINK<link name=\"b\"/>\n</robot>",
@@ -217,7 +217,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     (
         "<robot>\nLINK<joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
-        "r.urdf:4:44: <joint j>: `0 1` is not three numbers\n    <joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n                                               ^^^\n  help: write three numbers with spaces between them, such as `0 0 1`",
+        "r.urdf:4:43: <origin>: `0 1` is not three numbers\n    <joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n                                              ^^^\n  help: write three numbers with spaces between them, such as `0 0 1`",
     ),
     (
         "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:macro name=\"m\"/>\n</robot>",

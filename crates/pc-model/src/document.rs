@@ -11,6 +11,7 @@ pub(crate) mod contents;
 pub(crate) mod expression;
 pub(crate) mod hanging;
 pub(crate) mod hidden;
+pub(crate) mod inertia;
 pub(crate) mod inputs;
 pub(crate) mod joints;
 pub(crate) mod loops;
@@ -25,11 +26,12 @@ pub(crate) mod tree;
 
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
-    Gravity, HamiltonJacobi, Heading, Inertia, Input, InputValue, Lagrangian, Method, Orientation,
-    QuasiVelocity, Simulation, State, TableFile,
+    Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity,
+    Simulation, State, TableFile,
 };
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;
+pub use inertia::Inertia;
 pub use joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
 pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
 pub use simulation::MOST_SAMPLES;

@@ -270,3 +270,15 @@ fn starts_are_set_by_name() {
     model.set_start("e", -1.0).unwrap();
     assert_eq!(model.start().unwrap(), [0.25, 0.5, 1.5, -1.0]);
 }
+
+/// A total derivative in a rate, by itself and in a definition: z = ∫ d(x²) is x², and the way is that of the speed.
+#[test]
+fn rates_contain_total_derivatives() {
+    let text = "[coordinates]\nx = 1.0\n[definitions]\nrate = \"d(x^2)\"\n\
+                [states]\nz = { start = 1.0, rate = \"rate\" }\nw = { start = 1.0, rate = \"d(x^2)\" }\n\
+                [lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"2*x^2\"\n[outputs]\na = \"d(z*x)\"\n";
+    let mut flow = flow(text, Variables::QuasiVelocities);
+    let mut rates = [0.0; 4];
+    flow.motion.rhs(0.0, &[0.5, 3.0, 1.0, 1.0], &mut rates).unwrap();
+    assert_close(&rates, &[3.0, -2.0, 3.0, 3.0], 1e-15);
+}

@@ -4,8 +4,9 @@
 //! with each other cost n evaluations of L instead of n². Were it wrong, the mass matrix would lack an entry, and the
 //! derivations disagree.
 
+use crate::body::Turning;
 use crate::term::Term;
-use crate::text::{Text, Turning, Velocities};
+use crate::text::{Text, Velocities};
 
 /// Which velocities stand together in a summand of the energy.
 #[derive(Clone, Debug)]

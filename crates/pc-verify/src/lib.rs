@@ -22,6 +22,7 @@
 
 mod agreement;
 mod balance;
+mod body;
 mod brackets;
 mod compare;
 mod constants;

@@ -2,12 +2,13 @@
 
 use std::cell::{Cell, OnceCell};
 
+use crate::body::{Body, Turning};
 use crate::error::{Irregular, Unable};
 use crate::number::Number;
 use crate::resultant::Resultants;
 use crate::rounding::Rounding;
 use crate::term::{Function, Term};
-use crate::text::{Body, Text, Turning, Velocities};
+use crate::text::{Text, Velocities};
 
 /// Definitions that may be nested in calls; with more of them those before are evaluated in order.
 const DEEP: usize = 64;
@@ -33,6 +34,11 @@ pub(crate) struct Point<'a, T: Number> {
     open: Vec<Cell<bool>>,
     velocities: OnceCell<Vec<T>>,
     moving: OnceCell<Box<dyn Moving<T> + 'a>>,
+    /// The same with first-order states that stand still, for what their rates are made of: no total derivative in these
+    /// contains a state.
+    moving_without_states: OnceCell<Box<dyn Moving<T> + 'a>>,
+    /// Whether the rates of the first-order states are being evaluated.
+    in_state_rates: Cell<bool>,
 }
 
 /// A point as it moves in time. Nested points would have types without end.
@@ -67,6 +73,8 @@ impl<'a, T: Number> Point<'a, T> {
             open: vec![Cell::new(false); text.definitions.len()],
             velocities: OnceCell::new(),
             moving: OnceCell::new(),
+            moving_without_states: OnceCell::new(),
+            in_state_rates: Cell::new(false),
         }
     }
 
@@ -136,7 +144,9 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// This point as it moves in time, at the rates ẋ and ẇ.
     fn moving(&self) -> Result<&(dyn Moving<T> + 'a), Irregular> {
-        if self.moving.get().is_none() {
+        let has_states = !self.in_state_rates.get();
+        let cell = if has_states { &self.moving } else { &self.moving_without_states };
+        if cell.get().is_none() {
             let along = |value: T, rate: T| value.changing(rate).ok_or(Unable::NoRate);
             let pairs = |values: &[T], rates: &[T]| -> Result<Vec<T::Rate>, Unable> {
                 values.iter().zip(rates).map(|(&value, &rate)| along(value, rate)).collect()
@@ -145,12 +155,21 @@ impl<'a, T: Number> Point<'a, T> {
             let x = pairs(&self.x, self.velocities()?)?;
             let zero = vec![T::constant(0.0); self.w.len()];
             let w = pairs(&self.w, self.accelerations.as_ref().unwrap_or(&zero))?;
-            let z = pairs(&self.z, &self.all(&self.text.state_rates)?)?;
+            let still = vec![T::constant(0.0); self.z.len()];
+            let z = pairs(&self.z, &if has_states { self.state_rates()? } else { still })?;
             let moving = Point::new(self.text, self.rounding, t, [x, w, z]);
             let moving = if self.accelerations.is_some() { moving } else { moving.without_velocities() };
-            let _ = self.moving.set(Box::new(Moved::<T>(moving))); // was empty
+            let _ = cell.set(Box::new(Moved::<T>(moving))); // was empty
         }
-        self.moving.get().map(|moving| &**moving).ok_or(Irregular::Unable(Unable::NoRate))
+        cell.get().map(|moving| &**moving).ok_or(Irregular::Unable(Unable::NoRate))
+    }
+
+    /// ż
+    fn state_rates(&self) -> Result<Vec<T>, Irregular> {
+        self.in_state_rates.set(true);
+        let rates = self.all(&self.text.state_rates);
+        self.in_state_rates.set(false);
+        rates
     }
 
     /// The total time derivative of a term.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use pc_expr::Deadline;
 use pc_mech::Table;
 use pc_model::Model;
-use pc_model::document::{AlgebraDefinition, Document, Expression, Inertia, NamedExpression, Orientation};
+use pc_model::document::{AlgebraDefinition, Document, Expression, NamedExpression, Orientation};
 
+use crate::body::{Body, Turning, matrix};
 use crate::error::Unable;
 use crate::term::{Names, Term};
 use crate::tree::Tree;
@@ -55,31 +56,6 @@ pub(crate) enum Velocities {
 pub(crate) enum Forced {
     Coordinate(usize),
     QuasiVelocity(usize),
-}
-
-/// A body or a mass point.
-#[derive(Clone, Debug)]
-pub(crate) struct Body {
-    pub(crate) mass: Term,
-    pub(crate) position: Vec<Term>,
-    /// The matrix, row by row.
-    pub(crate) inertia: Option<Vec<Term>>,
-    pub(crate) turning: Option<Turning>,
-    pub(crate) force: Vec<Term>,
-    /// μ_i for each component of the force: where it is not 0 the force has the force function μ_i F_i r_i, which counts in L.
-    pub(crate) force_functions: Vec<f64>,
-    /// Whether any of it may: none does of a force on a body with a joint.
-    pub(crate) may_have_force_functions: bool,
-    pub(crate) torque: Vec<Term>,
-}
-
-/// How a body turns.
-#[derive(Clone, Debug)]
-pub(crate) enum Turning {
-    /// The matrix from body to space, row by row.
-    Rotation(Vec<Term>),
-    /// The components of the angular velocity.
-    AngularVelocity(Vec<Term>),
 }
 
 /// Brackets as given: [X_r, X_s] = Σ value X_m, 0 for time.
@@ -205,25 +181,6 @@ impl Text {
     pub(crate) fn coordinates(&self) -> usize {
         self.names.coordinates.len()
     }
-}
-
-/// The 9 entries of a matrix of inertia; [`Inertia::Full`] has Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
-pub(crate) fn matrix(
-    inertia: &Inertia,
-    term: impl Fn(&Expression) -> Result<Term, Unable>,
-) -> Result<Vec<Term>, Unable> {
-    let entries: Vec<Term> = match inertia {
-        Inertia::Principal(list) => list.iter().map(term).collect::<Result<_, _>>()?,
-        Inertia::Full(list) => list.iter().map(term).collect::<Result<_, _>>()?,
-    };
-    let entry = |row: usize, column: usize| match (row.min(column), row.max(column)) {
-        (a, b) if a == b => a,
-        (0, 1) => 3,
-        (1, 2) => 4,
-        _ => 5,
-    };
-    let value = |i: usize| entries.get(i).cloned().unwrap_or(Term::Number(0.0));
-    Ok((0..9).map(|i| entry(i / 3, i % 3)).map(value).collect())
 }
 
 fn velocities(document: &Document, tree: &Tree<'_>, names: &Names) -> Result<Velocities, Unable> {

@@ -11,9 +11,9 @@ use pc_model::document::{
     Document, Expression, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
 };
 
+use crate::body::{Body, Turning, matrix};
 use crate::error::Unable;
 use crate::term::{Function, Names, Term};
-use crate::text::{Body, Turning, matrix};
 
 /// Definitions of a body: J_0, J, R and r.
 const OF_BODY: usize = 9 + 9 + 9 + 3;

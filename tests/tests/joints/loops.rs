@@ -1,5 +1,6 @@
 //! Loops: against mechanisms whose constraints are written in angles, and their reactions against statics and Newton's law.
 
+use pc_mech::VectorField;
 use pc_model::{Builtin, Model};
 
 use super::run::{Run, difference, document, flow, model};
@@ -39,7 +40,7 @@ fn a_slider_crank_moves_as_its_angles() {
 fn a_point_that_is_held_is_a_spherical_joint() {
     const BODY: &str = "mass = 2.0\ninertia = [0.1, 0.2, 0.25]\n";
     let loops = format!(
-        "[quasi_velocities]\nb_ω1 = 1.0\nb_ω2 = 0.5\nb_ω3 = -0.3\n[gravity]\nacceleration = [0, 0, -9.81]\n\
+        "[quasi_velocities]\n\"b_ω1\" = 1.0\n\"b_ω2\" = 0.5\n\"b_ω3\" = -0.3\n[gravity]\nacceleration = [0, 0, -9.81]\n\
          [coordinates]\nb_x = 0.3\nb_y = 0.1\nb_z = -0.4\n\
          [bodies.b]\njoint = {{ kind = \"free\" }}\n{BODY}\
          [loops.pin]\nkind = \"point\"\nbodies = [\"b\", \"world\"]\nat = [[-0.3, -0.1, 0.4], [0, 0, 0]]\n\
@@ -48,7 +49,7 @@ fn a_point_that_is_held_is_a_spherical_joint() {
          ax = \"d(d(b_x))\"\nay = \"d(d(b_y))\"\naz = \"d(d(b_z))\"\n"
     );
     let tree = format!(
-        "[quasi_velocities]\nb_ω1 = 1.0\nb_ω2 = 0.5\nb_ω3 = -0.3\n[gravity]\nacceleration = [0, 0, -9.81]\n\
+        "[quasi_velocities]\n\"b_ω1\" = 1.0\n\"b_ω2\" = 0.5\n\"b_ω3\" = -0.3\n[gravity]\nacceleration = [0, 0, -9.81]\n\
          [bodies.b]\njoint = {{ kind = \"spherical\" }}\ncenter = [0.3, 0.1, -0.4]\n{BODY}"
     );
     let (loops, tree) = (Run::of(&model(&loops), 2.0, 1e-11), Run::of(&model(&tree), 2.0, 1e-11));

@@ -110,7 +110,7 @@ fn own_quasi_velocities_stand_beside_joints() {
 /// In momenta the motion is the same, with quaternions and with angles.
 #[test]
 fn canonical_equations_of_a_tree_move_alike() {
-    let text = "[quasi_velocities]\nbase_ω1 = 0.4\nbase_v2 = 0.3\n\"arm'\" = 1.0\n\
+    let text = "[quasi_velocities]\n\"base_ω1\" = 0.4\nbase_v2 = 0.3\n\"arm'\" = 1.0\n\
         [bodies.base]\njoint = { kind = \"free\" }\nmass = 2.0\ncenter = [0.1, 0, 0.2]\ninertia = [0.3, 0.4, 0.5, 0.02, 0, 0]\n\
         [bodies.arm]\nparent = \"base\"\njoint = { kind = \"revolute\", axis = [1, 1, 0], at = [0.5, 0, 0], turns = [[\"z\", 0.3]] }\n\
         mass = 1.0\ncenter = [0, 0, -0.4]\ninertia = [0.1, 0.1, 0.05]\n";
@@ -127,7 +127,7 @@ fn canonical_equations_of_a_tree_move_alike() {
 /// A stop turns the arm back, and a reset of a quasi-velocity that is a velocity beside others is one of it.
 #[test]
 fn stops_are_events() {
-    let text = "[quasi_velocities]\n\"arm'\" = 1.0\nball_ω1 = 0.2\n\
+    let text = "[quasi_velocities]\n\"arm'\" = 1.0\n\"ball_ω1\" = 0.2\n\
         [bodies.arm]\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\ninertia = [0, 0, 1]\n\
         [bodies.ball]\njoint = { kind = \"spherical\" }\ninertia = [1, 2, 3]\n\
         [events.stop]\nwhen = \"arm - 0.5\"\nreset = { \"arm'\" = \"-0.5*arm'\" }\n";

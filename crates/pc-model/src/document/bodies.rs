@@ -1,30 +1,17 @@
 //! The sections of rigid bodies and mass points, and of their gravity.
 
 use super::reader::{Item, Table};
-use super::tree;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::contents::{Body, Gravity, Inertia, Orientation};
-use crate::document::joints::TreeBody;
+use crate::document::contents::{Body, Gravity, Orientation};
+use crate::document::inertia::Inertia;
 
 const KEYS: &[&str] = &["mass", "position", "inertia", "rotation", "angular_velocity", "force", "torque"];
 const INERTIA: &str = "inertia = [\"Ixx\", \"Iyy\", \"Izz\"]";
 const POSITION: &str = "position = [\"x\", \"y\", \"z\"]";
 
-/// The bodies with a position, and those with a joint.
-pub(super) fn bodies(table: &Table<'_>) -> Result<(Vec<Body>, Vec<TreeBody>), ModelError> {
-    let (mut placed, mut hanging) = (Vec::new(), Vec::new());
-    for item in table.items() {
-        let table = item.section(&format!("bodies.{}", item.new_label()?.text), "[bodies.NAME]")?;
-        match table.has("joint") || table.has("parent") || table.has("center") {
-            true => hanging.push(tree::body(&item, &table)?),
-            false => placed.push(body(&item, &table)?),
-        }
-    }
-    Ok((placed, hanging))
-}
-
-fn body(item: &Item<'_>, table: &Table<'_>) -> Result<Body, ModelError> {
+/// A body with a position.
+pub(super) fn body(item: &Item<'_>, table: &Table<'_>) -> Result<Body, ModelError> {
     let name = item.new_label()?;
     let (mut mass, mut position, mut inertia, mut force, mut torque) = (None, None, None, None, None);
     let (mut orientation, mut turning) = (None, None);

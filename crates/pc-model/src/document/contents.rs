@@ -5,6 +5,7 @@ use pc_mech::Interpolation;
 
 use crate::diagnostics::source::{Place, Source};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
+use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
 
 /// A model as written. Every list is in the order of the file.
@@ -229,15 +230,6 @@ pub struct Gravity {
     pub place: Place,
     /// The acceleration of what falls, along the axes of the positions.
     pub acceleration: [Expression; 3],
-}
-
-/// Inertia matrix.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Inertia {
-    /// Ixx, Iyy, Izz, the other entries zero.
-    Principal(Box<[Expression; 3]>),
-    /// Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
-    Full(Box<[Expression; 6]>),
 }
 
 /// How a body turns.

@@ -1,8 +1,8 @@
 //! Bodies that hang on others by joints, as written.
 
 use crate::diagnostics::source::Place;
-use crate::document::contents::Inertia;
 use crate::document::expression::{Expression, Located, Name};
+use crate::document::inertia::Inertia;
 
 /// What stands for the fixed axes where a body is named.
 pub const WORLD: &str = "world";

@@ -74,7 +74,7 @@ impl Document {
             "algebra" => self.algebra = Some(sections::algebra(&table)?),
             "constraints" => self.constraints = sections::constraints(&table)?,
             "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
-            "bodies" => (self.bodies, self.tree) = bodies::bodies(&table)?,
+            "bodies" => (self.bodies, self.tree) = tree::bodies(&table)?,
             "points" => self.points = tree::points(&table)?,
             "loops" => *loops = loops::loops(&table)?,
             "gravity" => self.gravity = Some(bodies::gravity(&table)?),

@@ -1,10 +1,11 @@
-//! The sections of bodies that hang on others by joints, and of points of bodies.
+//! The sections of bodies, those that hang on others by joints among them, and of points of bodies.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::bodies::inertia;
+use crate::document::bodies::{body, inertia};
+use crate::document::contents::Body;
 use crate::document::expression::Name;
 use crate::document::joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
 
@@ -17,8 +18,21 @@ const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
 const AT: &str = "at = [0, 0, 0]";
 const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
 
+/// The bodies with a position, and those with a joint.
+pub(super) fn bodies(table: &Table<'_>) -> Result<(Vec<Body>, Vec<TreeBody>), ModelError> {
+    let (mut placed, mut hanging) = (Vec::new(), Vec::new());
+    for item in table.items() {
+        let table = item.section(&format!("bodies.{}", item.new_label()?.text), "[bodies.NAME]")?;
+        match table.has("joint") || table.has("parent") || table.has("center") {
+            true => hanging.push(hung(&item, &table)?),
+            false => placed.push(body(&item, &table)?),
+        }
+    }
+    Ok((placed, hanging))
+}
+
 /// A body with an entry `joint`.
-pub(super) fn body(item: &Item<'_>, table: &Table<'_>) -> Result<TreeBody, ModelError> {
+fn hung(item: &Item<'_>, table: &Table<'_>) -> Result<TreeBody, ModelError> {
     let name = item.new_label()?;
     if name.text == WORLD {
         return Err(item.key_error(ErrorKind::Reserved { name: name.text }));

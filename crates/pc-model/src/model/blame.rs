@@ -133,7 +133,8 @@ impl Document {
     pub(crate) fn energy_place(&self) -> Place {
         let document = self;
         let energy = document.lagrangian.as_ref().map(|l| &l.place);
-        let place = energy.or_else(|| document.bodies.first().map(|body| &body.place));
+        let hanging = || document.tree.first().map(|body| &body.place);
+        let place = energy.or_else(|| document.bodies.first().map(|body| &body.place)).or_else(hanging);
         place.cloned().unwrap_or_else(|| document.end())
     }
 
