@@ -7,6 +7,7 @@ mod joints {
     mod by_hand;
     mod library;
     mod loops;
+    mod random;
     mod refused;
     mod run;
     mod text;

@@ -329,11 +329,47 @@ fn skew(u: &[Term]) -> Vec<Term> {
 fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     let (s, one) = (skew(axis), Term::Number(1.0));
     let square = product(&s, &s);
-    let sine = Term::Call(Function::Sin, vec![angle.clone()]);
-    let rest = Term::Sum(vec![(false, one), (true, Term::Call(Function::Cos, vec![angle.clone()]))]);
+    let [sine, cosine] = sine_and_cosine(angle);
+    let rest = Term::Sum(vec![(false, one), (true, cosine)]);
     let entry =
         |((unit, s), square): ((Term, Term), Term)| sum([unit, times([&sine, &s]), times([&rest, &square])]);
     unit().into_iter().zip(s).zip(square).map(entry).collect()
+}
+
+/// Those of an angle. That of a number which is a multiple of π/2 to rounding is one exactly: the cosine of the number next to
+/// π/2 would be all that is left where something vanishes, and no sense of its size.
+fn sine_and_cosine(angle: &Term) -> [Term; 2] {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    if let Some(value) = number(angle) {
+        let count = (value / quarter).round();
+        if (value - count * quarter).abs() <= 4.0 * f64::EPSILON * value.abs() {
+            let values = match count.rem_euclid(4.0) {
+                0.0 => [0.0, 1.0],
+                1.0 => [1.0, 0.0],
+                2.0 => [0.0, -1.0],
+                _ => [-1.0, 0.0],
+            };
+            return values.map(Term::Number);
+        }
+    }
+    [Function::Sin, Function::Cos].map(|function| Term::Call(function, vec![angle.clone()]))
+}
+
+/// The value of a term made of numbers by sums and products.
+fn number(term: &Term) -> Option<f64> {
+    match term {
+        Term::Number(value) => Some(*value),
+        Term::Negative(inner) => Some(-number(inner)?),
+        Term::Sum(terms) => terms.iter().try_fold(0.0, |sum, (minus, term)| {
+            let value = number(term)?;
+            Some(if *minus { sum - value } else { sum + value })
+        }),
+        Term::Product(factors) => factors.iter().try_fold(1.0, |product, (over, factor)| {
+            let value = number(factor)?;
+            Some(if *over { product / value } else { product * value })
+        }),
+        _ => None,
+    }
 }
 
 /// 1 + 2 q_0 S + 2 S², S being that of the vector of a unit quaternion.

@@ -379,12 +379,8 @@ fn unused(name: &str, taken: &mut HashSet<String>) -> String {
 }
 
 fn quoted(text: &str) -> String {
-    let escaped: String = text
-        .chars()
-        .flat_map(|c| if c.is_control() { ' '.escape_default() } else { c.escape_default() })
-        .collect();
-    let plain = text.chars().all(|c| !c.is_control() && c != '"' && c != '\\');
-    if plain { format!("\"{text}\"") } else { format!("\"{}\"", escaped.replace("\\'", "'")) }
+    let text = text.replace(char::is_control, " ");
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 fn one_line(text: &str) -> String {

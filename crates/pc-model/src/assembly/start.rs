@@ -67,7 +67,8 @@ impl<'g> Assembler<'g, '_> {
             for coordinate in &document.coordinates {
                 let place = names().position(|name| *name == coordinate.name.text);
                 values.push(place.map_or(0.0, |place| velocities[place]));
-                is_given.push(place.is_some());
+                // Those of loops follow from each other.
+                is_given.push(place.is_some() || document.tree.is_empty());
             }
             velocities.clear();
         }
@@ -119,16 +120,12 @@ impl<'g> Assembler<'g, '_> {
         let velocities = self.scope.velocities();
         let is_complete = eta[declared..].iter().all(|extra| !velocities.contains(extra));
         let unit = |s: usize| (0..eta.len()).map(|r| f64::from(u8::from(r == s))).collect::<Vec<f64>>();
-        let mut conditions: Vec<(Vec<f64>, f64)> = Vec::new();
-        if !(0..declared).all(|s| given.is_given[n + s]) || !is_complete || !given.velocities.is_empty() {
-            for (row, rest) in constraints.iter().filter_map(|c| self.condition(c, frame, eta)) {
-                let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
-                let is_known = values.iter().all(|v| v.is_finite());
-                if let Some((rest, row)) = values.split_last().filter(|_| is_known) {
-                    conditions.push((row.to_vec(), -rest));
-                }
-            }
+        // Loops tie velocities: of those of joints that are not given, some follow.
+        let follows = !self.model.document().tree.is_empty() && !(0..declared).all(|s| given.is_given[n + s]);
+        if is_complete && given.velocities.is_empty() && !follows {
+            return Ok(start);
         }
+        let conditions = self.conditions(frame, eta, constraints, at);
         if is_complete && given.velocities.is_empty() {
             let mut written = Equations::default();
             (0..eta.len()).for_each(|s| _ = written.add(&unit(s), start[n + s]));
@@ -160,6 +157,25 @@ impl<'g> Assembler<'g, '_> {
             }
         }
         Ok(start)
+    }
+
+    /// C η = −c_0 of the constraints that have values.
+    fn conditions(
+        &self,
+        frame: &Frame<'g>,
+        eta: &[Expr<'g>],
+        constraints: &[Written<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Vec<(Vec<f64>, f64)> {
+        let mut conditions = Vec::new();
+        for (row, rest) in constraints.iter().filter_map(|c| self.condition(c, frame, eta)) {
+            let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
+            let is_known = values.iter().all(|v| v.is_finite());
+            if let Some((rest, row)) = values.split_last().filter(|_| is_known) {
+                conditions.push((row.to_vec(), -rest));
+            }
+        }
+        conditions
     }
 
     /// b η = x' − b_0 of the velocities given.

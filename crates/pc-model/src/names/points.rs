@@ -1,6 +1,7 @@
 //! Bodies on joints as the mechanics knows them, and the points on them that have names.
 
 use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_2;
 
 use pc_mech::{Expr, Joint, Matrix, Tree, TreeBody};
 
@@ -131,19 +132,33 @@ pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<
     }
 }
 
-/// The turn by an angle about the axis of that number.
+/// The turn by an angle about the axis of that number; by quarters of a turn exactly.
 fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
+    let (cos, sin) = match angle.constant().and_then(|angle| quarters(angle.to_f64())) {
+        None => (angle.cos(), angle.sin()),
+        Some(0) => (Expr::ONE, Expr::ZERO),
+        Some(1) => (Expr::ZERO, Expr::ONE),
+        Some(2) => (-Expr::ONE, Expr::ZERO),
+        Some(_) => (Expr::ZERO, -Expr::ONE),
+    };
     let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
     Matrix::from_fn(3, 3, |i, j| match (i, j) {
         (i, j) if i == j => {
             if i == axis {
                 Expr::ONE
             } else {
-                angle.cos()
+                cos
             }
         }
-        (i, j) if (i, j) == (next, last) => -angle.sin(),
-        (i, j) if (i, j) == (last, next) => angle.sin(),
+        (i, j) if (i, j) == (next, last) => -sin,
+        (i, j) if (i, j) == (last, next) => sin,
         _ => Expr::ZERO,
     })
+}
+
+/// How many quarters of a turn an angle is, 0 to 3, if it is some to rounding: π is rounded itself, and its sine is not 0.
+fn quarters(angle: f64) -> Option<u8> {
+    let count = (angle / FRAC_PI_2).round();
+    let is_some = (angle - count * FRAC_PI_2).abs() <= 4.0 * f64::EPSILON * angle.abs() && count.abs() < 1e3;
+    is_some.then(|| count.rem_euclid(4.0) as u8)
 }
