@@ -68,8 +68,7 @@ impl<'g> System<'g> {
         let eta = &system.quasi_velocities;
         let velocities = system.frame.velocities(eta);
 
-        let hessian: Vec<Vec<Expr<'g>>> = momenta[..free].iter().map(|&p| graph.gradient(p, eta)).collect();
-        let mass = Matrix::from_fn(free, free, |r, s| hessian[r.max(s)][r.min(s)]);
+        let mass = symmetric(&graph.jacobian(&momenta[..free], eta));
 
         let along: Vec<_> = x
             .iter()
@@ -87,15 +86,14 @@ impl<'g> System<'g> {
 
         let energy = graph.dot(momenta.iter().copied(), eta.iter().copied()) - system.lagrangian;
         graph.check(&right)?;
-        graph.check(mass.entries())?;
+        graph.check(&mass.nonzero_entries())?;
 
         // Collected by products of quasi-velocities, then by parameters, the equations are those of a book.
         let order = system.collecting_order();
         let shorten = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
-        let entries = shorten(mass.entries());
         Ok(Equations {
             velocities,
-            mass: Matrix::from_fn(free, free, |r, s| entries[r * free + s]),
+            mass: mass.with_nonzero_entries(&shorten(&mass.nonzero_entries())),
             right: shorten(&right),
             energy: shorten(&[energy])[0],
             system,
@@ -105,13 +103,13 @@ impl<'g> System<'g> {
     pub(crate) fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
         let size = mass.rows();
         let graph = self.graph();
-        let rank = graph.generic_rank(&mass.to_rows());
+        let rows = mass.nonzero_rows();
+        let rank_of_first = |count: usize| graph.generic_rank_of_entries(size, &rows[..count]);
+        let rank = rank_of_first(size);
         if rank == size {
             return Ok(());
         }
         // A row that adds nothing to the rank of those before it belongs to an undetermined quasi-velocity.
-        let rows = mass.to_rows();
-        let rank_of_first = |count: usize| graph.generic_rank(&rows[..count]);
         let undetermined = (0..size).filter(|&s| rank_of_first(s + 1) == rank_of_first(s));
         let quasi_velocities = undetermined.map(|s| self.quasi_velocities[s].to_string()).collect();
         Err(LagrangianError::Degenerate { rank, size, quasi_velocities }.into())
@@ -163,13 +161,28 @@ impl<'g> Equations<'g> {
         let numbers = self.system.numbers();
         let order = system.collecting_order();
         let bind = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &numbers), &order);
-        let (k, mass) = (self.mass.rows(), bind(self.mass.entries()));
+        let mass = bind(&self.mass.nonzero_entries());
         Equations {
             velocities: graph.substitute(&self.velocities, &numbers),
-            mass: Matrix::from_fn(k, k, |r, s| mass[r * k + s]),
+            mass: self.mass.with_nonzero_entries(&mass),
             right: bind(&self.right),
             energy: bind(&[self.energy])[0],
             system,
         }
     }
+}
+
+/// The symmetric matrix of which these are the entries that are not zero, row by row; what is above the diagonal is not looked
+/// at.
+fn symmetric<'g>(rows: &[Vec<(usize, Expr<'g>)>]) -> Matrix<Expr<'g>> {
+    let mut both = vec![Vec::new(); rows.len()];
+    for (r, row) in rows.iter().enumerate() {
+        for &(s, entry) in row.iter().filter(|&&(s, _)| s <= r) {
+            both[r].push((s, entry));
+            if s < r {
+                both[s].push((r, entry));
+            }
+        }
+    }
+    Matrix::from_rows(rows.len(), both)
 }

@@ -1,7 +1,7 @@
 //! How a mechanical system is described.
 
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, SymbolPlaces};
 
 use crate::error::{FrameError, LagrangianError, MechError, shape};
 use crate::system::bodies::body::Body;
@@ -395,7 +395,7 @@ impl<'g> SystemBuilder<'g> {
         };
         shape("the list of quasi-velocities", k, frame.operators())?;
         of_position(&frame, &[&eta[..], &velocities].concat())?;
-        check_no_state(&self.states, "the frame", &[frame.b().entries(), frame.b0()].concat())?;
+        check_no_state(&self.states, "the frame", &[&frame.b().nonzero_entries(), frame.b0()].concat())?;
         let mut near = self.near;
         near.centre.extend(self.parameters.iter().copied());
         let structure = match self.structure {
@@ -441,16 +441,16 @@ impl<'g> SystemBuilder<'g> {
         let forces: Vec<Expr<'g>> = (0..k).map(|s| self.graph.sum(parts.iter().map(|q| q[s]))).collect();
         self.graph.check(&[lagrangian])?;
         let momenta = self.graph.gradient(lagrangian, &eta);
-        let moving = |u: &&Expr<'g>| {
-            momenta.iter().chain(frame.b().entries()).chain(frame.b0()).any(|part| part.depends_on(**u))
-        };
+        let entries = frame.b().nonzero_entries();
+        let moving =
+            |u: &&Expr<'g>| momenta.iter().chain(&entries).chain(frame.b0()).any(|part| part.depends_on(**u));
         if let Some(u) = self.signals.iter().find(moving) {
             return Err(LagrangianError::SignalInMomentum { input: u.to_string() }.into());
         }
         self.graph.check(&forces)?;
         let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
         self.graph.check(&rates)?;
-        self.graph.check(frame.b().entries())?;
+        self.graph.check(&frame.b().nonzero_entries())?;
         self.graph.check(frame.b0())?;
         Ok(System {
             frame,
@@ -475,7 +475,8 @@ impl<'g> SystemBuilder<'g> {
 /// # Errors
 /// [`FrameError::OfVelocities`] naming the first that stands there.
 fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
-    let entries = [frame.b().entries(), frame.b0()].concat();
-    let found = frame.graph().symbols_of(&entries).into_iter().find(|symbol| velocities.contains(symbol));
+    let entries = [&frame.b().nonzero_entries(), frame.b0()].concat();
+    let velocities = SymbolPlaces::of(velocities);
+    let found = frame.graph().symbols_of(&entries).into_iter().find(|&symbol| velocities.contains(symbol));
     found.map_or(Ok(()), |symbol| Err(FrameError::OfVelocities { velocity: symbol.to_string() }.into()))
 }
