@@ -315,7 +315,7 @@ mod tests {
             // where all angles are one many minors vanish
             for state in [vec![0.1; n], vec![0.0; n], (0..n).map(|i| 0.1 + 0.5 * (i / 2) as f64).collect()] {
                 let values: Vec<(Expr<'_>, f64)> = x.iter().copied().zip(state).collect();
-                let [a, b] = [&a, &b].map(|m| graph.evaluate(m.entries(), &values).unwrap());
+                let [a, b] = [&a, &b].map(|m| graph.evaluate(&m.entries(), &values).unwrap());
                 for i in 0..n {
                     for j in 0..n {
                         let product: f64 = (0..n).map(|k| a[i * n + k] * b[k * n + j]).sum();
