@@ -109,9 +109,7 @@ impl<'g> Frame<'g> {
         let back = inverse(graph, a).ok_or(AlgebraError::SingularDefinitions)?;
         let back0: Vec<Expr<'g>> =
             (0..k).map(|m| -graph.dot(back.row(m).iter().copied(), a0.iter().copied())).collect();
-        let b = Matrix::from_fn(self.b().rows(), k, |i, s| {
-            graph.dot(self.b().row(i).iter().copied(), back.column(s))
-        });
+        let b = self.b().times(graph, &back);
         let b0 = self.velocities(&back0);
         let to = Frame::new(graph, self.time(), self.coordinates().to_vec(), b, b0)?;
         Ok(FrameChange { to, matrix: a.clone(), drift: a0.to_vec(), back: (back, back0) })

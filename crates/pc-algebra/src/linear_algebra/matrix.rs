@@ -1,9 +1,10 @@
 //! A matrix of numbers, or of expressions of which most are zero.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::ops::{Index, IndexMut};
 
-use pc_expr::{Expr, Number, Residue};
+use pc_expr::{Expr, Graph, Number, Residue};
 
 /// What may stand in a [`Matrix`].
 pub trait MatrixEntry: Copy + PartialEq {
@@ -219,12 +220,28 @@ impl<'g> Matrix<Expr<'g>> {
     pub fn identity(n: usize) -> Matrix<Expr<'g>> {
         Matrix::from_rows(n, (0..n).map(|i| vec![(i, Expr::ONE)]).collect())
     }
+
+    /// The product with another matrix of as many rows as this one has columns: it costs what is not zero.
+    ///
+    /// # Panics
+    /// If that has fewer.
+    pub fn times(&self, graph: &'g Graph, other: &Matrix<Expr<'g>>) -> Matrix<Expr<'g>> {
+        let row = |i: usize| {
+            let mut terms: BTreeMap<usize, Vec<Expr<'g>>> = BTreeMap::new();
+            for (m, entry) in self.nonzero(i) {
+                for (j, factor) in other.nonzero(m) {
+                    terms.entry(j).or_default().push(entry * factor);
+                }
+            }
+            terms.into_iter().map(|(j, terms)| (j, graph.sum(terms))).collect()
+        };
+        Matrix::from_rows(other.columns, (0..self.rows).map(row).collect())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pc_expr::Graph;
 
     #[test]
     fn zeros_that_are_not_held_are_there() {
@@ -252,6 +269,17 @@ mod tests {
         a[(0, 0)] = Expr::ZERO;
         assert_eq!(a, before);
         assert_eq!(a.nonzero_entries(), [x, y]);
+    }
+
+    #[test]
+    fn products_are_those_of_all_entries() {
+        let graph = Graph::new();
+        let symbol = |name: &str, i: usize, j: usize| graph.symbol(&format!("{name}{i}{j}"));
+        let a = Matrix::from_fn(3, 4, |i, j| if (i + j) % 3 == 0 { Expr::ZERO } else { symbol("a", i, j) });
+        let b = Matrix::from_fn(4, 2, |i, j| if i == 2 * j { Expr::ZERO } else { symbol("b", i, j) });
+        let whole = |i: usize, j: usize| graph.dot(a.row(i).iter().copied(), b.column(j));
+        assert_eq!(a.times(&graph, &b), Matrix::from_fn(3, 2, whole));
+        assert_eq!(a.times(&graph, &Matrix::identity(4)), a);
     }
 
     #[test]

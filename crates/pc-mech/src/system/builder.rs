@@ -53,7 +53,7 @@ enum Kinematics<'g> {
     /// ẋ, affine in η (3)
     Velocities(Vec<Expr<'g>>),
     /// A frame made elsewhere.
-    Frame(Frame<'g>),
+    Frame(Box<Frame<'g>>),
 }
 
 impl<'g> System<'g> {
@@ -164,7 +164,7 @@ impl<'g> SystemBuilder<'g> {
     /// [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or of a [group](crate::LieGroup::left_frame).
     #[must_use]
     pub fn frame(mut self, frame: Frame<'g>) -> Self {
-        self.kinematics = Kinematics::Frame(frame);
+        self.kinematics = Kinematics::Frame(Box::new(frame));
         self
     }
 
@@ -391,7 +391,7 @@ impl<'g> SystemBuilder<'g> {
             Kinematics::Velocities(velocities) => {
                 Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
             }
-            Kinematics::Frame(frame) => frame,
+            Kinematics::Frame(frame) => *frame,
         };
         shape("the list of quasi-velocities", k, frame.operators())?;
         of_position(&frame, &[&eta[..], &velocities].concat())?;
