@@ -66,7 +66,7 @@ impl Case {
         let integrals = graph.substitute(&integrals, &rates);
         let motion: Vec<Expr<'_>> = equations.velocities().iter().chain(&accelerations).copied().collect();
         // Each function of the source is a program of its own: in a common one sums may be parted otherwise.
-        let outputs = [&motion[..], equations.mass_matrix().entries(), &[equations.energy()], &integrals];
+        let outputs = [&motion[..], &equations.mass_matrix().entries(), &[equations.energy()], &integrals];
         let mut interpreters = outputs.map(|outputs| {
             let program = Program::new(graph, &inputs, outputs).unwrap();
             Interpreter::new(Arc::new(if fused { program.fused() } else { program }))

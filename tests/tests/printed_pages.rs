@@ -149,7 +149,7 @@ fn compare(name: &str, model: &Model, form: Form, states: usize) -> bool {
     let object: Value = serde_json::from_str(&printed).unwrap();
     let (names, expressions) = match &sheet.balance {
         Balance::Velocities { mass, right, .. } => {
-            (vec!["mass_matrix", "equations"], vec![mass.concat(), right.clone()])
+            (vec!["mass_matrix", "equations"], vec![mass.entries().into_owned(), right.clone()])
         }
         Balance::Momenta { of_velocities, right, .. } => {
             (vec!["momenta_of_velocities", "equations"], vec![of_velocities.clone(), right.clone()])
@@ -160,7 +160,7 @@ fn compare(name: &str, model: &Model, form: Form, states: usize) -> bool {
     everything.push(sheet.energy);
     everything.extend(sheet.reactions.iter().map(|&(_, value)| value));
     everything.extend(sheet.constraints.iter().map(|&(_, left, _)| left));
-    everything.extend(sheet.frame.0.concat().into_iter().chain(sheet.frame.1.clone()));
+    everything.extend(sheet.frame.0.nonzero_entries().into_iter().chain(sheet.frame.1.clone()));
     everything
         .extend(sheet.brackets.nonzero.iter().flat_map(|bracket| bracket.components.iter().map(|&(_, c)| c)));
     everything.extend(sheet.rates.iter().chain(&sheet.states).map(|&(_, value)| value));

@@ -106,4 +106,4 @@ pub use lie_algebra::representation::Representation;
 pub use lie_algebra::subspace::Subspace;
 pub use linear_algebra::affine::{Quadratic, affine, quadratic};
 pub use linear_algebra::inverse::{determinant, inverse};
-pub use linear_algebra::matrix::Matrix;
+pub use linear_algebra::matrix::{Matrix, MatrixEntry};

@@ -157,7 +157,7 @@ fn frame_velocities<G: LieGroup>(group: &G, g: &[f64]) {
     let k = group.dim();
     for side in [Side::Left, Side::Right] {
         let b = group.operators(side, &symbols);
-        let numbers = graph.evaluate(b.entries(), &values).unwrap();
+        let numbers = graph.evaluate(&b.entries(), &values).unwrap();
         let size = numbers.iter().fold(1.0f64, |size, b| size.max(b.abs()));
         if size > 20.0 {
             continue; // near the singularity of Euler angles differences mean nothing
@@ -258,12 +258,12 @@ fn rotation_matrices_turn_as_the_adjoint_representation() {
         };
         let outcome = TestRunner::new(config()).run(&(vector.clone(), vector), |(v, omega)| {
             let element = group.exp(&v);
-            close(&at(matrix.entries(), &element), &group.adjoint(&element), ROUNDING, "R");
+            close(&at(&matrix.entries(), &element), &group.adjoint(&element), ROUNDING, "R");
             let b = group.operators(Side::Left, x);
             let rates = x.iter().enumerate().map(|(i, &x)| {
                 (x, graph.dot(b.row(i).iter().copied(), omega.iter().map(|&omega| omega.into())))
             });
-            let moved = graph.directional(matrix.entries(), &rates.collect::<Vec<_>>());
+            let moved = graph.directional(&matrix.entries(), &rates.collect::<Vec<_>>());
             let turning = group.adjoint(&element) * group.ad(&omega);
             close(&at(&moved, &element), &turning, 1e-10, "Ṙ"); // Euler's frames magnify near their poles
             Ok(())

@@ -60,7 +60,7 @@ impl<'g> FrameFacts<'g> {
         };
         let determined = rank == k && structure.operators() == k;
         let moves = frame.b0().iter().any(|entry| !entry.is_zero())
-            || frame.b().entries().iter().any(|entry| entry.depends_on(frame.time()));
+            || frame.b().nonzero_entries().iter().any(|entry| entry.depends_on(frame.time()));
         let constraints = (rank < n).then(|| match frame.integrability(near) {
             Integrability::Integrable { dimension } => {
                 FrameConstraints::Integrable { count: n - dimension, of_time: moves }

@@ -5,7 +5,7 @@
 //! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
 //! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`, and of time a
 //! `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that expressions depend on, `queries` are what is asked of whole expressions,
-//! and `evaluate` computes their values one by one: the reference for all faster ways.
+//! `places` looks symbols up in long lists, and `evaluate` computes their values one by one: the reference for all faster ways.
 
 pub(crate) mod budget;
 pub(crate) mod calls;
@@ -20,6 +20,7 @@ pub(crate) mod limits;
 pub(crate) mod node;
 pub(crate) mod normal_form;
 pub(crate) mod number;
+pub(crate) mod places;
 pub(crate) mod queries;
 pub(crate) mod regularity;
 pub(crate) mod signs;

@@ -45,6 +45,7 @@ mod random;
 mod time_profile;
 
 pub use calculus::collect::Polynomial;
+pub use calculus::substitution::Substitution;
 pub use codegen::chain::{Chain, ChainLayout};
 pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
@@ -57,6 +58,7 @@ pub use graph::graph::Graph;
 pub use graph::limits::{Cancel, Limits, Spent};
 pub use graph::node::Folding;
 pub use graph::number::Number;
+pub use graph::places::SymbolPlaces;
 pub use identity::blocks::independent_blocks;
 pub use identity::echelon::ResidueEchelon;
 pub use identity::prime_field::Residue;

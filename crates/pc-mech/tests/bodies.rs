@@ -123,7 +123,7 @@ fn top_acceleration(vertical: Vector, omega: Vector) -> Vector {
 
 /// The height of the mass centre: r · γ, γ the last row of R.
 fn height<'g>(rotation: &Matrix<Expr<'g>>) -> Expr<'g> {
-    CENTRE.iter().zip(rotation.row(2)).map(|(&r, &gamma)| r * gamma).sum()
+    CENTRE.iter().zip(&*rotation.row(2)).map(|(&r, &gamma)| r * gamma).sum()
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn a_body_may_be_given_by_its_mass_centre() {
     let system = common::in_eulers_angles(&graph)
         .rigid_body(|_, x, _| {
             let r = angles.rotation_matrix(x);
-            let place = (0..3).map(|i| CENTRE.iter().zip(r.row(i)).map(|(&c, &r)| c * r).sum::<Expr<'_>>());
+            let place = (0..3).map(|i| CENTRE.iter().zip(&*r.row(i)).map(|(&c, &r)| c * r).sum::<Expr<'_>>());
             RigidBody::rotating(mass, place, central, r.clone()).force([0.0, 0.0, -WEIGHT])
         })
         .build()

@@ -93,7 +93,7 @@ fn by_dual_numbers(equations: &Equations<'_>, (t, y, p): (f64, &[f64], &[f64]), 
         .collect();
     values.push((system.frame().time(), Scalar::from_f64(t)));
     let all =
-        [equations.mass_matrix().entries(), equations.right_hand_side(), equations.velocities()].concat();
+        [&equations.mass_matrix().entries(), equations.right_hand_side(), equations.velocities()].concat();
     let values: Vec<Dual64> =
         system.graph().evaluate(&all, &values).unwrap().into_iter().map(|v| v.0).collect();
     let (mass, rest) = values.split_at(k * k);

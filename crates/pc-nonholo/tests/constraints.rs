@@ -161,7 +161,7 @@ fn an_orthonormal_frame_tells_the_same_motion() {
     };
     let constrained = orthonormal.constrained().unwrap();
     let mass = constrained.equations().mass_matrix();
-    assert_eq!(mass.entries(), [Expr::ONE, Expr::ZERO, Expr::ZERO, Expr::ONE]);
+    assert_eq!(*mass.entries(), [Expr::ONE, Expr::ZERO, Expr::ZERO, Expr::ONE]);
 
     let (zeta1, zeta2) = (0.4, -0.9);
     let expected = accelerations(&orthonormal, &[("ζ1", zeta1), ("ζ2", zeta2)]);

@@ -35,7 +35,7 @@ pub(crate) fn page(
     if !definitions.is_empty() {
         put("definitions", json!(definitions));
     }
-    put("kinematics", json!({ "b": text.rows(&sheet.frame.0), "b_0": text.list(&sheet.frame.1) }));
+    put("kinematics", json!({ "b": text.rows(&sheet.frame.0.to_rows()), "b_0": text.list(&sheet.frame.1) }));
     put("structure_coefficients", text.structure(sheet));
     if !sheet.states.is_empty() {
         let name = |rate: &Expr<'_>| rate.to_string().trim_end_matches('\'').to_owned();
@@ -57,7 +57,7 @@ pub(crate) fn page(
                 let reactions = reactions.map(|(name, value)| (name.to_string(), text.line(*value)));
                 put("reactions", Value::Object(reactions.collect()));
             }
-            put("mass_matrix", text.rows(mass));
+            put("mass_matrix", text.rows(&mass.to_rows()));
             put("equations", text.list(right));
             put("energy", text.line(sheet.energy));
             if let Some(remark) = sheet.energy_remark {
@@ -134,14 +134,14 @@ impl<'p> Sheet<'p> {
         let second = |pairs: &[(Expr<'p>, Expr<'p>)]| pairs.iter().map(|&(_, x)| x).collect::<Vec<_>>();
         let structure =
             self.brackets.nonzero.iter().flat_map(|bracket| bracket.components.iter().map(|&(_, c)| c));
-        let mut all: Vec<Expr<'p>> = [b.concat(), b_0.clone(), structure.collect()].concat();
+        let mut all: Vec<Expr<'p>> = [b.entries().into_owned(), b_0.clone(), structure.collect()].concat();
         all.extend(second(&self.states));
         all.extend(second(&self.changed));
         all.extend(self.constraints.iter().map(|&(_, left, _)| left));
         match &self.balance {
             Balance::Velocities { mass, right, .. } => {
                 all.extend(second(&self.reactions));
-                all.extend([mass.concat(), right.clone(), vec![self.energy]].concat());
+                all.extend([mass.entries().into_owned(), right.clone(), vec![self.energy]].concat());
             }
             Balance::Momenta { of_velocities, velocities, right, .. } => {
                 let velocities = velocities.clone().unwrap_or_default();

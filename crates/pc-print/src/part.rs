@@ -1,7 +1,7 @@
 //! A page in parts with headings, the same for people and for a paper.
 
 use pc_expr::{Given, Names, Side};
-use pc_mech::{Expr, Graph};
+use pc_mech::{Expr, Graph, Matrix};
 use pc_nonholo::Kind;
 
 use crate::layout::Layout;
@@ -180,8 +180,8 @@ impl<'p> Sheet<'p> {
                 if entries {
                     parts.push(part(Heading::MassMatrix, entry_rows(mass)));
                 }
-                let left =
-                    mass.iter().map(|row| page.dot(row.iter().copied(), accelerations.iter().copied()));
+                let left = (0..mass.rows())
+                    .map(|r| page.sum(mass.nonzero(r).map(|(s, entry)| entry * accelerations[s])));
                 parts.push(part(Heading::Equations, equations(&zip(&left.collect::<Vec<_>>(), written))));
                 parts.push(part(Heading::States, equations(&self.states)));
                 parts.push(part(Heading::Energy, vec![Row::Function { letter: "E", value: self.energy }]));
@@ -221,8 +221,8 @@ impl<'p> Sheet<'p> {
 }
 
 /// The entries of a symmetric matrix that are not zero, those on and below its diagonal.
-fn entry_rows<'p>(mass: &[Vec<Expr<'p>>]) -> Vec<Row<'p>> {
-    let places = (0..mass.len()).flat_map(|r| (0..=r).map(move |s| [r, s]));
-    let rows = places.map(|place @ [r, s]| Row::Entry { place, value: mass[r][s] });
-    rows.filter(|row| !matches!(row, Row::Entry { value, .. } if value.is_zero())).collect()
+fn entry_rows<'p>(mass: &Matrix<Expr<'p>>) -> Vec<Row<'p>> {
+    let below = |r| mass.nonzero(r).filter(move |&(s, _)| s <= r);
+    let row = |r| below(r).map(move |(s, value)| Row::Entry { place: [r, s], value });
+    (0..mass.rows()).flat_map(row).collect()
 }

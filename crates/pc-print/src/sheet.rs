@@ -5,7 +5,7 @@
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Given, Graph};
-use pc_mech::{Canonical, Equations, Expr, System};
+use pc_mech::{Canonical, Equations, Expr, Matrix, System};
 use pc_model::Assembly;
 use pc_nonholo::Kind;
 
@@ -28,7 +28,7 @@ pub struct Sheet<'p> {
     /// What vanishes, by the names of the constraints.
     pub constraints: Vec<(String, Expr<'p>, Kind)>,
     /// The matrix b and the column b_0 of ẋ = b η + b_0 (3).
-    pub frame: (Vec<Vec<Expr<'p>>>, Vec<Expr<'p>>),
+    pub frame: (Matrix<Expr<'p>>, Vec<Expr<'p>>),
     /// Each ẋ_i with what it is equal to.
     pub rates: Vec<(Expr<'p>, Expr<'p>)>,
     /// The brackets that are not zero.
@@ -52,8 +52,8 @@ pub struct Sheet<'p> {
 pub enum Balance<'p> {
     /// M η̇ = r.
     Velocities {
-        /// M by rows.
-        mass: Vec<Vec<Expr<'p>>>,
+        /// M
+        mass: Matrix<Expr<'p>>,
         /// η̇
         accelerations: Vec<Expr<'p>>,
         /// r as it is computed.
@@ -109,7 +109,7 @@ impl<'p> Sheet<'p> {
         let right = writing.all(equations.right_hand_side());
         let written = writing.multiplied_out(&right, equations.written(page));
         let balance = Balance::Velocities {
-            mass: writing.rows(&equations.mass_matrix().to_rows()),
+            mass: writing.matrix(equations.mass_matrix()),
             accelerations: system.quasi_velocities().iter().map(|eta| writing.rate(eta)).collect(),
             written,
             right,
@@ -187,8 +187,11 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         self.all(&[expression])[0]
     }
 
-    fn rows(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'p>>> {
-        rows.iter().map(|row| self.all(row)).collect()
+    fn matrix(&self, matrix: &Matrix<Expr<'g>>) -> Matrix<Expr<'p>> {
+        let entries = self.all(&matrix.nonzero_entries());
+        let mut entries = entries.into_iter();
+        let row = |i| matrix.nonzero(i).map(|(j, _)| j).zip(entries.by_ref()).collect();
+        Matrix::from_rows(matrix.columns(), (0..matrix.rows()).map(row).collect())
     }
 
     /// Right sides as sums of products where they are polynomials, unless they are much longer so.
@@ -239,7 +242,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             quasi_velocities: self.all(system.quasi_velocities()),
             changed: changed.collect(),
             constraints,
-            frame: (self.rows(&frame.b().to_rows()), self.all(frame.b0())),
+            frame: (self.matrix(frame.b()), self.all(frame.b0())),
             rates: with_rates(frame.coordinates(), parts.velocities),
             brackets: self.brackets(parts.vanishing),
             balance,

@@ -153,19 +153,22 @@ impl<'p> Text<'_, 'p> {
             self.names.list().iter().any(|used| used.shorthand && used.name == name)
         };
         if !entries.iter().any(|&(place, _)| named(place)) {
-            let mut cells = vec![vec!["0".to_owned(); k]; k];
-            for &([r, s], value) in &entries {
-                cells[r][s] = self.written.line(value);
-                cells[s][r] = cells[r][s].clone();
-            }
             if entries.iter().all(|([r, s], _)| r == s) {
-                let diagonal: Vec<&str> = (0..k).map(|s| cells[s][s].as_str()).collect();
+                let mut diagonal = vec!["0".to_owned(); k];
+                entries.iter().for_each(|&([r, _], value)| diagonal[r] = self.written.line(value));
                 let line = format!("diag({})", diagonal.join(", "));
                 if columns(&line) <= self.layout.width {
                     return vec![line];
                 }
-            } else if let Some(lines) = matrix(&cells) {
-                return lines;
+            } else if k <= WIDEST_MATRIX {
+                let mut cells = vec![vec!["0".to_owned(); k]; k];
+                for &([r, s], value) in &entries {
+                    cells[r][s] = self.written.line(value);
+                    cells[s][r] = cells[r][s].clone();
+                }
+                if let Some(lines) = matrix(&cells) {
+                    return lines;
+                }
             }
         }
         let entry = |&(place, value): &([usize; 2], Expr<'p>)| {

@@ -221,7 +221,9 @@ impl<'g> Printed<'g> {
     /// M by rows, empty where rates of momenta are printed, and the right sides as they are and multiplied out.
     fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
         match &self.sheet.balance {
-            Balance::Velocities { mass, right, written, .. } => (mass.concat(), [right, written]),
+            Balance::Velocities { mass, right, written, .. } => {
+                (mass.entries().into_owned(), [right, written])
+            }
             Balance::Momenta { right, written, .. } => (Vec::new(), [right, written]),
         }
     }

@@ -34,7 +34,7 @@ const RACES: &str = "valgrind --quiet --error-exitcode=9 --tool=helgrind";
 /// # Errors
 /// That of the first program that is wrong.
 pub(crate) fn run() -> Result<(), Error> {
-    setup::native_tools()?;
+    setup::native_tools_and_cpp()?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
     let place = target_directory()?.join("c-examples");

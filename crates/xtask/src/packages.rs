@@ -69,11 +69,13 @@ impl PackageManager {
 
     fn packages_of(self, tool: Tool) -> &'static [&'static str] {
         match (self, tool) {
-            (PackageManager::Brew, Tool::CCompiler | Tool::Make | Tool::Libclang) => &[],
+            (PackageManager::Brew, Tool::CCompiler | Tool::Make | Tool::Libclang | Tool::CppCompiler) => &[],
             (_, Tool::Cmake) => &["cmake"],
             (_, Tool::Make) => &["make"],
             (PackageManager::Apt, Tool::CCompiler) => &["gcc", "libc6-dev"],
-            (PackageManager::Pacman, Tool::CCompiler) => &["gcc"],
+            (PackageManager::Apt, Tool::CppCompiler) => &["g++"],
+            (PackageManager::Pacman, Tool::CCompiler | Tool::CppCompiler) => &["gcc"],
+            (PackageManager::Dnf | PackageManager::Zypper, Tool::CppCompiler) => &["gcc-c++"],
             (PackageManager::Dnf | PackageManager::Zypper, Tool::CCompiler) => &["gcc", "glibc-devel"],
             (PackageManager::Apt, Tool::Libclang) => &["libclang-dev"],
             (PackageManager::Pacman, Tool::Libclang) => &["clang"],
@@ -107,13 +109,15 @@ mod tests {
             (PackageManager::Zypper, "sudo zypper install gcc glibc-devel cmake make clang-devel"),
             (PackageManager::Brew, "xcode-select --install\n  brew install cmake"),
         ] {
-            assert_eq!(manager.install_line(&Tool::ALL), line);
+            assert_eq!(manager.install_line(&Tool::OF_BUILD), line);
         }
     }
 
     #[test]
     fn only_what_is_missing_is_installed() {
         assert_eq!(PackageManager::Apt.packages(&[Tool::Libclang]), ["libclang-dev"]);
+        assert_eq!(PackageManager::Apt.packages(&[Tool::CppCompiler]), ["g++"]);
+        assert_eq!(PackageManager::Dnf.packages(&[Tool::CppCompiler]), ["gcc-c++"]);
         assert_eq!(PackageManager::Brew.install_line(&[Tool::Cmake]), "brew install cmake");
         assert_eq!(PackageManager::Brew.install_line(&[Tool::Libclang]), "xcode-select --install");
     }

@@ -23,11 +23,24 @@ pub(crate) fn everything() -> Result<(), Error> {
 /// # Errors
 /// [`Error::Missing`] with the line to type, or the failure of the installation.
 pub(crate) fn native_tools() -> Result<(), Error> {
-    let machine = Machine::this();
-    if let Some(path) = machine.wrong_libclang_path() {
+    if let Some(path) = Machine::this().wrong_libclang_path() {
         return Err(Error::LibclangPath { path: path.display().to_string() });
     }
-    let missing = machine.missing_tools();
+    tools(&Tool::OF_BUILD)
+}
+
+/// The same, and a C++ compiler, which a machine that has gcc need not have: the examples in C++ are built with it.
+///
+/// # Errors
+/// As there.
+pub(crate) fn native_tools_and_cpp() -> Result<(), Error> {
+    native_tools()?;
+    tools(&[Tool::CppCompiler])
+}
+
+fn tools(wanted: &[Tool]) -> Result<(), Error> {
+    let machine = Machine::this();
+    let missing = machine.missing(wanted);
     if missing.is_empty() {
         return Ok(());
     }
@@ -40,7 +53,7 @@ pub(crate) fn native_tools() -> Result<(), Error> {
     println!("set-up: missing: {}", names(&missing).join(", "));
     install(prefix, &PackageManager::Apt.packages(&missing))?;
 
-    let missing = Machine::this().missing_tools();
+    let missing = Machine::this().missing(wanted);
     if missing.is_empty() { Ok(()) } else { Err(Error::StillMissing { tools: names(&missing) }) }
 }
 

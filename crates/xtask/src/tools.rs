@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A tool outside of Rust without which `pc-solve` does not build.
+/// A tool outside of Rust without which `pc-solve`, or an example, does not build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tool {
     /// `cc`, `gcc` or `clang`.
@@ -18,11 +18,13 @@ pub(crate) enum Tool {
     Make,
     /// The shared library `libclang` with clang's own headers, for bindgen.
     Libclang,
+    /// `g++` or `clang++`, for the examples in C++; not for the build.
+    CppCompiler,
 }
 
 impl Tool {
-    /// All of them, in the order in which the build needs them.
-    pub(crate) const ALL: [Tool; 4] = [Tool::CCompiler, Tool::Cmake, Tool::Make, Tool::Libclang];
+    /// Those of the build, in the order in which it needs them.
+    pub(crate) const OF_BUILD: [Tool; 4] = [Tool::CCompiler, Tool::Cmake, Tool::Make, Tool::Libclang];
 
     /// The name used in messages.
     pub(crate) fn name(self) -> &'static str {
@@ -31,6 +33,7 @@ impl Tool {
             Tool::Cmake => "cmake",
             Tool::Make => "make",
             Tool::Libclang => "libclang with its headers",
+            Tool::CppCompiler => "a C++ compiler",
         }
     }
 }
@@ -77,9 +80,9 @@ impl Machine {
         Machine { root: directory.to_owned(), variables, llvm_prefix: None }
     }
 
-    /// The tools that are not found.
-    pub(crate) fn missing_tools(&self) -> Vec<Tool> {
-        Tool::ALL.into_iter().filter(|&tool| !self.has(tool)).collect()
+    /// Those of some tools that are not found.
+    pub(crate) fn missing(&self, tools: &[Tool]) -> Vec<Tool> {
+        tools.iter().copied().filter(|&tool| !self.has(tool)).collect()
     }
 
     /// Whether a program of this name is on the `PATH`.
@@ -101,6 +104,10 @@ impl Machine {
             Tool::Cmake => self.variable("CMAKE").is_some() || self.has_program("cmake"),
             Tool::Make => self.variable("CMAKE_GENERATOR").is_some() || self.has_program("make"),
             Tool::Libclang => self.has_libclang(),
+            // One of C without its sister is no use to examples that are built by both.
+            Tool::CppCompiler => {
+                [["gcc", "g++"], ["clang", "clang++"]].iter().any(|c| c.iter().all(|c| self.has_program(c)))
+            }
         }
     }
 
@@ -210,7 +217,7 @@ mod tests {
 
     #[test]
     fn everything_is_missing_from_an_empty_machine() {
-        assert_eq!(machine(&[]).1.missing_tools(), Tool::ALL);
+        assert_eq!(machine(&[]).1.missing(&Tool::OF_BUILD), Tool::OF_BUILD);
     }
 
     #[test]
@@ -230,14 +237,23 @@ mod tests {
             ],
         ] {
             let files: Vec<&str> = programs.iter().chain(&library).copied().collect();
-            assert_eq!(machine(&files).1.missing_tools(), [], "{library:?}");
+            assert_eq!(machine(&files).1.missing(&Tool::OF_BUILD), [], "{library:?}");
         }
+    }
+
+    #[test]
+    fn a_compiler_of_c_alone_builds_no_example_in_cpp() {
+        let lacks = |files: &[&str]| !machine(files).1.missing(&[Tool::CppCompiler]).is_empty();
+        assert!(lacks(&["usr/bin/gcc", "usr/bin/cc"]));
+        assert!(lacks(&["usr/bin/gcc", "usr/bin/clang++"]));
+        assert!(!lacks(&["usr/bin/gcc", "usr/bin/g++"]));
+        assert!(!lacks(&["usr/bin/clang", "usr/bin/clang++"]));
     }
 
     #[test]
     fn libclang_without_headers_is_not_enough() {
         let (_directory, machine) = machine(&["usr/lib/x86_64-linux-gnu/libclang-14.so.1"]);
-        assert!(machine.missing_tools().contains(&Tool::Libclang));
+        assert!(machine.missing(&Tool::OF_BUILD).contains(&Tool::Libclang));
     }
 
     #[test]

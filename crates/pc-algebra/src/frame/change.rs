@@ -109,9 +109,7 @@ impl<'g> Frame<'g> {
         let back = inverse(graph, a).ok_or(AlgebraError::SingularDefinitions)?;
         let back0: Vec<Expr<'g>> =
             (0..k).map(|m| -graph.dot(back.row(m).iter().copied(), a0.iter().copied())).collect();
-        let b = Matrix::from_fn(self.b().rows(), k, |i, s| {
-            graph.dot(self.b().row(i).iter().copied(), back.column(s))
-        });
+        let b = self.b().times(graph, &back);
         let b0 = self.velocities(&back0);
         let to = Frame::new(graph, self.time(), self.coordinates().to_vec(), b, b0)?;
         Ok(FrameChange { to, matrix: a.clone(), drift: a0.to_vec(), back: (back, back0) })
@@ -142,14 +140,14 @@ impl<'g> FrameChange<'g> {
     /// η = B η' + B_0; `eta` has length k.
     pub fn old_quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (graph, (b, b0)) = (self.to.graph(), &self.back);
-        let row = |m: usize| b.row(m).iter().zip(eta).map(|(&b, &eta)| b * eta);
+        let row = |m: usize| b.nonzero(m).map(|(s, b)| b * eta[s]);
         (0..eta.len()).map(|m| graph.sum(row(m).chain([b0[m]]))).collect()
     }
 
     /// η' = A η + A_0; `eta` has length k.
     pub fn quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.to.graph();
-        let row = |u: usize| self.matrix.row(u).iter().zip(eta).map(|(&a, &eta)| a * eta);
+        let row = |u: usize| self.matrix.nonzero(u).map(|(s, a)| a * eta[s]);
         (0..eta.len()).map(|u| graph.sum(row(u).chain([self.drift[u]]))).collect()
     }
 

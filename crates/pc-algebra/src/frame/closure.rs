@@ -205,8 +205,8 @@ impl<'g> Frame<'g> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());
         let ones = || vec![Expr::ONE; b.rows()];
-        let near = Neighbourhood::anywhere(self.graph(), b.entries());
-        let samples = near.weighed(self.graph(), b.entries(), TRIALS);
+        let near = Neighbourhood::anywhere(self.graph(), &b.entries());
+        let samples = near.weighed(self.graph(), &b.entries(), TRIALS);
         if samples.is_empty() {
             return ones();
         }
@@ -241,7 +241,7 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> f64 {
         let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
-            let combination = self.b().row(i).iter().zip(c).map(|(&b, &c)| -(b * c));
+            let combination = self.b().nonzero(i).map(|(s, b)| -(b * c[s]));
             terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
         };
         near.residual(self.graph(), &y.iter().enumerate().map(difference).collect::<Vec<_>>())

@@ -124,8 +124,8 @@ impl<'g> Elimination<'g> {
     /// The terms of Y^D − A_DI Y^I for a field given by those of its components.
     fn outside(&self, field: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let row = |(d, &m): (usize, &usize)| -> Vec<Expr<'g>> {
-            let carried = self.free.iter().zip(self.matrix.row(d));
-            let carried = carried.flat_map(|(&i, &a)| field[i].iter().map(move |&y| -(a * y)));
+            let carried = self.matrix.nonzero(d).map(|(i, a)| (self.free[i], a));
+            let carried = carried.flat_map(|(i, a)| field[i].iter().map(move |&y| -(a * y)));
             field[m].iter().copied().chain(carried).filter(|term| !term.is_zero()).collect()
         };
         self.dependent.iter().enumerate().map(row).collect()

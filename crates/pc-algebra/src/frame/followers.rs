@@ -18,8 +18,8 @@ impl<'g> Frame<'g> {
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {
         let b = self.b();
-        let near = Neighbourhood::anywhere(self.graph(), b.entries());
-        let samples = near.samples(self.graph(), b.entries(), POINTS);
+        let near = Neighbourhood::anywhere(self.graph(), &b.entries());
+        let samples = near.samples(self.graph(), &b.entries(), POINTS);
         let mut follows = vec![false; b.rows()];
         for i in (0..b.rows()).rev() {
             let leads = |j: usize| {

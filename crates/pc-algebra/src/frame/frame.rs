@@ -81,14 +81,14 @@ impl<'g> Frame<'g> {
             AlgebraError::DefinitionNotAffine { row: row + 1, definition: definitions[row].to_string() }
         })?;
         let b = inverse(graph, &a).ok_or(AlgebraError::SingularDefinitions)?;
-        let b0 = (0..n).map(|i| -graph.dot(b.row(i).iter().copied(), a0.iter().copied())).collect();
+        let b0 = (0..n).map(|i| -graph.sum(b.nonzero(i).map(|(j, b)| b * a0[j]))).collect();
         Ok(Frame { a: Some(a), ..Frame::new(graph, time, coordinates, b, b0)? })
     }
 
     /// The coordinate frame η = ẋ, X_s = ∂/∂x_s.
     pub fn coordinate(graph: &'g Graph, time: Expr<'g>, coordinates: Vec<Expr<'g>>) -> Frame<'g> {
         let n = coordinates.len();
-        let b = Matrix::from_fn(n, n, |i, j| if i == j { Expr::ONE } else { Expr::ZERO });
+        let b = Matrix::identity(n);
         Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
     }
 
@@ -132,8 +132,7 @@ impl<'g> Frame<'g> {
     pub fn velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         (0..self.coordinates.len())
             .map(|i| {
-                let row = self.b.row(i).iter().zip(eta).filter(|(b, _)| !b.is_zero());
-                let moving = row.map(|(&b, &eta)| b * eta);
+                let moving = self.b.nonzero(i).map(|(s, b)| b * eta[s]);
                 self.graph.sum(moving.chain([self.b0[i]]))
             })
             .collect()
@@ -162,7 +161,7 @@ impl<'g> Frame<'g> {
             return Err(AlgebraError::DependentOperators { rank, operators });
         }
         let a = self.left_inverse().ok_or(AlgebraError::DependentOperators { rank: rank - 1, operators })?;
-        let drift = |s: usize| -self.graph.dot(a.row(s).iter().copied(), self.b0.iter().copied());
+        let drift = |s: usize| -self.graph.sum(a.nonzero(s).map(|(i, a)| a * self.b0[i]));
         let a0 = (0..operators).map(drift).collect();
         Ok((a, a0))
     }
@@ -182,8 +181,11 @@ impl<'g> Frame<'g> {
 
     /// X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
     pub fn contract(&self, gradient: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let moved = |s| self.b.column(s).zip(gradient).filter(|(b, _)| !b.is_zero());
-        (0..self.operators()).map(|s| self.graph.sum(moved(s).map(|(b, &slope)| b * slope))).collect()
+        let mut terms = vec![Vec::new(); self.operators()];
+        for (i, &slope) in gradient.iter().enumerate() {
+            self.b.nonzero(i).for_each(|(s, b)| terms[s].push(b * slope));
+        }
+        terms.into_iter().map(|terms| self.graph.sum(terms)).collect()
     }
 
     /// The components [X_r, X_s]^i = X_r(b_is) − X_s(b_ir), i = 1..n, with r, s = 0..k and b_i0 the drift.
@@ -203,8 +205,9 @@ impl<'g> Frame<'g> {
     pub(crate) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
         let movers = self.movers();
         let mut coupled = BTreeSet::new();
-        for s in 0..=self.operators() {
-            let moving = movers.of(&self.operator(s)).into_iter().filter(|&r| r != s);
+        for (s, operator) in self.nonzero_operators().into_iter().enumerate() {
+            let components: Vec<Expr<'g>> = operator.into_iter().map(|(_, b)| b).collect();
+            let moving = movers.of(&components).into_iter().filter(|&r| r != s);
             coupled.extend(moving.map(|r| (r.min(s), r.max(s))));
         }
         coupled.into_iter().collect()
@@ -219,11 +222,17 @@ impl<'g> Frame<'g> {
     pub(crate) fn movers(&self) -> Movers<'g> {
         let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
         by_name.entry(self.time.symbol_name()).or_default().push(0);
-        for s in 0..=self.operators() {
-            let moving = self.coordinates.iter().zip(self.operator(s)).filter(|(_, b)| !b.is_zero());
-            moving.for_each(|(x, _)| by_name.entry(x.symbol_name()).or_default().push(s));
+        for (s, operator) in self.nonzero_operators().into_iter().enumerate() {
+            let moving = operator.into_iter().map(|(i, _)| self.coordinates[i]);
+            moving.for_each(|x| by_name.entry(x.symbol_name()).or_default().push(s));
         }
         Movers { graph: self.graph, by_name }
+    }
+
+    /// The components of X_0..X_k that are not zero, with their coordinates.
+    fn nonzero_operators(&self) -> Vec<Vec<(usize, Expr<'g>)>> {
+        let drift = self.b0.iter().copied().enumerate().filter(|(_, b)| !b.is_zero()).collect();
+        std::iter::once(drift).chain(self.b.transpose().nonzero_rows()).collect()
     }
 
     /// The components b_is of X_s, the drift for s = 0.
@@ -235,7 +244,9 @@ impl<'g> Frame<'g> {
     #[must_use]
     pub fn restricted(&self, operators: usize) -> Frame<'g> {
         let columns = operators.min(self.operators());
-        Frame { b: Matrix::from_fn(self.b.rows(), columns, |i, s| self.b[(i, s)]), a: None, ..self.clone() }
+        let row = |i| self.b.nonzero(i).filter(|&(s, _)| s < columns).collect();
+        let b = Matrix::from_rows(columns, (0..self.b.rows()).map(row).collect());
+        Frame { b, a: None, ..self.clone() }
     }
 
     /// The frame of the operators listed, numbered from 0, in the order of the list, and X_0.
@@ -260,9 +271,9 @@ impl<'g> Frame<'g> {
 
     /// Rank of b at almost all points, as the graph knows it; less where numbers show that its operators are dependent.
     pub fn rank(&self) -> usize {
-        let rows = self.b.to_rows();
-        let known = self.graph.generic_rank(&rows);
-        let seen = Neighbourhood::anywhere(self.graph, self.b.entries()).rank(self.graph, &rows);
+        let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());
+        let near = Neighbourhood::anywhere(self.graph, &self.b.nonzero_entries());
+        let seen = near.rank(self.graph, &self.b);
         seen.map_or(known, |seen| seen.min(known))
     }
 }

@@ -1,8 +1,9 @@
 //! Numerical values of expressions at pseudo-random points, for tests that the graph cannot decide exactly.
 
-use pc_expr::{Expr, Function, Graph, Scalar, independent_blocks};
+use pc_expr::{Expr, Function, Graph, Scalar, SymbolPlaces, independent_blocks};
 
 use crate::identity::running_error::Weighed;
+use crate::linear_algebra::matrix::Matrix;
 
 /// Points at which an identity that the graph cannot decide is tried numerically.
 pub(crate) const TRIALS: usize = 8;
@@ -30,12 +31,15 @@ impl<'g> Neighbourhood<'g> {
         index: u64,
     ) -> Option<Vec<S>> {
         let symbols = graph.symbols_of(outputs);
+        if symbols.is_empty() {
+            return graph.evaluate(outputs, &[]).ok();
+        }
         let mut random = Random(index);
+        let known = SymbolPlaces::of(&self.centre.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
         let values: Vec<(Expr<'g>, S)> = symbols
             .into_iter()
             .map(|symbol| {
-                let centre =
-                    self.centre.iter().find(|(known, _)| *known == symbol).map_or(1.0, |&(_, value)| value);
+                let centre = known.get(symbol).map_or(1.0, |place| self.centre[place].1);
                 let reach = 0.1 + 0.2 * centre.abs();
                 (symbol, S::from_f64(if index == 0 { centre } else { centre + reach * random.next() }))
             })
@@ -116,20 +120,21 @@ impl<'g> Neighbourhood<'g> {
         !samples.is_empty() && samples.iter().flatten().all(is_rounding)
     }
 
-    /// The largest rank that a matrix, given by its rows, has in numbers at points near by; `None` where it has no numbers, and
-    /// where these are of one piece only.
-    pub(crate) fn rank(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Option<usize> {
-        if in_pieces(graph, &rows.concat()) {
+    /// The largest rank that a matrix has in numbers at points near by; `None` where it has no numbers, and where these are of one
+    /// piece only.
+    pub(crate) fn rank(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
+        let entries = matrix.nonzero_entries();
+        if in_pieces(graph, &entries) {
             return None;
         }
-        let samples = self.weighed(graph, &rows.concat(), TRIALS);
-        samples.into_iter().map(|sample| rank_of_sample(rows, &sample)).max()
+        let samples = self.weighed(graph, &entries, TRIALS);
+        samples.into_iter().map(|sample| rank_of_sample(matrix, &sample)).max()
     }
 
-    /// The rank of a matrix, given by its rows, at the centre; `None` where it has no numbers there.
-    pub fn rank_at_centre(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Option<usize> {
-        let sample = self.sample::<Weighed>(graph, &rows.concat(), 0)?;
-        sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(rows, &sample))
+    /// The rank of a matrix at the centre; `None` where it has no numbers there.
+    pub fn rank_at_centre(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
+        let sample = self.sample::<Weighed>(graph, &matrix.nonzero_entries(), 0)?;
+        sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(matrix, &sample))
     }
 
     /// Values at up to `count` points where all outputs are finite.
@@ -164,14 +169,24 @@ fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
     expressions.iter().any(|&expression| graph.applies(expression, &symbols, has_pieces))
 }
 
-/// The rank of a matrix with these zeros and these numbers, block by block.
-fn rank_of_sample<'g>(rows: &[Vec<Expr<'g>>], sample: &[Weighed]) -> usize {
-    let columns = rows.first().map_or(0, Vec::len);
-    let entries = |row: &Vec<Expr<'g>>| (0..columns).filter(|&j| !row[j].is_zero()).collect();
-    let blocks = independent_blocks(columns, &rows.iter().map(entries).collect::<Vec<_>>());
-    let of_block = |(i, j): &(Vec<usize>, Vec<usize>)| {
-        rank(i.iter().map(|i| j.iter().map(|j| sample[i * columns + j]).collect()).collect(), j.len())
+/// The rank of a matrix whose entries that are not zero have these numbers, block by block.
+fn rank_of_sample(matrix: &Matrix<Expr<'_>>, sample: &[Weighed]) -> usize {
+    let mut numbers = sample.iter().copied();
+    let row = |i| matrix.nonzero(i).zip(numbers.by_ref()).map(|((j, _), number)| (j, number)).collect();
+    let rows: Vec<Vec<(usize, Weighed)>> = (0..matrix.rows()).map(row).collect();
+    let columns = |row: &Vec<(usize, Weighed)>| row.iter().map(|&(j, _)| j).collect();
+    let blocks = independent_blocks(matrix.columns(), &rows.iter().map(columns).collect::<Vec<_>>());
+    let whole = |row: &[(usize, Weighed)], columns: &[usize]| {
+        let mut whole = vec![Weighed::from_f64(0.0); columns.len()];
+        for (j, number) in row {
+            if let Ok(place) = columns.binary_search(j) {
+                whole[place] = *number;
+            }
+        }
+        whole
     };
+    let of_block =
+        |(i, j): &(Vec<usize>, Vec<usize>)| rank(i.iter().map(|&i| whole(&rows[i], j)).collect(), j.len());
     blocks.iter().map(of_block).sum()
 }
 

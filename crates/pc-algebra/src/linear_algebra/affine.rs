@@ -61,7 +61,7 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
     let matrix = Matrix::from_fn(k, k, |r, s| parts[r.max(s) * k + r.min(s)]);
     let dot = |row: &[Expr<'g>]| graph.dot(row.iter().copied(), symbols.iter().copied());
     let polynomial = || {
-        let halves: Vec<Expr<'g>> = (0..k).map(|s| dot(matrix.row(s)) / 2.0).collect();
+        let halves: Vec<Expr<'g>> = (0..k).map(|s| dot(&matrix.row(s)) / 2.0).collect();
         constant + dot(&halves) + dot(&linear)
     };
     (known || vanishes(graph, value - polynomial())).then_some(Quadratic { matrix, linear, constant })

@@ -174,7 +174,7 @@ impl<'g> PoissonBracket<'g> {
                 Err(MechError::from(MatrixError::NotSkew { what: "a Poisson tensor", pair }).into())
             }
             None => {
-                let mut constants = graph.symbols_of(tensor.entries());
+                let mut constants = graph.symbols_of(&tensor.nonzero_entries());
                 constants.retain(|z| !variables.contains(z));
                 Ok(PoissonBracket { graph, variables, tensor, time_momentum: None, constants })
             }
@@ -313,7 +313,7 @@ impl<'g> PoissonBracket<'g> {
     /// [`field`](PoissonBracket::field) likewise.
     fn components(&self, h: Expr<'g>) -> Vec<Expr<'g>> {
         let slope = self.graph.gradient(h, &self.variables);
-        let component = |i: usize| self.graph.dot(self.tensor.row(i).iter().copied(), slope.iter().copied());
+        let component = |i: usize| self.graph.sum(self.tensor.nonzero(i).map(|(j, entry)| entry * slope[j]));
         (0..self.variables.len()).map(component).collect()
     }
 
@@ -325,7 +325,7 @@ impl<'g> PoissonBracket<'g> {
 
     /// Rank of the Poisson tensor at almost all points, always even.
     pub fn rank(&self) -> usize {
-        self.graph.generic_rank(&self.tensor.to_rows())
+        self.graph.generic_rank_of_entries(self.tensor.columns(), &self.tensor.nonzero_rows())
     }
 
     /// Number of variables less rank: so many independent Casimirs there are near almost every point.

@@ -153,7 +153,8 @@ pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, Analy
     let mass = equations.mass_matrix();
     let frame = determinants_of_blocks(graph, system.frame().b());
     let inertias = (0..mass.rows()).map(|s| mass[(s, s)]);
-    let mut candidates = simple_factors(system, &[mass.entries(), system.frame().b().entries()].concat());
+    let mut candidates =
+        simple_factors(system, &[mass.nonzero_entries(), system.frame().b().nonzero_entries()].concat());
     for candidate in frame.into_iter().flatten().chain(inertias).chain(determinant(graph, mass)) {
         if candidate.constant().is_none() && !candidates.contains(&candidate) {
             candidates.push(candidate);

@@ -102,7 +102,7 @@ impl<'g> MeasureSearch<'g> {
             None => {
                 let cost =
                     |parts: &[Expr<'g>]| parts.iter().map(|e| e.tree_cost()).fold(0, u32::saturating_add);
-                let length = cost(mass.entries()).saturating_add(cost(equations.right_hand_side()));
+                let length = cost(&mass.nonzero_entries()).saturating_add(cost(equations.right_hand_side()));
                 if mass.rows() > MOST_VELOCITIES || length > LONGEST {
                     return Ok(MeasureSearch::TooLong);
                 }
@@ -193,7 +193,7 @@ fn of_surfaces<'g>(
 /// A density that is a product of powers of coordinates, their sines and cosines.
 fn of_factors<'g>(system: &System<'g>, growth: Vec<Expr<'g>>) -> Option<Expr<'g>> {
     let (graph, frame) = (system.graph(), system.frame());
-    let factors = simple_factors(system, frame.b().entries());
+    let factors = simple_factors(system, &frame.b().nonzero_entries());
     if factors.len() > MOST_FACTORS {
         return None;
     }

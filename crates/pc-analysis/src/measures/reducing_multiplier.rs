@@ -98,7 +98,7 @@ fn has_forces(voronets: &Voronets<'_>) -> bool {
 
 fn depends_on_time(voronets: &Voronets<'_>) -> bool {
     let held = voronets.held();
-    let coefficients = voronets.coefficients().entries().iter().copied();
-    let parts: Vec<Expr<'_>> = coefficients.chain([held.lagrangian()]).collect();
+    let mut parts = voronets.coefficients().nonzero_entries();
+    parts.push(held.lagrangian());
     held.graph().directional(&parts, &[(held.frame().time(), Expr::ONE)]).iter().any(|d| !d.is_zero())
 }

@@ -25,7 +25,7 @@ impl Iterate {
     /// |F| against what the rounding of z to one part would make of it, |∂F/∂z| (1 + |z|).
     pub(crate) fn relative_residual(&self) -> f64 {
         let residual = norm(&self.values);
-        if residual == 0.0 { 0.0 } else { residual / (norm(self.slopes.entries()) * self.scale()) }
+        if residual == 0.0 { 0.0 } else { residual / (norm(&self.slopes.entries()) * self.scale()) }
     }
 
     /// Whether the relative residual is at most `tolerance`.

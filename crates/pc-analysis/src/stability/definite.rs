@@ -35,7 +35,7 @@ pub(crate) fn definite_combination(
         }
         let inward = norm(&centre) > 1.0;
         let slope: Vec<f64> = if inward { centre.iter().map(|c| -c).collect() } else { slope };
-        let across: Vec<f64> = (0..count).map(|i| dot(ellipsoid.row(i), &slope)).collect();
+        let across: Vec<f64> = (0..count).map(|i| dot(&ellipsoid.row(i), &slope)).collect();
         let width = dot(&across, &slope).max(0.0).sqrt();
         if width == 0.0 || !inward && least + width <= tolerance {
             return Ok(None);
@@ -65,7 +65,7 @@ fn least_eigenvalue(forms: &[Matrix<f64>], c: &[f64]) -> Result<(f64, Vec<f64>),
     let (values, vectors) = symmetric_eigenvalues(&combination(forms, c))?;
     let Some(&least) = values.first() else { return Ok((f64::INFINITY, vec![0.0; c.len()])) };
     let v: Vec<f64> = vectors.column(0).collect();
-    let at = |form: &Matrix<f64>| (0..v.len()).map(|i| v[i] * dot(form.row(i), &v)).sum();
+    let at = |form: &Matrix<f64>| (0..v.len()).map(|i| v[i] * dot(&form.row(i), &v)).sum();
     Ok((least, forms.iter().map(at).collect()))
 }
 

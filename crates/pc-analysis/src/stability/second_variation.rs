@@ -175,7 +175,7 @@ fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
     let hessians: Vec<Matrix<f64>> =
         expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();
     // Against the whole forms: what they leave on the kernel may be rounding alone.
-    let whole = expansions.iter().map(|expansion| norm(expansion.hessian.entries()));
+    let whole = expansions.iter().map(|expansion| norm(&expansion.hessian.entries()));
     let largest = whole.fold(0.0, f64::max);
 
     // The form of λ, and those by which the free multipliers change it.
@@ -184,7 +184,7 @@ fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
     for l in 0..critical.free.columns() {
         let mu: Vec<f64> = critical.free.column(l).collect();
         let form = combination(&hessians, &with_energy(0.0, &mu));
-        if norm(form.entries()) > rounding * largest {
+        if norm(&form.entries()) > rounding * largest {
             forms.push(form);
             multipliers.push(mu);
         }
@@ -200,7 +200,7 @@ fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
         variables: Vec::new(),
         multipliers: (0..multipliers[0].len()).map(|j| (String::new(), multiplier(j))).collect(),
         residual: critical.residual,
-        tolerance: certain * norm(form.entries()),
+        tolerance: certain * norm(&form.entries()),
         eigenvalues: symmetric_eigenvalues(&form)?.0,
         verdict,
     })
@@ -209,7 +209,7 @@ fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
 /// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if there are any.
 fn definite(forms: &[Matrix<f64>], largest: f64, tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     let least_size = if largest > 0.0 { tolerance * largest } else { 1.0 };
-    let sizes: Vec<f64> = forms.iter().map(|form| norm(form.entries()).max(least_size)).collect();
+    let sizes: Vec<f64> = forms.iter().map(|form| norm(&form.entries()).max(least_size)).collect();
     let scaled: Vec<Matrix<f64>> =
         forms.iter().zip(&sizes).map(|(form, size)| form.map(|entry| entry / size)).collect();
     let found = definite_combination(&scaled, tolerance)?;

@@ -73,7 +73,7 @@ impl Spectrum {
             return Err(ShapeError { what, found: matrix.columns(), expected: size }.into());
         }
         let uncertainty = uncertainty.max(8.0 * size as f64 * f64::EPSILON);
-        let scale = norm(matrix.entries());
+        let scale = norm(&matrix.entries());
         let (regular, zero_blocks) = without_zeros(matrix, uncertainty * scale)?;
         let mut found: Vec<Eigenvalue> = eigenvalues(&regular)?
             .into_iter()

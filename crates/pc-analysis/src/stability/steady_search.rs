@@ -135,10 +135,11 @@ impl SteadySearch {
 /// Whether nothing in the equations depends on time or on inputs.
 pub(super) fn is_autonomous(equations: &Equations<'_>) -> bool {
     let (system, time) = (equations.system(), equations.system().frame().time());
+    let mass = equations.mass_matrix().nonzero_entries();
     let mut all = equations
         .velocities()
         .iter()
-        .chain(equations.mass_matrix().entries())
+        .chain(&mass)
         .chain(equations.right_hand_side())
         .chain(system.states().iter().map(|(_, rate)| rate));
     let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));

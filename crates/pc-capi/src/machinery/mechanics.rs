@@ -41,7 +41,7 @@ impl Mechanics {
         let compiled =
             |values: &[Expr<'g>], forces: &[Expr<'g>]| assembly.placed(compile(&equations, values, forces));
         Ok(Mechanics {
-            mass: compiled(equations.mass_matrix().entries(), &[])?,
+            mass: compiled(&equations.mass_matrix().entries(), &[])?,
             structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,
             operators,
             right: compiled(&right, &forces)?,

@@ -13,12 +13,16 @@ use crate::graph::function::Function;
 use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
+use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::Cone;
+use crate::identity::blocks::independent_blocks;
 
 /// Greatest degree in one variable that is looked for.
 const MAX_DEGREE: usize = 4;
 /// Most terms of a polynomial in several variables.
 const MOST_TERMS: usize = 10_000;
+/// A sum of more terms is looked at for groups of terms that have nothing to do with each other.
+const MANY_TERMS: usize = 64;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
 /// A number at which no divisor is likely to vanish.
@@ -40,39 +44,107 @@ impl Graph {
     /// What a value does not depend on is put to a number; those of the `variables` to no other than 0, so that none
     /// stands in their place.
     pub fn shorten<'g>(&'g self, expressions: &[Expr<'g>], variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        expressions.iter().map(|&e| self.collect(e, variables, variables)).collect()
+        let places = SymbolPlaces::of(variables);
+        expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
     }
 
-    /// e collected by `variables`, which are some of `all`.
-    fn collect<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>], all: &[Expr<'g>]) -> Expr<'g> {
+    /// e collected by the variables from place `first` on.
+    fn collect<'g>(
+        &'g self,
+        e: Expr<'g>,
+        (variables, places): (&[Expr<'g>], &SymbolPlaces),
+        first: usize,
+    ) -> Expr<'g> {
         if self.folding() == Folding::Structural || e.constant().is_some() || e.tree_cost() > TOO_LONG {
             return e;
         }
-        let present = self.symbols_of(&[e]);
-        let Some((position, powers)) = variables.iter().enumerate().find_map(|(position, &z)| {
-            let powers = if present.contains(&z) { self.powers(e, z)? } else { return None };
-            (powers.len() > 1).then_some((position, powers))
-        }) else {
-            return self.forget(e, all);
+        if let Some(collected) = self.collect_apart(e, (variables, places), first) {
+            return collected;
+        }
+        let mut present: Vec<usize> =
+            self.symbols_of(&[e]).into_iter().filter_map(|symbol| places.get(symbol)).collect();
+        present.sort_unstable();
+        let Some((position, powers)) =
+            present.into_iter().filter(|&position| position >= first).find_map(|position| {
+                let powers = self.powers(e, variables[position])?;
+                (powers.len() > 1).then_some((position, powers))
+            })
+        else {
+            return self.forget(e, places);
         };
-        let rest = &variables[position + 1..];
         let z = variables[position];
-        let terms =
-            powers.into_iter().enumerate().map(|(i, c)| self.collect(c, rest, all) * z.powi(i as i32));
+        let collected = |c: Expr<'g>| self.collect(c, (variables, places), position + 1);
+        let terms = powers.into_iter().enumerate().map(|(i, c)| collected(c) * z.powi(i as i32));
         let collected = self.sum(terms.collect::<Vec<_>>());
-        if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, all) }
+        if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, places) }
+    }
+
+    /// A long sum whose terms fall into groups without common variables, each group collected by itself: to go through all its
+    /// variables in turn takes the square of their number. `None` where that is no shorter, or the sum is none.
+    fn collect_apart<'g>(
+        &'g self,
+        e: Expr<'g>,
+        (variables, places): (&[Expr<'g>], &SymbolPlaces),
+        first: usize,
+    ) -> Option<Expr<'g>> {
+        let Atom::Node(mut node) = e.atom() else { return None };
+        let (constant, terms) = self.with(|dag| {
+            let mut factor = Number::ONE;
+            loop {
+                match dag.node(node) {
+                    // A common factor stands before the sum.
+                    Node::Sum { constant, terms } if constant.is_zero() && dag.terms(terms).len() == 1 => {
+                        let (inner, q) = dag.terms(terms)[0];
+                        (node, factor) = (inner, factor * q);
+                    }
+                    Node::Sum { constant, terms } if dag.terms(terms).len() > MANY_TERMS => {
+                        let terms = dag.terms(terms).iter().map(|&(term, q)| (term, factor * q));
+                        return Some((factor * constant, terms.collect::<Vec<_>>()));
+                    }
+                    _ => return None,
+                }
+            }
+        })?;
+        let of_term = |&(node, _): &(NodeId, Number)| {
+            let symbols = self.symbols_of(&[self.expr(Atom::Node(node))]).into_iter();
+            symbols.filter_map(|symbol| places.get(symbol)).filter(|&place| place >= first).collect()
+        };
+        let entries: Vec<Vec<usize>> = terms.iter().map(of_term).collect();
+        let mut groups: Vec<Vec<usize>> =
+            independent_blocks(variables.len(), &entries).into_iter().map(|(rows, _)| rows).collect();
+        if groups.len() <= 1 {
+            return None;
+        }
+        groups.push((0..terms.len()).filter(|&i| entries[i].is_empty()).collect());
+        let mut parts = vec![Expr::from(constant)];
+        for group in groups.into_iter().filter(|group| !group.is_empty()) {
+            let part: Vec<(Atom, Number)> =
+                group.into_iter().map(|i| (Atom::Node(terms[i].0), terms[i].1)).collect();
+            let part = self.build(|dag| dag.sum_of(&part));
+            let collected = self.collect(part, (variables, places), first);
+            if collected.tree_cost() > part.tree_cost() {
+                return None;
+            }
+            parts.push(collected);
+        }
+        Some(self.sum(parts))
     }
 
     /// e as a polynomial in all of `variables`, if it is one of at most ten thousand terms.
     pub fn polynomial<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Option<Polynomial<'g>> {
-        let mut terms = vec![(Vec::new(), e)];
-        for &z in variables {
+        let places = SymbolPlaces::of(variables);
+        let mut terms = vec![(vec![0; variables.len()], e)];
+        let mut first = 0;
+        loop {
+            let written = self.symbols_of(&terms.iter().map(|&(_, c)| c).collect::<Vec<_>>());
+            let written = written.into_iter().filter_map(|symbol| places.get(symbol));
+            let Some(place) = written.filter(|&place| place >= first).min() else { break };
             let mut next = Vec::new();
             for (exponents, coefficient) in terms {
-                for (i, c) in self.powers(coefficient, z)?.into_iter().enumerate() {
+                for (i, c) in self.powers(coefficient, variables[place])?.into_iter().enumerate() {
                     if !c.is_zero() {
-                        let mut exponents = exponents.clone();
-                        exponents.push(i as u32);
+                        let mut exponents: Vec<u32> = exponents.clone();
+                        exponents[place] = i as u32;
                         next.push((exponents, c));
                     }
                 }
@@ -80,8 +152,9 @@ impl Graph {
             if next.len() > MOST_TERMS {
                 return None; // nobody would read it
             }
-            terms = next;
+            (terms, first) = (next, place + 1);
         }
+        terms.retain(|(_, c)| !c.is_zero());
         Some(Polynomial { variables: variables.to_vec(), terms })
     }
 
@@ -124,11 +197,11 @@ impl Graph {
 
     /// e written without the symbols and angles that it contains but does not depend on: they are put to a regular
     /// value, `variables` to 0 if that is one.
-    fn forget<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Expr<'g> {
+    fn forget<'g>(&'g self, e: Expr<'g>, variables: &SymbolPlaces) -> Expr<'g> {
         let mut short = e;
         for z in self.repeated_symbols(e) {
             if self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
-                short = match variables.contains(&z) {
+                short = match variables.contains(z) {
                     true => self.at_zero(short, z),
                     false => self.at_regular_point(short, z),
                 };
@@ -419,7 +492,8 @@ impl<'g> Polynomial<'g> {
     /// The polynomial written out in another graph, coefficients in front of their monomials, not nested.
     pub fn expanded<'h>(&self, from: &'g Graph, into: &'h Graph) -> Expr<'h> {
         let terms = self.terms.iter().map(|(exponents, coefficient)| {
-            let monomial = self.variables.iter().zip(exponents).fold(Expr::ONE, |product, (z, &e)| {
+            let present = self.variables.iter().zip(exponents).filter(|(_, e)| **e > 0);
+            let monomial = present.fold(Expr::ONE, |product, (z, &e)| {
                 product * into.symbol(&z.symbol_name().unwrap_or_default()).powi(e as i32)
             });
             from.typeset(&[*coefficient], into)[0] * monomial

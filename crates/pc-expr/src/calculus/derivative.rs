@@ -12,6 +12,7 @@ use crate::graph::function::Function;
 use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
+use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
 /// A node that is the first of the branches where the condition is not negative, and the second elsewhere.
@@ -279,6 +280,40 @@ impl Graph {
         let nodes: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
         let output = output.atom_in(self);
         self.build_all(|dag| dag.gradient(output, &nodes))
+    }
+
+    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the place of the symbol: what [gradients](Graph::gradient)
+    /// are, without the zeros, of which n functions of few symbols each have n².
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y, z] = graph.symbols(["x", "y", "z"]);
+    /// assert_eq!(graph.jacobian(&[x * z, y], &[x, y, z]), [vec![(0, z), (2, x)], vec![(1, 1.into())]]);
+    /// ```
+    ///
+    /// # Panics
+    /// If one of `symbols` is not a symbol, or stands there twice.
+    pub fn jacobian<'g>(&'g self, outputs: &[Expr<'g>], symbols: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
+        let nodes: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
+        let places = SymbolPlaces::of(symbols);
+        assert!(nodes.iter().enumerate().all(|(place, &node)| places.of_node(node) == Some(place)), "twice");
+        let row = |output: &Expr<'g>| {
+            let output = output.atom_in(self);
+            let slopes = self.with(|dag| {
+                let mut moving: Vec<usize> = Cone::below(dag, [output])
+                    .order
+                    .iter()
+                    .filter_map(|&node| places.of_node(node))
+                    .collect();
+                moving.sort_unstable();
+                let symbols: Vec<NodeId> = moving.iter().map(|&place| nodes[place]).collect();
+                moving.into_iter().zip(dag.gradient(output, &symbols)).collect::<Vec<_>>()
+            });
+            let nonzero = slopes.into_iter().filter(|(_, slope)| !slope.is_zero());
+            nonzero.map(|(place, slope)| (place, self.expr(slope))).collect()
+        };
+        outputs.iter().map(row).collect()
     }
 
     /// The rates of change of `outputs` when each symbol of `rates` changes at the rate beside it: one forward sweep.

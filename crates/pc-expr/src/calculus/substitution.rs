@@ -1,13 +1,90 @@
 //! Expressions with symbols replaced.
 
+use rustc_hash::FxHashMap;
+
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
+use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
+/// Symbols with what to put in their places: to put it into many short expressions costs what these have, however long the list.
+#[derive(Clone, Debug)]
+pub struct Substitution<'g> {
+    graph: &'g Graph,
+    by_node: FxHashMap<NodeId, Atom>,
+    values: Vec<Expr<'g>>,
+}
+
+impl<'g> Substitution<'g> {
+    /// `outputs` with each symbol replaced, as by [`Graph::substitute`].
+    pub fn apply(&self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let graph = self.graph;
+        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
+        let mut results = graph.build_all(|dag| {
+            let cone = Cone::below(dag, outputs.iter().copied());
+            let pair = |&node: &NodeId| Some((node, *self.by_node.get(&node)?));
+            let pairs: Vec<(NodeId, Atom)> = cone.order.iter().filter_map(pair).collect();
+            match pairs.is_empty() {
+                true => outputs,
+                false => dag.substitute(&outputs, &pairs),
+            }
+        });
+        if graph.folding() == Folding::ByValue {
+            self.drop_returned(&mut results);
+        }
+        results
+    }
+
+    /// Writes results without the symbols that were replaced.
+    ///
+    /// Such a symbol comes back where it cancels: the result then has the value of an older and cheaper expression
+    /// that is written with it.
+    fn drop_returned(&self, results: &mut [Expr<'g>]) {
+        let graph = self.graph;
+        let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {
+            Atom::Node(node) => self.by_node.contains_key(&node),
+            Atom::Constant(_) => false,
+        };
+        let mut returned = graph.symbols_of(results);
+        returned.retain(is_replaced);
+        if returned.is_empty() {
+            return;
+        }
+        let put_in = SymbolPlaces::of(&graph.symbols_of(&self.values));
+        for symbol in returned.into_iter().filter(|&symbol| !put_in.contains(symbol)) {
+            for result in results.iter_mut().filter(|result| graph.symbols_of(&[**result]).contains(&symbol))
+            {
+                *result = graph.without_symbol(*result, symbol);
+            }
+        }
+    }
+}
+
 impl Graph {
+    /// The replacement of each symbol of `replacements` by the expression beside it, all at once.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y, z] = graph.symbols(["x", "y", "z"]);
+    /// let swap = graph.substitution(&[(x, y), (y, x)]);
+    /// assert_eq!(swap.apply(&[x - y, z]), [y - x, z]);
+    /// ```
+    ///
+    /// # Panics
+    /// If the first of a pair is not a symbol.
+    pub fn substitution<'g>(&'g self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Substitution<'g> {
+        let pair = |(symbol, value): &(Expr<'g>, Expr<'g>)| (symbol.symbol_in(self), value.atom_in(self));
+        Substitution {
+            graph: self,
+            by_node: replacements.iter().map(pair).collect(),
+            values: replacements.iter().map(|&(_, value)| value).collect(),
+        }
+    }
+
     /// `outputs` with each symbol of `replacements` replaced by the expression beside it, all at once.
     ///
     /// A symbol that was replaced is in the results only where it is in the expressions put in.
@@ -19,34 +96,7 @@ impl Graph {
         outputs: &[Expr<'g>],
         replacements: &[(Expr<'g>, Expr<'g>)],
     ) -> Vec<Expr<'g>> {
-        let pairs: Vec<(NodeId, Atom)> = replacements
-            .iter()
-            .map(|(symbol, value)| (symbol.symbol_in(self), value.atom_in(self)))
-            .collect();
-        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
-        let mut results = self.build_all(|dag| dag.substitute(&outputs, &pairs));
-        if self.folding() == Folding::ByValue {
-            self.drop_returned(&mut results, replacements);
-        }
-        results
-    }
-
-    /// Writes results of a substitution without the symbols that it replaced.
-    ///
-    /// Such a symbol comes back where it cancels: the result then has the value of an older and cheaper expression
-    /// that is written with it.
-    fn drop_returned<'g>(&'g self, results: &mut [Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) {
-        let mut returned = self.symbols_of(results);
-        returned.retain(|symbol| replacements.iter().any(|(replaced, _)| replaced == symbol));
-        if returned.is_empty() {
-            return;
-        }
-        let put_in = self.symbols_of(&replacements.iter().map(|&(_, value)| value).collect::<Vec<_>>());
-        for symbol in returned.into_iter().filter(|symbol| !put_in.contains(symbol)) {
-            for result in results.iter_mut().filter(|result| self.symbols_of(&[**result]).contains(&symbol)) {
-                *result = self.without_symbol(*result, symbol);
-            }
-        }
+        self.substitution(replacements).apply(outputs)
     }
 }
 

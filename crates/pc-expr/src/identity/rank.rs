@@ -5,6 +5,7 @@
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
 use crate::graph::node::Atom;
+use crate::graph::number::Number;
 use crate::identity::blocks::independent_blocks;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::Value;
@@ -12,20 +13,41 @@ use crate::identity::roots::Value;
 impl Graph {
     /// Rank of a matrix of expressions, given by its rows, at almost all values of the symbols.
     pub fn generic_rank<'g>(&'g self, rows: &[Vec<Expr<'g>>]) -> usize {
-        let entries = |row: &Vec<Expr<'g>>| (0..row.len()).filter(|&j| !row[j].is_zero()).collect();
-        let entries: Vec<Vec<usize>> = rows.iter().map(entries).collect();
-        let blocks = independent_blocks(rows.first().map_or(0, Vec::len), &entries);
+        let entries = |row: &Vec<Expr<'g>>| {
+            row.iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect::<Vec<_>>()
+        };
+        let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+        self.generic_rank_of_entries(columns, &rows.iter().map(entries).collect::<Vec<_>>())
+    }
+
+    /// The same of a matrix of which each row is given by its entries that are not zero, with their columns in ascending order.
+    pub fn generic_rank_of_entries<'g>(&'g self, columns: usize, rows: &[Vec<(usize, Expr<'g>)>]) -> usize {
+        let places = |row: &Vec<(usize, Expr<'g>)>| row.iter().map(|&(j, _)| j).collect();
+        let blocks = independent_blocks(columns, &rows.iter().map(places).collect::<Vec<_>>());
         blocks.iter().map(|(i, j)| self.rank_of_block(rows, i, j)).sum()
     }
 
-    /// The rank of some rows and columns of a matrix.
-    fn rank_of_block<'g>(&'g self, rows: &[Vec<Expr<'g>>], of_rows: &[usize], of_columns: &[usize]) -> usize {
+    /// The rank of some rows of a matrix, all of whose entries are in some columns.
+    fn rank_of_block<'g>(
+        &'g self,
+        rows: &[Vec<(usize, Expr<'g>)>],
+        of_rows: &[usize],
+        of_columns: &[usize],
+    ) -> usize {
         self.with(|dag| {
             let value = |x: &Expr<'g>| match x.atom() {
                 Atom::Constant(c) => Fingerprint::constant(c).into(),
                 Atom::Node(id) => dag.value(id),
             };
-            let row = |&i: &usize| of_columns.iter().map(|&j| value(&rows[i][j])).collect();
+            let row = |&i: &usize| {
+                let mut row = vec![Value::from(Fingerprint::constant(Number::ZERO)); of_columns.len()];
+                for (j, x) in &rows[i] {
+                    if let Ok(place) = of_columns.binary_search(j) {
+                        row[place] = value(x);
+                    }
+                }
+                row
+            };
             let mut rows: Vec<Vec<Value>> = of_rows.iter().map(row).collect();
             let (roots, columns) = (dag.roots_mut(), of_columns.len());
             let mut rank = 0;

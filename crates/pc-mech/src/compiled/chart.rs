@@ -66,7 +66,8 @@ impl Chart {
     ) -> Result<Option<Chart>, MechError> {
         let frame = system.frame();
         let moving = || frame.coordinates().iter().copied().chain([frame.time()]);
-        if !moving().any(|symbol| a.entries().iter().any(|entry| entry.depends_on(symbol))) {
+        let written = a.nonzero_entries();
+        if !moving().any(|symbol| written.iter().any(|entry| entry.depends_on(symbol))) {
             return Ok(None);
         }
         let inputs = Inputs {
@@ -75,7 +76,7 @@ impl Chart {
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
         let entries =
-            Evaluator::new(Program::new(system.graph(), &inputs, a.entries())?, Backend::Interpreter);
+            Evaluator::new(Program::new(system.graph(), &inputs, &a.entries())?, Backend::Interpreter);
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
         let size = a.rows();
         let room = vec![0.0; size * size];

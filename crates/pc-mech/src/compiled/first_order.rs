@@ -1,13 +1,13 @@
 //! First-order systems whose rates contain the solution of linear equations.
 
 use std::cell::OnceCell;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
 use pc_algebra::Matrix;
-use pc_expr::{Expr, Graph, Inputs, Pattern, Program};
+use pc_expr::{Expr, Graph, Inputs, Pattern, Program, Substitution, SymbolPlaces};
 
-use crate::compiled::elimination::columns::{SparseColumn, nonzeros, sparse};
+use crate::compiled::elimination::columns::{SparseColumn, nonzeros};
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::options::TreeElimination;
 use crate::equations::poincare::Equations;
@@ -117,12 +117,12 @@ impl<'g> FirstOrder<'g> {
             return tree.system.in_order(&tree.dynamics.accelerations());
         }
         let mut unknowns = factors.solve(self.graph, &self.right);
-        for (s, unknown) in unknowns.iter_mut().enumerate() {
-            let row = self.mass.row(s);
-            let decoupled = (0..row.len()).all(|r| r == s || row[r].is_zero());
-            if decoupled && !self.is_fixed(row[s]) {
-                *unknown = self.graph.shorten(&[*unknown], &self.collected_by)[0];
-            }
+        let decoupled = |s: usize| self.mass.nonzero(s).all(|(r, _)| r == s);
+        let single: Vec<usize> =
+            (0..unknowns.len()).filter(|&s| decoupled(s) && !self.is_fixed(self.mass[(s, s)])).collect();
+        let long: Vec<Expr<'g>> = single.iter().map(|&s| unknowns[s]).collect();
+        for (s, short) in single.into_iter().zip(self.graph.shorten(&long, &self.collected_by)) {
+            unknowns[s] = short;
         }
         unknowns
     }
@@ -136,9 +136,12 @@ impl<'g> FirstOrder<'g> {
     /// The places on and below the diagonal of M that are not zero everywhere, and what stands there.
     pub(crate) fn lower_triangle(&self) -> (Pattern, Vec<Expr<'g>>) {
         let k = self.unknowns.len();
-        let column =
-            |j| (0..k).map(|i| if i < j { Expr::ZERO } else { self.mass[(i, j)] }).collect::<Vec<_>>();
-        nonzeros(k, (0..k).map(|j| sparse(&column(j))))
+        let mut columns = vec![Vec::new(); k];
+        for i in 0..k {
+            let below = self.mass.nonzero(i).filter(|&(j, _)| j <= i);
+            below.for_each(|(j, entry)| columns[j].push((i, entry)));
+        }
+        nonzeros(k, columns)
     }
 
     /// F = r − M w or r − p, in t, y and w.
@@ -146,29 +149,28 @@ impl<'g> FirstOrder<'g> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.balance(&tree.system.by_link(&self.unknowns)));
         }
-        let nonzero = |s| self.mass.row(s).iter().zip(&self.unknowns).filter(|(m, _)| !m.is_zero());
-        let product = |s| self.graph.sum(nonzero(s).map(|(&m, &w)| m * w));
+        let product = |s: usize| self.graph.sum(self.mass.nonzero(s).map(|(r, m)| m * self.unknowns[r]));
         let left = |s: usize| self.implicit.as_ref().map_or_else(|| product(s), |p| p.left[s]);
         self.right.iter().enumerate().map(|(s, &right)| right - left(s)).collect()
     }
 
-    /// ∂g/∂w, row after row.
-    pub(crate) fn coupling(&self) -> Vec<Vec<Expr<'g>>> {
-        self.rates.iter().map(|&rate| self.graph.gradient(rate, &self.unknowns)).collect()
+    /// ∂g/∂w: what is not 0 of each row, with its column.
+    pub(crate) fn coupling(&self) -> Vec<SparseColumn<'g>> {
+        self.graph.jacobian(&self.rates, &self.unknowns)
     }
 
     /// One symbol for each of `symbols` that stands nowhere in the equations, called as these with `mark`
     /// before.
     pub(crate) fn fresh(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let equations: Vec<Expr<'g>> =
-            self.balance().iter().chain(&self.rates).chain(self.mass.entries()).copied().collect();
+        let equations = [self.balance(), self.rates.clone(), self.mass.nonzero_entries()].concat();
         let inputs = self.inputs(&self.unknowns);
         let mut taken = self.graph.symbols_of(&equations);
         taken.extend(inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters));
+        let taken = SymbolPlaces::of(&taken);
         let free = |symbol: &Expr<'g>| {
             let longer =
                 std::iter::successors(Some(format!("{mark}{symbol}")), |name| Some(format!("{mark}{name}")));
-            longer.map(|name| self.graph.symbol(&name)).find(|name| !taken.contains(name)).unwrap_or(*symbol)
+            longer.map(|name| self.graph.symbol(&name)).find(|&name| !taken.contains(name)).unwrap_or(*symbol)
         };
         symbols.iter().map(free).collect()
     }
@@ -244,8 +246,10 @@ pub(crate) struct Linearised<'a, 'g> {
     rows_with: OnceCell<HashMap<Option<String>, Vec<usize>>>,
     /// ∂g/∂w: what is not 0 in each row, with its column.
     coupling: Vec<SparseColumn<'g>>,
+    /// The rows of ∂g/∂w in which each of its columns is not 0.
+    coupled: Vec<Vec<usize>>,
     /// The symbols w with their expressions in t and y.
-    values: Vec<(Expr<'g>, Expr<'g>)>,
+    values: Substitution<'g>,
 }
 
 impl<'a, 'g> Linearised<'a, 'g> {
@@ -257,10 +261,19 @@ impl<'a, 'g> Linearised<'a, 'g> {
     ) -> Linearised<'a, 'g> {
         let graph = system.graph;
         let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns.iter().copied()).collect();
-        let nonzero = |row: &Vec<Expr<'g>>| sparse(&graph.substitute(row, &values));
-        let coupling = system.coupling().iter().map(nonzero).collect();
+        let values = graph.substitution(&values);
+        let with_values = |row: SparseColumn<'g>| -> SparseColumn<'g> {
+            let entries: Vec<Expr<'g>> = row.iter().map(|&(_, entry)| entry).collect();
+            let entries = row.iter().map(|&(column, _)| column).zip(values.apply(&entries));
+            entries.filter(|(_, entry)| !entry.is_zero()).collect()
+        };
+        let coupling: Vec<SparseColumn<'g>> = system.coupling().into_iter().map(with_values).collect();
+        let mut coupled = vec![Vec::new(); system.unknowns.len()];
+        for (place, row) in coupling.iter().enumerate() {
+            row.iter().for_each(|&(column, _)| coupled[column].push(place));
+        }
         let rows: Vec<Expr<'g>> = system.rates.iter().copied().chain(system.balance()).collect();
-        Linearised { graph, factors, rows, rows_with: OnceCell::new(), coupling, values }
+        Linearised { graph, factors, rows, rows_with: OnceCell::new(), coupling, coupled, values }
     }
 
     fn rows_with(&self) -> &HashMap<Option<String>, Vec<usize>> {
@@ -275,8 +288,8 @@ impl<'a, 'g> Linearised<'a, 'g> {
         })
     }
 
-    /// ẏ′ when each symbol of `direction` changes at the rate beside it.
-    pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+    /// What is not 0 of ẏ′ when each symbol of `direction` changes at the rate beside it, with its place.
+    fn nonzero_along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> SparseColumn<'g> {
         let graph = self.graph;
         // Along all of the state every row changes.
         let places: BTreeSet<usize> = if direction.len() >= self.coupling.len() {
@@ -286,24 +299,39 @@ impl<'a, 'g> Linearised<'a, 'g> {
             direction.iter().filter_map(of).flatten().copied().collect()
         };
         let moved: Vec<Expr<'g>> = places.iter().map(|&place| self.rows[place]).collect();
-        let moved = graph.substitute(&graph.directional(&moved, direction), &self.values);
-        let mut change = vec![Expr::ZERO; self.rows.len()];
-        places.into_iter().zip(moved).for_each(|(place, moved)| change[place] = moved);
-        let (rates, balance) = change.split_at(self.coupling.len());
-        let unknowns = self.factors.solve(graph, balance);
+        let moved = self.values.apply(&graph.directional(&moved, direction));
+        let (mut rates, mut balance) = (BTreeMap::new(), Vec::new());
+        for (place, moved) in places.into_iter().zip(moved).filter(|(_, moved)| !moved.is_zero()) {
+            match place.checked_sub(self.coupling.len()) {
+                None => drop(rates.insert(place, moved)),
+                Some(place) => balance.push((place, moved)),
+            }
+        }
+        let unknowns: BTreeMap<usize, Expr<'g>> =
+            self.factors.solve_nonzero(graph, &balance).into_iter().collect();
+        for &place in unknowns.keys().flat_map(|&column| &self.coupled[column]) {
+            rates.entry(place).or_insert(Expr::ZERO);
+        }
         let through = |row: &SparseColumn<'g>| -> Vec<Expr<'g>> {
-            let terms = row.iter().filter(|&&(column, _)| !unknowns[column].is_zero());
-            terms.map(|&(column, coefficient)| coefficient * unknowns[column]).collect()
+            let term = |&(column, coefficient)| Some(coefficient * *unknowns.get(&column)?);
+            row.iter().filter_map(term).collect()
         };
-        let total = |(&rate, row): (&Expr<'g>, &SparseColumn<'g>)| match through(row) {
-            terms if terms.is_empty() => rate,
-            terms => graph.sum([rate, graph.sum(terms)]),
+        let total = |(place, rate)| match through(&self.coupling[place]) {
+            terms if terms.is_empty() => (place, rate),
+            terms => (place, graph.sum([rate, graph.sum(terms)])),
         };
-        rates.iter().zip(&self.coupling).map(total).collect()
+        rates.into_iter().map(total).filter(|(_, total)| !total.is_zero()).collect()
+    }
+
+    /// ẏ′ when each symbol of `direction` changes at the rate beside it.
+    pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+        let mut all = vec![Expr::ZERO; self.coupling.len()];
+        self.nonzero_along(direction).into_iter().for_each(|(place, rate)| all[place] = rate);
+        all
     }
 
     /// ∂ẏ/∂q for each symbol q of `symbols`, column after column.
     pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<SparseColumn<'g>> {
-        symbols.iter().map(|&symbol| sparse(&self.along(&[(symbol, Expr::ONE)]))).collect()
+        symbols.iter().map(|&symbol| self.nonzero_along(&[(symbol, Expr::ONE)])).collect()
     }
 }

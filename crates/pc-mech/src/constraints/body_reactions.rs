@@ -142,7 +142,7 @@ impl<'a, 'g> Velocities<'a, 'g> {
             (0..k * k).map(|i| product((i / k).max(i % k), (i / k).min(i % k))).collect();
         let entries = graph.shorten(&entries, &order);
         let factors = Factors::of(graph, &Matrix::from_fn(k, k, |r, s| entries[r * k + s]));
-        Some((0..coefficients.rows()).map(|a| factors.solve(graph, coefficients.row(a))).collect())
+        Some((0..coefficients.rows()).map(|a| factors.solve(graph, &coefficients.row(a))).collect())
     }
 
     /// λ J_b z

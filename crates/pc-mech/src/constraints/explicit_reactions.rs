@@ -63,13 +63,13 @@ impl<'g> Multipliers<'g> {
         let factors = Factors::of(graph, mass);
         let dot =
             |row: &[Expr<'g>], column: &[Expr<'g>]| graph.dot(row.iter().copied(), column.iter().copied());
-        let pushed: Vec<Vec<Expr<'g>>> = (0..c.rows()).map(|a| factors.solve(graph, c.row(a))).collect();
-        let gram = Matrix::from_fn(c.rows(), c.rows(), |a, b| dot(c.row(a.max(b)), &pushed[a.min(b)]));
+        let pushed: Vec<Vec<Expr<'g>>> = (0..c.rows()).map(|a| factors.solve(graph, &c.row(a))).collect();
+        let gram = Matrix::from_fn(c.rows(), c.rows(), |a, b| dot(&c.row(a.max(b)), &pushed[a.min(b)]));
         if let Some(constraint) = self.first_dependent(&gram) {
             return Err(ConstraintError::Dependent { constraint }.into());
         }
         let free = factors.solve(graph, self.equations.right_hand_side());
-        let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(c.row(a), &free)).collect();
+        let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(&c.row(a), &free)).collect();
         let reactions = Factors::of(graph, &gram).solve(graph, &gaps);
         graph.check(&reactions)?;
         Ok(graph.shorten(&reactions, &system.collecting_order()))

@@ -155,7 +155,7 @@ impl<'g> Multipliers<'g> {
     /// Whether C_D, rows of C counted as of length one, is far from singular at these values.
     pub(super) fn determines(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> Result<bool, MechError> {
         let (system, c) = (self.equations().system(), self.coefficients());
-        let values = system.graph().evaluate(c.entries(), &[system.parameters(), at].concat())?;
+        let values = system.graph().evaluate(&c.entries(), &[system.parameters(), at].concat())?;
         let row = |a: usize| &values[a * c.columns()..(a + 1) * c.columns()];
         let size = |a: usize| row(a).iter().fold(0.0f64, |size, entry| size.hypot(*entry));
         let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| row(a)[dependent[d]] / size(a));
@@ -196,7 +196,7 @@ impl<'g> Multipliers<'g> {
         };
         let (mass, right) = (self.equations().mass_matrix(), put(self.equations().right_hand_side()));
         let rests = dependent.iter().map(|&d| {
-            let row = put(mass.row(d));
+            let row = put(&mass.row(d));
             graph.dot(row, (0..eta.len()).map(rate)) - right[d]
         });
         let rests: Vec<Expr<'g>> = rests.collect();

@@ -15,7 +15,7 @@ impl<'g> Equations<'g> {
         let rates = self.system.accelerations();
         (0..self.right_hand_side().len())
             .map(|s| {
-                let left = graph.dot(self.mass_matrix().row(s).iter().copied(), rates.iter().copied());
+                let left = graph.sum(self.mass_matrix().nonzero(s).map(|(r, entry)| entry * rates[r]));
                 let right =
                     expanded(&self.system, self.right_hand_side()[s], &self.system.quasi_velocities, style);
                 (left.display(style), right)
@@ -26,11 +26,7 @@ impl<'g> Equations<'g> {
     /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none of those that
     /// are no polynomials, which are written as they [are](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
-        let variables = &self.system.quasi_velocities;
-        self.right_hand_side()
-            .iter()
-            .map(|&right| sum_of_products(&self.system, right, variables, page))
-            .collect()
+        sums_of_products(&self.system, self.right_hand_side(), &self.system.quasi_velocities, page)
     }
 }
 
@@ -43,25 +39,31 @@ pub(crate) fn expanded<'g>(
 ) -> String {
     // Written in a graph of its own, which merges nothing back to the nested form.
     let page = system.graph().page(Folding::Structural);
-    let written = sum_of_products(system, expression, variables, &page);
+    let written = sums_of_products(system, &[expression], variables, &page)[0];
     written.map_or_else(|| expression.display(style), |written| written.display(style))
 }
 
-/// The same in the graph of a page, symbols in book order; none of what is no polynomial.
-pub(crate) fn sum_of_products<'g, 'p>(
+/// The same of several in the graph of a page, symbols in book order; none of what is no polynomial.
+pub(crate) fn sums_of_products<'g, 'p>(
     system: &System<'g>,
-    expression: Expr<'g>,
+    expressions: &[Expr<'g>],
     variables: &[Expr<'g>],
     page: &'p Graph,
-) -> Option<Expr<'p>> {
+) -> Vec<Option<Expr<'p>>> {
     let graph = system.graph();
     let parameters: Vec<Expr<'g>> = system.parameters.iter().map(|&(symbol, _)| symbol).collect();
-    let mut polynomial = graph.polynomial(expression, variables)?;
-    for (_, coefficient) in &mut polynomial.terms {
-        *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
-    }
-    for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
-        page.symbol(&symbol.symbol_name().unwrap_or_default());
-    }
-    Some(polynomial.expanded(graph, page))
+    let mut is_ordered = false;
+    let mut written = |&expression: &Expr<'g>| {
+        let mut polynomial = graph.polynomial(expression, variables)?;
+        for (_, coefficient) in &mut polynomial.terms {
+            *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
+        }
+        if !std::mem::replace(&mut is_ordered, true) {
+            for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
+                page.symbol(&symbol.symbol_name().unwrap_or_default());
+            }
+        }
+        Some(polynomial.expanded(graph, page))
+    };
+    expressions.iter().map(&mut written).collect()
 }

@@ -8,7 +8,7 @@ use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
 use crate::compiled::options::CompileOptions;
-use crate::equations::book::{expanded, sum_of_products};
+use crate::equations::book::{expanded, sums_of_products};
 use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::{LagrangianError, MechError, shape};
 use crate::system::system::System;
@@ -281,8 +281,7 @@ impl<'g> Canonical<'g> {
     /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none of those that
     /// are no polynomials, which are written as they [are](Canonical::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
-        let right = self.right.iter();
-        right.map(|&right| sum_of_products(&self.system, right, &self.momenta, page)).collect()
+        sums_of_products(&self.system, &self.right, &self.momenta, page)
     }
 
     /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as

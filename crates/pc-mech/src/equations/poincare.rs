@@ -99,8 +99,7 @@ impl<'g> System<'g> {
         let eta = &system.quasi_velocities;
         let velocities = system.frame.velocities(eta);
 
-        let hessian: Vec<Vec<Expr<'g>>> = momenta[..free].iter().map(|&p| graph.gradient(p, eta)).collect();
-        let mass = Matrix::from_fn(free, free, |r, s| hessian[r.max(s)][r.min(s)]);
+        let mass = symmetric(&graph.jacobian(&momenta[..free], eta));
 
         let along: Vec<_> = x
             .iter()
@@ -118,13 +117,12 @@ impl<'g> System<'g> {
 
         let energy = graph.dot(momenta.iter().copied(), eta.iter().copied()) - system.lagrangian;
         graph.check(&right)?;
-        graph.check(mass.entries())?;
+        graph.check(&mass.nonzero_entries())?;
 
         // Collected by products of quasi-velocities, then by parameters, the equations are those of a book.
         let order = system.collecting_order();
         let shorten = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
-        let entries = shorten(mass.entries());
-        let mass = Matrix::from_fn(free, free, |r, s| entries[r * free + s]);
+        let mass = mass.with_nonzero_entries(&shorten(&mass.nonzero_entries()));
         Ok(Equations {
             velocities,
             energy: shorten(&[energy])[0],
@@ -136,13 +134,13 @@ impl<'g> System<'g> {
     pub(crate) fn check_regular(&self, mass: &Matrix<Expr<'g>>) -> Result<(), MechError> {
         let size = mass.rows();
         let graph = self.graph();
-        let rank = graph.generic_rank(&mass.to_rows());
+        let rows = mass.nonzero_rows();
+        let rank_of_first = |count: usize| graph.generic_rank_of_entries(size, &rows[..count]);
+        let rank = rank_of_first(size);
         if rank == size {
             return Ok(());
         }
         // A row that adds nothing to the rank of those before it belongs to an undetermined quasi-velocity.
-        let rows = mass.to_rows();
-        let rank_of_first = |count: usize| graph.generic_rank(&rows[..count]);
         let undetermined = (0..size).filter(|&s| rank_of_first(s + 1) == rank_of_first(s));
         let quasi_velocities = undetermined.map(|s| self.quasi_velocities[s].to_string()).collect();
         Err(LagrangianError::Degenerate { rank, size, quasi_velocities }.into())
@@ -216,8 +214,7 @@ impl<'g> Equations<'g> {
         let order = system.collecting_order();
         let bind = |expressions: &[Expr<'g>]| graph.shorten(&graph.substitute(expressions, &numbers), &order);
         let bound = |matrices: &Matrices<'g>| {
-            let (k, mass) = (matrices.mass.rows(), bind(matrices.mass.entries()));
-            let mass = Matrix::from_fn(k, k, |r, s| mass[r * k + s]);
+            let mass = matrices.mass.with_nonzero_entries(&bind(&matrices.mass.nonzero_entries()));
             OnceCell::from(Matrices { mass, right: bind(&matrices.right) })
         };
         Equations {
@@ -227,4 +224,19 @@ impl<'g> Equations<'g> {
             system,
         }
     }
+}
+
+/// The symmetric matrix of which these are the entries that are not zero, row by row; what is above the diagonal is not looked
+/// at.
+fn symmetric<'g>(rows: &[Vec<(usize, Expr<'g>)>]) -> Matrix<Expr<'g>> {
+    let mut both = vec![Vec::new(); rows.len()];
+    for (r, row) in rows.iter().enumerate() {
+        for &(s, entry) in row.iter().filter(|&&(s, _)| s <= r) {
+            both[r].push((s, entry));
+            if s < r {
+                both[s].push((r, entry));
+            }
+        }
+    }
+    Matrix::from_rows(rows.len(), both)
 }

@@ -1,7 +1,7 @@
 //! How a mechanical system is described.
 
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, SymbolPlaces};
 
 use crate::error::{FrameError, LagrangianError, MechError, TreeError, shape};
 use crate::system::bodies::body::Body;
@@ -56,7 +56,7 @@ enum Kinematics<'g> {
     /// ẋ, affine in η (3)
     Velocities(Vec<Expr<'g>>),
     /// A frame made elsewhere.
-    Frame(Frame<'g>),
+    Frame(Box<Frame<'g>>),
 }
 
 impl<'g> System<'g> {
@@ -168,7 +168,7 @@ impl<'g> SystemBuilder<'g> {
     /// [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or of a [group](crate::LieGroup::left_frame).
     #[must_use]
     pub fn frame(mut self, frame: Frame<'g>) -> Self {
-        self.kinematics = Kinematics::Frame(frame);
+        self.kinematics = Kinematics::Frame(Box::new(frame));
         self
     }
 
@@ -404,11 +404,11 @@ impl<'g> SystemBuilder<'g> {
             Kinematics::Velocities(velocities) => {
                 Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
             }
-            Kinematics::Frame(frame) => frame,
+            Kinematics::Frame(frame) => *frame,
         };
         shape("the list of quasi-velocities", k, frame.operators())?;
         of_position(&frame, &[&eta[..], &velocities].concat())?;
-        check_no_state(&self.states, "the frame", &[frame.b().entries(), frame.b0()].concat())?;
+        check_no_state(&self.states, "the frame", &[&frame.b().nonzero_entries(), frame.b0()].concat())?;
         let mut near = self.near;
         near.centre.extend(self.parameters.iter().copied());
         let structure = match self.structure {
@@ -470,8 +470,9 @@ impl<'g> SystemBuilder<'g> {
         self.graph.check(&[lagrangian])?;
         if !self.signals.is_empty() {
             let momenta = self.graph.gradient(lagrangian, &eta);
+            let entries = frame.b().nonzero_entries();
             let moving = |u: &&Expr<'g>| {
-                momenta.iter().chain(frame.b().entries()).chain(frame.b0()).any(|part| part.depends_on(**u))
+                momenta.iter().chain(&entries).chain(frame.b0()).any(|part| part.depends_on(**u))
             };
             if let Some(u) = self.signals.iter().find(moving) {
                 return Err(LagrangianError::SignalInMomentum { input: u.to_string() }.into());
@@ -480,7 +481,7 @@ impl<'g> SystemBuilder<'g> {
         self.graph.check(&forces)?;
         let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
         self.graph.check(&rates)?;
-        self.graph.check(frame.b().entries())?;
+        self.graph.check(&frame.b().nonzero_entries())?;
         self.graph.check(frame.b0())?;
         Ok(System {
             frame,
@@ -530,7 +531,8 @@ fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Resu
 /// # Errors
 /// [`FrameError::OfVelocities`] naming the first that stands there.
 fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
-    let entries = [frame.b().entries(), frame.b0()].concat();
-    let found = frame.graph().symbols_of(&entries).into_iter().find(|symbol| velocities.contains(symbol));
+    let entries = [&frame.b().nonzero_entries(), frame.b0()].concat();
+    let velocities = SymbolPlaces::of(velocities);
+    let found = frame.graph().symbols_of(&entries).into_iter().find(|&symbol| velocities.contains(symbol));
     found.map_or(Ok(()), |symbol| Err(FrameError::OfVelocities { velocity: symbol.to_string() }.into()))
 }

@@ -1,7 +1,7 @@
 //! A mechanical system: frame, Lagrangian, forces, and what is watched of its motion.
 
 use pc_algebra::{Frame, StructureCoefficients};
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, SymbolPlaces};
 
 use crate::error::{FrameError, MechError, shape};
 use crate::system::bodies::velocity::Bodies;
@@ -156,14 +156,13 @@ impl<'g> System<'g> {
             .chain(inputs.iter().map(|(symbol, _)| symbol))
             .copied()
             .collect();
-        let entries = self.frame.b().entries().iter().chain(self.frame.b0()).chain(&self.forces);
+        let frame = self.frame.b().nonzero_entries();
+        let entries = frame.iter().chain(self.frame.b0()).chain(&self.forces);
         let brackets = self.structure.nonzero().map(|(.., c)| c);
         let written: Vec<Expr<'g>> = entries.copied().chain(brackets).chain([self.lagrangian]).collect();
-        for symbol in self.graph().symbols_of(&written) {
-            if !symbols.contains(&symbol) {
-                symbols.push(symbol);
-            }
-        }
+        let known = SymbolPlaces::of(&symbols);
+        let written = self.graph().symbols_of(&written);
+        symbols.extend(written.into_iter().filter(|&symbol| !known.contains(symbol)));
         symbols
     }
 
@@ -225,7 +224,8 @@ impl<'g> System<'g> {
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();
         let numbers = self.numbers();
-        let bind = |x: Expr<'g>| graph.substitute(&[x], &numbers)[0];
+        let numbers = graph.substitution(&numbers);
+        let bind = |x: Expr<'g>| numbers.apply(&[x])[0];
         System {
             frame: self.frame.map(bind),
             structure: self.structure.map(bind),
@@ -233,7 +233,7 @@ impl<'g> System<'g> {
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
             tree: self.tree.as_ref().map(|tree| Box::new(tree.map(bind))),
-            ..self.clone().map_expressions(|list| graph.substitute(list, &numbers))
+            ..self.clone().map_expressions(|list| numbers.apply(list))
         }
     }
 
@@ -252,8 +252,9 @@ impl<'g> System<'g> {
     /// The same system with symbols in its integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {
+        let known = self.graph().substitution(known);
         let put = |list: &[(String, Expr<'g>)]| {
-            let value = |f: Expr<'g>| self.graph().substitute(&[f], known)[0];
+            let value = |f: Expr<'g>| known.apply(&[f])[0];
             list.iter().map(|(name, f)| (name.clone(), value(*f))).collect()
         };
         System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }

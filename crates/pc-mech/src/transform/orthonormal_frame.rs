@@ -63,7 +63,7 @@ impl<'g> System<'g> {
                 LagrangianError::NotQuadratic { quasi_velocity: not_quadratic_in(self).to_string() }.into()
             );
         };
-        let entries = graph.shorten(form.matrix.entries(), &self.collecting_order());
+        let entries = graph.shorten(&form.matrix.entries(), &self.collecting_order());
         let mass = Matrix::from_fn(free, free, |r, s| entries[r.max(s) * free + r.min(s)]);
         self.check_regular(&mass)?;
         let Factors::Ldl(factors) = Factors::of(graph, &mass) else {

@@ -86,8 +86,8 @@ impl<'g> System<'g> {
         let mut matters: Vec<bool> = x.iter().map(|&x| dynamics.iter().any(|f| f.depends_on(x))).collect();
         loop {
             let rows = (0..x.len()).filter(|&i| matters[i]);
-            let row = |i: usize| self.frame.b().row(i).iter().chain([&self.frame.b0()[i]]);
-            let velocities: Vec<Expr<'g>> = rows.flat_map(row).copied().collect();
+            let row = |i: usize| self.frame.b().nonzero(i).map(|(_, b)| b).chain([self.frame.b0()[i]]);
+            let velocities: Vec<Expr<'g>> = rows.flat_map(row).collect();
             let more = (0..x.len()).find(|&i| !matters[i] && velocities.iter().any(|v| v.depends_on(x[i])));
             match more {
                 Some(i) => matters[i] = true,

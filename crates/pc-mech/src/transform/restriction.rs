@@ -59,6 +59,7 @@ impl<'g> System<'g> {
             forces: self.forces[..free].to_vec(),
             ..self.clone()
         };
-        free_ones.map_expressions(|list| graph.substitute(list, &zeros))
+        let zeros = graph.substitution(&zeros);
+        free_ones.map_expressions(|list| zeros.apply(list))
     }
 }

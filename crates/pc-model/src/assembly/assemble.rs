@@ -1,5 +1,6 @@
 //! From a document to a mechanical system.
 
+use pc_expr::SymbolPlaces;
 use pc_mech::{Expr, Frame, Graph, LagrangianError, Neighbourhood, System};
 
 use crate::assembly::assembler::Assembler;
@@ -45,7 +46,7 @@ impl<'g> Assembler<'g, '_> {
     /// whatever ω.
     fn check_frame_at_start(&self, frame: &Frame<'g>, values: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
         let start = Neighbourhood { centre: values.to_vec() };
-        let (rank, everywhere) = (start.rank_at_centre(self.graph, &frame.b().to_rows()), frame.rank());
+        let (rank, everywhere) = (start.rank_at_centre(self.graph, frame.b()), frame.rank());
         match rank.filter(|&rank| rank < everywhere) {
             None => Ok(()),
             Some(rank) => {
@@ -307,7 +308,8 @@ impl<'g> Assembler<'g, '_> {
         let all: Vec<Expr<'g>> = written.iter().map(|written| written.value).collect();
         let all = self.graph.substitute(&all, x_dot);
         // What contains accelerations has no value yet: it is checked when the motion is computed.
-        let is_unknown = |symbol: &Expr<'g>| !values.iter().any(|(known, _)| known == symbol);
+        let known = SymbolPlaces::of(&values.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
+        let is_unknown = |symbol: &Expr<'g>| !known.contains(*symbol);
         let unknown = self.graph.symbols_of(&all).into_iter().filter(is_unknown);
         let at: Vec<(Expr<'g>, f64)> =
             unknown.map(|symbol| (symbol, f64::NAN)).chain(values.iter().copied()).collect();

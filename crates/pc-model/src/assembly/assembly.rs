@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pc_expr::SymbolPlaces;
 use pc_mech::{Equations, Expr, System};
 use pc_nonholo::NonholoError;
 
@@ -136,8 +137,7 @@ impl<'g> Assembly<'g> {
     /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
     pub fn start_of(&self, components: &[Expr<'g>]) -> Vec<f64> {
         let at = self.at_start();
-        let value =
-            |x: &Expr<'g>| at.iter().find(|(known, _)| known == x).map_or(f64::NAN, |&(_, value)| value);
-        components.iter().map(value).collect()
+        let known = SymbolPlaces::of(&at.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
+        components.iter().map(|&x| known.get(x).map_or(f64::NAN, |place| at[place].1)).collect()
     }
 }

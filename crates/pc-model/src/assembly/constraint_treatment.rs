@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use pc_expr::SymbolPlaces;
 use pc_mech::{Constraint, ConstraintError, Equations, Expr, MechError, Multipliers, System};
 use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
 
@@ -326,8 +327,9 @@ impl<'g> ConstraintTreatment<'g> {
         all: &[Expr<'g>],
         free: &[Expr<'g>],
     ) -> Result<Vec<Expr<'g>>, NonholoError> {
-        let dependent: Vec<usize> = (0..all.len()).filter(|&s| !free.contains(&all[s])).collect();
-        let solved = match &self.formulation {
+        let free = SymbolPlaces::of(free);
+        let dependent: Vec<usize> = (0..all.len()).filter(|&s| !free.contains(all[s])).collect();
+        let solved: Vec<(Expr<'g>, Expr<'g>)> = match &self.formulation {
             ConstraintFormulation::Multipliers(held) if !dependent.is_empty() => {
                 held.multipliers.solved_for(&dependent)?
             }
@@ -337,8 +339,8 @@ impl<'g> ConstraintTreatment<'g> {
                 dependent.iter().map(|&s| (all[s], Expr::ZERO)).collect()
             }
         };
-        let value = |eta: &Expr<'g>| solved.iter().find(|(known, _)| known == eta).map_or(*eta, |&(_, x)| x);
-        Ok(all.iter().map(value).collect())
+        let places = SymbolPlaces::of(&solved.iter().map(|&(eta, _)| eta).collect::<Vec<_>>());
+        Ok(all.iter().map(|&eta| places.get(eta).map_or(eta, |place| solved[place].1)).collect())
     }
 
     fn independent(&self, system: &System<'g>, at: &[(Expr<'g>, f64)]) -> Result<System<'g>, NonholoError> {

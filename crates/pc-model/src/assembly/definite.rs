@@ -1,5 +1,6 @@
 //! The sign of the kinetic energy at the start.
 
+use pc_expr::independent_blocks;
 use pc_mech::Expr;
 
 use crate::assembly::assembly::Assembly;
@@ -14,20 +15,44 @@ impl<'g> Assembly<'g> {
         let (system, graph) = (&self.system, self.system.graph());
         let eta = system.quasi_velocities();
         let k = eta.len();
-        let hessian = system.momenta().into_iter().flat_map(|p| graph.gradient(p, eta));
+        let hessian = graph.jacobian(&system.momenta(), eta);
         let bound = self.constraints.multipliers().map(|multipliers| multipliers.coefficients().entries());
-        let expressions: Vec<Expr<'g>> = hessian.chain(bound.into_iter().flatten().copied()).collect();
+        let bound = bound.unwrap_or_default();
+        let entries = hessian.iter().flatten().map(|&(_, entry)| entry);
+        let expressions: Vec<Expr<'g>> = entries.chain(bound.iter().copied()).collect();
         let at = [system.parameters(), &self.at_start()].concat();
         let Ok(values) = graph.evaluate(&expressions, &at) else { return false };
-        let (mass, constraints) = values.split_at(k * k);
-        let form: Vec<Vec<f64>> = mass.chunks(k.max(1)).map(<[f64]>::to_vec).collect();
+        let (mass, constraints) = values.split_at(values.len() - bound.len());
+        let mut mass = mass.iter().copied();
+        let with_numbers =
+            |row: &Vec<(usize, Expr<'g>)>| row.iter().zip(mass.by_ref()).map(|(&(s, _), m)| (s, m)).collect();
+        let mass: Vec<Vec<(usize, f64)>> = hessian.iter().map(with_numbers).collect();
+        let whole = |row: &Vec<(usize, f64)>, columns: &[usize]| {
+            let mut whole = vec![0.0; columns.len()];
+            for (s, entry) in row {
+                if let Ok(place) = columns.binary_search(s) {
+                    whole[place] = *entry;
+                }
+            }
+            whole
+        };
         if constraints.is_empty() {
-            return is_negative_somewhere(form);
+            let size = mass.iter().flatten().fold(0.0f64, |size, (_, x)| size.max(x.abs()));
+            let columns = |row: &Vec<(usize, f64)>| row.iter().map(|&(s, _)| s).collect();
+            let blocks = independent_blocks(k, &mass.iter().map(columns).collect::<Vec<_>>());
+            // M is symmetric, and so are its blocks.
+            let form = |rows: &[usize]| rows.iter().map(|&r| whole(&mass[r], rows)).collect();
+            return blocks.iter().any(|(rows, _)| is_negative_somewhere(form(rows), size));
         }
+        let all: Vec<usize> = (0..k).collect();
+        let form: Vec<Vec<f64>> = mass.iter().map(|row| whole(row, &all)).collect();
         let allowed = complement(constraints.chunks(k), k);
         let momenta: Vec<Vec<f64>> =
             allowed.iter().map(|v| form.iter().map(|row| dot(row, v)).collect()).collect();
-        is_negative_somewhere(allowed.iter().map(|u| momenta.iter().map(|p| dot(u, p)).collect()).collect())
+        let form: Vec<Vec<f64>> =
+            allowed.iter().map(|u| momenta.iter().map(|p| dot(u, p)).collect()).collect();
+        let size = form.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+        is_negative_somewhere(form, size)
     }
 }
 
@@ -60,9 +85,8 @@ fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f6
     basis.split_off(normals)
 }
 
-/// Whether Gauss's elimination meets a negative pivot before one that vanishes.
-fn is_negative_somewhere(mut form: Vec<Vec<f64>>) -> bool {
-    let size = form.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+/// Whether Gauss's elimination meets a negative pivot, but for those that vanish against `size`.
+fn is_negative_somewhere(mut form: Vec<Vec<f64>>, size: f64) -> bool {
     for p in 0..form.len() {
         let pivot = form[p][p];
         if pivot.is_nan() || pivot.abs() <= ROUNDING * size {
@@ -90,9 +114,12 @@ mod tests {
     #[test]
     fn signs_are_those_of_the_allowed_velocities() {
         let indefinite = vec![vec![1.0, 2.0], vec![2.0, 1.0]];
-        assert!(is_negative_somewhere(indefinite));
-        assert!(!is_negative_somewhere(vec![vec![2.0, 1.0], vec![1.0, 2.0]]));
-        assert!(!is_negative_somewhere(vec![vec![1.0, 0.0], vec![0.0, 0.0]]), "degenerate is another matter");
+        assert!(is_negative_somewhere(indefinite, 2.0));
+        assert!(!is_negative_somewhere(vec![vec![2.0, 1.0], vec![1.0, 2.0]], 2.0));
+        assert!(
+            !is_negative_somewhere(vec![vec![1.0, 0.0], vec![0.0, 0.0]], 1.0),
+            "degenerate is another matter"
+        );
         let rows = [3.0, 0.0, 4.0];
         let basis = complement([&rows[..]].into_iter(), 3);
         assert_eq!(basis.len(), 2);

@@ -191,7 +191,7 @@ impl<'g> Assembler<'g, '_> {
             let Some(i) = document.coordinates.iter().position(|x| x.name.text == velocity.name.text) else {
                 continue;
             };
-            let row = [frame.b().row(i), &frame.b0()[i..=i]].concat();
+            let row = [&frame.b().row(i), &frame.b0()[i..=i]].concat();
             let values = self.graph.evaluate(&row, at).unwrap_or_default();
             let Some((drift, row)) = values.split_last().filter(|_| values.iter().all(|v| v.is_finite()))
             else {

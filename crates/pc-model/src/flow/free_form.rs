@@ -114,7 +114,7 @@ impl<'g> Assembly<'g> {
             false => self.document.derivation_error(error),
         })?;
         let form = FreeForm::changed(free.quasi_velocities(), &change);
-        let entries: Vec<Expr<'g>> = change.matrix().entries().to_vec();
+        let entries: Vec<Expr<'g>> = change.matrix().nonzero_entries();
         if self.numbers_at_start(free, &entries)?.iter().all(|entry| entry.is_finite()) {
             return Ok(form);
         }

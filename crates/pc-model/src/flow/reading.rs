@@ -1,6 +1,6 @@
 //! States read as coordinates, all quasi-velocities and first-order states of a model.
 
-use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use pc_expr::{Backend, Evaluator, Expr, Inputs, Program, SymbolPlaces};
 use pc_mech::{LegendreTransform, MechError, System};
 
 use crate::assembly::assembly::Assembly;
@@ -70,7 +70,8 @@ impl Reading {
             }
         };
         let eta = assembly.system.quasi_velocities();
-        let place = |free: &Expr<'g>| eta.iter().position(|eta| eta == free);
+        let places = SymbolPlaces::of(eta);
+        let place = |free: &Expr<'g>| places.get(*free);
         Ok(Reading {
             coordinates: system.frame().coordinates().len(),
             quasi_velocities: compiled(&system.state(), &all)?,

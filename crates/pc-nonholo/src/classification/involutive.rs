@@ -65,7 +65,8 @@ fn commutator<'g>(system: &System<'g>, u: &OperatorField<'g>, v: &OperatorField<
 pub(crate) fn along<'g>(system: &System<'g>, u: &OperatorField<'g>, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let (graph, frame) = (system.graph(), system.frame());
     let rate = |i: usize| {
-        let row = std::iter::once(frame.b0()[i]).chain(frame.b().row(i).iter().copied());
+        let b = frame.b().row(i);
+        let row = std::iter::once(frame.b0()[i]).chain(b.iter().copied());
         graph.dot(row, u.iter().copied())
     };
     let x = frame.coordinates().iter().enumerate().map(|(i, &x)| (x, rate(i)));

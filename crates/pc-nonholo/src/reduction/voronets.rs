@@ -167,7 +167,7 @@ impl<'g> Voronets<'g> {
         let system = self.held();
         let parts: Vec<Expr<'g>> = std::iter::once(system.lagrangian())
             .chain(system.forces().iter().copied())
-            .chain(self.coefficients.entries().iter().copied())
+            .chain(self.coefficients.nonzero_entries())
             .collect();
         let free_of =
             |x: Expr<'g>| system.graph().directional(&parts, &[(x, Expr::ONE)]).iter().all(|d| d.is_zero());

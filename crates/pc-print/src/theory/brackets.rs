@@ -51,7 +51,7 @@ fn is_stationary(system: &System<'_>) -> bool {
     let (frame, structure) = (system.frame(), system.structure());
     let time = frame.time();
     frame.b0().iter().all(|b| b.is_zero())
-        && !frame.b().entries().iter().any(|b| b.depends_on(time))
+        && !frame.b().nonzero_entries().iter().any(|b| b.depends_on(time))
         && structure.nonzero().all(|(r, .., c)| r > 0 && !c.depends_on(time))
 }
 

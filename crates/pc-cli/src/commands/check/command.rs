@@ -114,7 +114,10 @@ impl<'g> Report<'g> {
             closure_residual: frame.closure_residual(structure, &near),
             jacobi_residual: frame.jacobi_residual(structure, &near),
             algebra: algebra(system),
-            mass_rank: graph.generic_rank(&equations.mass_matrix().to_rows()),
+            mass_rank: graph.generic_rank_of_entries(
+                equations.mass_matrix().columns(),
+                &equations.mass_matrix().nonzero_rows(),
+            ),
             negative_energy: assembly.has_negative_energy(),
             free: equations.mass_matrix().rows(),
             t_start: assembly.t_start,

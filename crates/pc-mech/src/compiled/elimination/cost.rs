@@ -12,17 +12,18 @@ use pc_expr::{Expr, Graph};
 ///
 /// A full matrix takes k(k − 1)(k + 4)/6, a tridiagonal one 2(k − 1).
 pub(crate) fn operations(m: &Matrix<Expr<'_>>) -> usize {
-    let others = |i: usize| (0..m.rows()).filter(|&j| j != i && !m[(i, j)].is_zero()).collect();
+    let others = |i: usize| m.nonzero(i).map(|(j, _)| j).filter(|&j| j != i).collect();
     let mut filled: Vec<BTreeSet<usize>> = (0..m.rows()).map(others).collect();
-    let mut open: BTreeSet<usize> = (0..m.rows()).collect();
+    let mut open: BTreeSet<(usize, usize)> = filled.iter().map(BTreeSet::len).zip(0..).collect();
     let mut count = 0;
-    while let Some(pivot) = open.iter().copied().min_by_key(|&p| filled[p].len()) {
-        open.remove(&pivot);
+    while let Some((_, pivot)) = open.pop_first() {
         let below = std::mem::take(&mut filled[pivot]);
         count += below.len() + below.len() * (below.len() + 1) / 2;
         for &i in &below {
+            open.remove(&(filled[i].len(), i));
             filled[i].remove(&pivot);
             filled[i].extend(below.iter().filter(|&&j| j != i));
+            open.insert((filled[i].len(), i));
         }
     }
     count
@@ -31,8 +32,9 @@ pub(crate) fn operations(m: &Matrix<Expr<'_>>) -> usize {
 /// Whether M = L D Lᵀ exists in the order of the rows at almost all states: all leading minors are other than
 /// zero.
 pub(crate) fn needs_no_pivoting<'g>(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
-    let leading = |size: usize| (0..size).map(|i| m.row(i)[..size].to_vec()).collect::<Vec<_>>();
-    (1..=m.rows()).all(|size| graph.generic_rank(&leading(size)) == size)
+    let row = |i: usize, size: usize| m.nonzero(i).take_while(|&(j, _)| j < size).collect();
+    let leading = |size: usize| (0..size).map(|i| row(i, size)).collect::<Vec<_>>();
+    (1..=m.rows()).all(|size| graph.generic_rank_of_entries(size, &leading(size)) == size)
 }
 
 #[cfg(test)]

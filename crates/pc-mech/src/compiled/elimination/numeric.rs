@@ -240,8 +240,10 @@ impl Stage {
         let columns = |rows: &[Expr<'g>]| -> Vec<SparseColumn<'g>> {
             symbols.iter().map(|&symbol| sparse(&graph.directional(rows, &[(symbol, Expr::ONE)]))).collect()
         };
-        let coupling = system.coupling();
-        let coupling = (0..k).map(|s| sparse(&coupling.iter().map(|row| row[s]).collect::<Vec<_>>()));
+        let mut coupling = vec![Vec::new(); k];
+        for (i, row) in system.coupling().into_iter().enumerate() {
+            row.into_iter().for_each(|(s, entry)| coupling[s].push((i, entry)));
+        }
         let (balance, mut parts) = nonzeros(k, columns(&system.balance()));
         let (rates, rates_parts) = nonzeros(dim, columns(&system.rates));
         let (coupling, coupling_parts) = nonzeros(dim, coupling);
@@ -303,7 +305,7 @@ fn blocks(m: &Matrix<Expr<'_>>) -> Vec<usize> {
     let k = m.rows();
     let mut block: Vec<usize> = (0..k).collect();
     for i in 0..k {
-        for j in (0..i).filter(|&j| !m[(i, j)].is_zero()) {
+        for j in m.nonzero(i).map(|(j, _)| j).filter(|&j| j < i) {
             let (joined, into) = (block[i], block[j]);
             block.iter_mut().filter(|b| **b == joined).for_each(|b| *b = into);
         }

@@ -34,6 +34,8 @@ pub(crate) struct Watched<'g> {
 /// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
+    /// When each row is eliminated.
+    turn: Vec<usize>,
     /// The L_iq of each row i that are neither 0 nor on the diagonal, as (q, L_iq).
     rows: Vec<Entries<'g>>,
     /// The same of each column q, as (i, L_iq).
@@ -65,7 +67,8 @@ impl<'g> Factors<'g> {
                 pivots.map(|(place, &pivot)| Watched { place, pivot, size: m[(place, place)] }).collect()
             }
             Factors::Inverse(_) if rows <= MOST_INVERTED => {
-                let largest = m.entries().iter().fold(Expr::ZERO, |largest, entry| largest.max(entry.abs()));
+                let largest =
+                    m.entries().iter().copied().fold(Expr::ZERO, |largest, entry| largest.max(entry.abs()));
                 let size = largest.powi(rows as i32);
                 let pivot = determinant(graph, m).into_iter();
                 pivot.map(|pivot| Watched { place: rows - 1, pivot, size }).collect()
@@ -81,16 +84,39 @@ impl<'g> Factors<'g> {
         }
     }
 
+    /// k
+    fn rows(&self) -> usize {
+        match self {
+            Factors::Ldl(ldl) => ldl.diagonal.len(),
+            Factors::Inverse(inverse) => inverse.rows(),
+            Factors::Tree(tree) => tree.system.places.iter().map(Vec::len).sum(),
+        }
+    }
+
     /// M⁻¹ r
     pub(crate) fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
         match self {
             Factors::Ldl(ldl) => ldl.solve(graph, right),
             Factors::Inverse(inverse) => (0..right.len())
-                .map(|i| graph.dot(inverse.row(i).iter().copied(), right.iter().copied()))
+                .map(|i| graph.sum(inverse.nonzero(i).map(|(j, entry)| entry * right[j])))
                 .collect(),
             Factors::Tree(tree) => {
                 let applied = tree.system.by_link(right);
                 tree.system.in_order(&tree.dynamics.articulated.solve(vec![None; applied.len()], &applied))
+            }
+        }
+    }
+
+    /// What is not 0 of M⁻¹ r, with its place, for the entries of r that are not 0.
+    pub(crate) fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
+        match self {
+            _ if right.is_empty() => Vec::new(),
+            Factors::Ldl(ldl) => ldl.solve_nonzero(graph, right),
+            Factors::Inverse(_) | Factors::Tree(_) => {
+                let mut whole = vec![Expr::ZERO; self.rows()];
+                right.iter().for_each(|&(i, entry)| whole[i] = entry);
+                let solution = self.solve(graph, &whole).into_iter().enumerate();
+                solution.filter(|(_, entry)| !entry.is_zero()).collect()
             }
         }
     }
@@ -118,21 +144,28 @@ impl<'g> Ldl<'g> {
     /// the fewest entries left; `None` if the diagonal that is left is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
-        let entries = |i: usize| m.row(i).iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect();
-        let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(entries).collect();
+        let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
         let mut ldl = Ldl {
             order: Vec::new(),
+            turn: vec![0; k],
             rows: vec![Vec::new(); k],
             columns: vec![Vec::new(); k],
             diagonal: vec![Expr::ONE; k],
         };
-        let mut open: BTreeSet<usize> = (0..k).collect();
-        while !open.is_empty() {
-            let usable = open.iter().copied().filter(|&p| schur[p].contains_key(&p));
-            let pivot = usable.min_by_key(|&p| schur[p].len())?;
-            open.remove(&pivot);
+        // The rows that are left and have a pivot, by their number of entries.
+        let usable = |schur: &[BTreeMap<usize, Expr<'g>>], p: usize| {
+            schur[p].contains_key(&p).then(|| (schur[p].len(), p))
+        };
+        let mut open: BTreeSet<(usize, usize)> = (0..k).filter_map(|p| usable(&schur, p)).collect();
+        while ldl.order.len() < k {
+            let (_, pivot) = open.pop_first()?;
+            ldl.turn[pivot] = ldl.order.len();
             ldl.order.push(pivot);
             let mut eliminated = std::mem::take(&mut schur[pivot]);
+            let before: Vec<_> = eliminated.keys().map(|&i| usable(&schur, i)).collect();
+            for row in before.into_iter().flatten() {
+                open.remove(&row);
+            }
             let d = eliminated.remove(&pivot)?; // the pivot is there, as its row was usable
             ldl.diagonal[pivot] = d;
             for (&i, &s) in &eliminated {
@@ -150,27 +183,88 @@ impl<'g> Ldl<'g> {
                     }
                 }
             }
+            open.extend(eliminated.keys().filter_map(|&i| usable(&schur, i)));
         }
         Some(ldl)
+    }
+
+    /// As `solve`, of those unknowns alone that the entries of r reach.
+    fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
+        let mut z: BTreeMap<usize, Expr<'g>> = right.iter().copied().collect();
+        let zero = |z: &BTreeMap<usize, Expr<'g>>, i: usize| z.get(&i).copied().unwrap_or(Expr::ZERO);
+        let mut reached: BTreeSet<usize> = right.iter().map(|&(i, _)| self.turn[i]).collect();
+        let mut next = reached.first().copied();
+        while let Some(turn) = next {
+            let i = self.order[turn];
+            let value = rest(graph, zero(&z, i), &self.rows[i], |q| zero(&z, q));
+            z.insert(i, value);
+            reached.extend(self.columns[i].iter().map(|&(below, _)| self.turn[below]));
+            next = reached.range(turn + 1..).next().copied();
+        }
+        let mut x: BTreeMap<usize, Expr<'g>> =
+            z.into_iter().map(|(i, z)| (i, if z.is_zero() { z } else { z / self.diagonal[i] })).collect();
+        let mut next = reached.last().copied();
+        while let Some(turn) = next {
+            let i = self.order[turn];
+            let value = rest(graph, zero(&x, i), &self.columns[i], |q| zero(&x, q));
+            x.insert(i, value);
+            reached.extend(self.rows[i].iter().map(|&(above, _)| self.turn[above]));
+            next = reached.range(..turn).next_back().copied();
+        }
+        x.into_iter().filter(|(_, x)| !x.is_zero()).collect()
     }
 
     fn solve(&self, graph: &'g Graph, right: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut z = right.to_vec();
         for &i in &self.order {
-            z[i] = rest(graph, z[i], &self.rows[i], &z);
+            z[i] = rest(graph, z[i], &self.rows[i], |q| z[q]);
         }
         let divided = |(&z, &d): (&Expr<'g>, &Expr<'g>)| if z.is_zero() { z } else { z / d };
         let mut x: Vec<Expr<'g>> = z.iter().zip(&self.diagonal).map(divided).collect();
         for &i in self.order.iter().rev() {
-            x[i] = rest(graph, x[i], &self.columns[i], &x);
+            x[i] = rest(graph, x[i], &self.columns[i], |q| x[q]);
         }
         x
     }
 }
 
 /// r − Σ_q l_q z_q
-fn rest<'g>(graph: &'g Graph, r: Expr<'g>, l: &Entries<'g>, z: &[Expr<'g>]) -> Expr<'g> {
+fn rest<'g>(graph: &'g Graph, r: Expr<'g>, l: &Entries<'g>, z: impl Fn(usize) -> Expr<'g>) -> Expr<'g> {
     let known: Vec<Expr<'g>> =
-        l.iter().filter(|(q, _)| !z[*q].is_zero()).map(|&(q, l)| -(l * z[q])).collect();
+        l.iter().map(|&(q, l)| (l, z(q))).filter(|(_, z)| !z.is_zero()).map(|(l, z)| -(l * z)).collect();
     if known.is_empty() { r } else { graph.sum(known.into_iter().chain([r])) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a chain, an arrow and a ring with a hub, for each unit vector and for a few entries at once.
+    #[test]
+    fn what_right_sides_reach_is_solved_as_the_whole_is() {
+        let graph = Graph::new();
+        let k = 9;
+        let patterns: [fn(usize, usize) -> bool; 3] = [
+            |i, j| i.abs_diff(j) == 1,
+            |i, j| i == 0 || j == 0,
+            |i, j| i.abs_diff(j) % 8 == 1 || i == 4 || j == 4,
+        ];
+        for coupled in patterns {
+            let entry = |i: usize, j: usize| match i == j {
+                true => graph.symbol(&format!("m{i}")),
+                false if coupled(i, j) => graph.symbol(&format!("c{}_{}", i.min(j), i.max(j))),
+                false => Expr::ZERO,
+            };
+            let factors = Factors::of(&graph, &Matrix::from_fn(k, k, entry));
+            let right = |s: usize| graph.symbol(&format!("r{s}"));
+            for places in (0..k).map(|s| vec![s]).chain([vec![], vec![2, 7], vec![0, 3, 8]]) {
+                let nonzero: Vec<_> = places.iter().map(|&s| (s, right(s))).collect();
+                let whole: Vec<Expr<'_>> =
+                    (0..k).map(|s| if places.contains(&s) { right(s) } else { Expr::ZERO }).collect();
+                let expected = factors.solve(&graph, &whole).into_iter().enumerate();
+                let expected: Vec<_> = expected.filter(|(_, x)| !x.is_zero()).collect();
+                assert_eq!(factors.solve_nonzero(&graph, &nonzero), expected);
+            }
+        }
+    }
 }

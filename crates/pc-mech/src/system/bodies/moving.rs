@@ -1,7 +1,7 @@
 //! How bodies move with a frame, and what they add to a system.
 
 use pc_algebra::Frame;
-use pc_expr::Expr;
+use pc_expr::{Expr, SymbolPlaces};
 
 use crate::error::{BodyError, MechError};
 use crate::system::system::check_no_state;
@@ -37,7 +37,8 @@ impl<'a, 'g> Moving<'a, 'g> {
         states: &'a [(Expr<'g>, Expr<'g>)],
     ) -> Moving<'a, 'g> {
         let symbols = frame.coordinates().iter().map(|x| frame.graph().symbol(&format!("{x}'")));
-        let velocities = symbols.zip(frame.velocities(eta)).filter(|(symbol, _)| !eta.contains(symbol));
+        let known = SymbolPlaces::of(eta);
+        let velocities = symbols.zip(frame.velocities(eta)).filter(|&(symbol, _)| !known.contains(symbol));
         Moving { frame, eta, states, velocities: velocities.collect() }
     }
 

@@ -187,9 +187,10 @@ fn angular_velocities<'g>(
     shape("the list of rows of the rotation of a body", rotation.rows(), 3)?;
     shape("the list of columns of the rotation of a body", rotation.columns(), 3)?;
     let graph = moving.frame.graph();
-    let entries = rotation.entries().iter().copied();
+    let entries = rotation.entries();
+    let entries = entries.iter().copied();
     let size = graph.dot(entries.clone(), entries) / 3.0;
-    let rates = moving.operators("the rotation", rotation.entries())?;
+    let rates = moving.operators("the rotation", &rotation.entries())?;
     check_rotation(rotation, moving)?;
     let component = |rate: &[Expr<'g>], i: usize, j: usize| {
         graph.dot(rotation.column(i), (0..3).map(|row| rate[3 * row + j]))
@@ -208,7 +209,7 @@ fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> R
         return Ok(());
     }
     let graph = moving.frame.graph();
-    let near = Neighbourhood::anywhere(graph, rotation.entries());
+    let near = Neighbourhood::anywhere(graph, &rotation.entries());
     let products = |i: usize, j: usize| (0..3).map(move |row| rotation[(row, i)] * rotation[(row, j)]);
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
         let lengths: Vec<_> = products(i, i).chain(products(j, j).map(|square| -square)).collect();

@@ -1,0 +1,44 @@
+//! Sums of many terms that have nothing to do with each other.
+
+use pc_expr::Graph;
+
+/// Each term stays as short as it is alone, and no sums of all but some of them are left behind: of n²/2 terms together these
+/// would take more than all else.
+#[test]
+fn a_long_sum_is_shortened_part_by_part() {
+    let nodes = |n: usize| {
+        let graph = Graph::new();
+        let [a, c] = graph.symbols(["a", "c"]);
+        let x: Vec<_> = (0..n).map(|i| graph.symbol(&format!("x{i}"))).collect();
+        let terms = x.iter().map(|&x| c * x * x + x * (c - c * a / 2.0));
+        let sum = graph.sum(terms) / 2.0;
+        let before = graph.len();
+        let short = graph.shorten(&[sum], &x)[0];
+        // The same function, whose parts are no longer than each is alone.
+        let alone = graph.shorten(&[(c * x[3] * x[3] + x[3] * (c - c * a / 2.0)) / 2.0], &x)[0];
+        assert_eq!(short, sum);
+        assert!(short.tree_cost() <= n as u32 * (alone.tree_cost() + 2), "{short}");
+        graph.len() - before
+    };
+    let (few, many) = (nodes(100), nodes(400));
+    assert!(many <= 4 * few + 16, "{few} nodes for 100 terms, {many} for 400");
+}
+
+/// The entries of a Jacobian are those of the gradients, in the same order, and what is put into many expressions one by one is
+/// what is put into all at once.
+#[test]
+fn what_is_not_zero_is_what_gradients_have() {
+    let graph = Graph::new();
+    let x: Vec<_> = (0..30).map(|i| graph.symbol(&format!("x{i}"))).collect();
+    let functions: Vec<_> =
+        (0..30).map(|i| x[i].sin() * x[(7 * i + 3) % 30] + x[(i + 1) % 30].max(x[(i + 5) % 30])).collect();
+    let rows = graph.jacobian(&functions, &x);
+    for (function, row) in functions.iter().zip(&rows) {
+        let gradient = graph.gradient(*function, &x).into_iter().enumerate();
+        assert_eq!(*row, gradient.filter(|(_, slope)| !slope.is_zero()).collect::<Vec<_>>());
+    }
+    let pairs: Vec<_> = (0..30).map(|i| (x[i], x[(i + 1) % 30] * 2.0)).collect();
+    let put = graph.substitution(&pairs);
+    let one_by_one: Vec<_> = functions.iter().map(|&f| put.apply(&[f])[0]).collect();
+    assert_eq!(one_by_one, graph.substitute(&functions, &pairs));
+}
