@@ -229,8 +229,8 @@ fn wrong_calls_are_refused() {
     }
     // SAFETY: null.
     unsafe {
-        assert_eq!(pc_dense_dim(ptr::null()), 0);
-        assert!(pc_dense_t_begin(ptr::null()).is_nan() && pc_dense_t_end(ptr::null()).is_nan());
+        assert_eq!(pc_dense_dim(None), 0);
+        assert!(pc_dense_t_begin(None).is_nan() && pc_dense_t_end(None).is_nan());
         pc_dense_free(ptr::null_mut());
         pc_bytes_free(ptr::null_mut());
         assert!((*made).is_null() && (*text).is_null() && (*data).is_null() && (*dense).is_null());

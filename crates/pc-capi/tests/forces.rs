@@ -70,7 +70,7 @@ unsafe extern "C" fn slopes(
     e: usize,
     user: *mut c_void,
 ) -> c_int {
-    // SAFETY: as above.
+    // SAFETY: a law, and arrays as long as said.
     let (law, y, dq) =
         unsafe { (&*user.cast::<Law>(), slice::from_raw_parts(y, n), slice::from_raw_parts_mut(dq, e)) };
     law.slopes.map_or(-7, |slopes| slopes(t, y, dq, 0))
@@ -125,9 +125,9 @@ fn written(name: &str, forces: &[(&str, &str)], form: pc_form) -> System {
     model.system(form).unwrap()
 }
 
-fn count(system: &System, count: unsafe extern "C" fn(*const pc_system) -> usize) -> usize {
+fn count(system: &System, count: extern "C" fn(Option<&pc_system>) -> usize) -> usize {
     // SAFETY: a live system.
-    unsafe { count(system.0) }
+    count(unsafe { system.0.as_ref() })
 }
 
 fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
@@ -230,7 +230,7 @@ fn a_force_of_a_function_is_that_of_the_text() {
         // The residual of the rates vanishes.
         let (rates, mut residual) = (system.at(pc_system_rhs, t, &y, n).unwrap(), vec![1.0; n]);
         call(|error| unsafe {
-            // SAFETY: as above.
+            // SAFETY: a live system and arrays as said.
             pc_system_residual(system.0, t, y.as_ptr(), n, rates.as_ptr(), n, residual.as_mut_ptr(), n, error)
         })
         .unwrap();
@@ -373,14 +373,14 @@ fn names_and_numbers_of_the_forces_are_known() {
     let system = forced("vertical-disk", &["φ", "X", "φ"], PC_POINCARE);
     // SAFETY: a live system, or null.
     unsafe {
-        assert_eq!(pc_system_force_count(system.0), 2);
-        let name = |i| CStr::from_ptr(pc_system_force_name(system.0, i)).to_str().unwrap();
+        assert_eq!(pc_system_force_count(system.0.as_ref()), 2);
+        let name = |i| CStr::from_ptr(pc_system_force_name(system.0.as_ref(), i)).to_str().unwrap();
         assert_eq!([name(0), name(1)], ["φ'", "X'"]);
         assert!(
-            pc_system_force_name(system.0, 2).is_null() && pc_system_force_name(ptr::null(), 0).is_null()
+            pc_system_force_name(system.0.as_ref(), 2).is_null() && pc_system_force_name(None, 0).is_null()
         );
-        assert_eq!(pc_system_force_count(ptr::null()), 0);
-        assert_eq!(pc_system_parameter_count(system.0), 4); // the forces are none
+        assert_eq!(pc_system_force_count(None), 0);
+        assert_eq!(pc_system_parameter_count(system.0.as_ref()), 4); // the forces are none
     }
     let model = Model::text(&text_of("tilted-disk")).unwrap();
     declare(&model, &["u2"]);
@@ -481,7 +481,7 @@ fn what_belongs_to_the_function_is_freed_once() {
     let (mut copy, mut kernel) = (ptr::null_mut(), ptr::null_mut());
     // SAFETY: a live system and places for handles.
     call(|error| unsafe { pc_system_clone(system.0, &raw mut copy, error) }).unwrap();
-    // SAFETY: as above.
+    // SAFETY: a live system and a place for the handle.
     call(|error| unsafe { pc_kernel_new(system.0, &raw mut kernel, error) }).unwrap();
     let solver = solver(&system, pc_method::PC_ADAMS).unwrap();
     second.set(&system).unwrap();

@@ -126,7 +126,7 @@ extern "C" fn destroy(user: *mut c_void) {
     // SAFETY: the destroyer below, which lives; its system is being freed.
     unsafe {
         let Destroyer { system, statuses, named } = &mut *user.cast();
-        *named = !pc_system_name(*system, 0).is_null();
+        *named = !pc_system_name((*system).as_ref(), 0).is_null();
         let mut energy = 0.0;
         let y = [0.0; 2];
         statuses.push(pc_system_energy(*system, 0.0, y.as_ptr(), 2, &raw mut energy, ptr::null_mut()));
@@ -158,7 +158,7 @@ fn an_output_called_as_a_reaction_is_none() {
     call(|error| unsafe { pc_model_observe_reactions(model.0, 1, error) }).unwrap();
     let system = model.system(PC_POINCARE).unwrap();
     // SAFETY: a live system.
-    assert_eq!(unsafe { pc_system_reaction_count(system.0) }, 1);
+    assert_eq!(unsafe { pc_system_reaction_count(system.0.as_ref()) }, 1);
     let (t, y) = system.start();
     // The rod of length 1 holds a bob of mass 1 by λ = −v² + 10 z = −1.5² − 8, counted along (x, y, z).
     let reaction = system.at(pc_system_reactions, t, &y, 1).unwrap()[0];
@@ -177,7 +177,7 @@ fn where_there_is_no_energy_none_is_written() {
     // SAFETY: a live system, arrays as long as said, an error that is freed once.
     unsafe {
         let status = pc_system_energy(system.0, 0.0, y.as_ptr(), 2, &raw mut energy, &raw mut error);
-        assert_eq!((status, pc_error_is_recoverable(error)), (PC_EVALUATION, 1));
+        assert_eq!((status, pc_error_is_recoverable(error.as_ref())), (PC_EVALUATION, 1));
         pc_error_free(error);
     }
     let refusal = system.at(pc_system_integrals, 0.0, &y, 2).unwrap_err();

@@ -238,7 +238,7 @@ fn functions_that_fail_are_heard_of() {
         refusal.message
     );
     // SAFETY: a live solver.
-    assert_eq!(unsafe { pc_solver_event_count(solver.0) }, 1);
+    assert_eq!(unsafe { pc_solver_event_count(solver.0.as_ref()) }, 1);
     solver.advance(1.0).0.unwrap();
     // Nor after the first step.
     let mut late = Own::default();
@@ -313,10 +313,31 @@ fn what_there_is_not_is_refused() {
     }
     // SAFETY: null, or live handles.
     unsafe {
-        assert_eq!((pc_system_event_count(no_system), pc_solver_event_count(no_solver)), (0, 0));
-        assert!(pc_system_event_name(no_system, 0).is_null() && pc_system_event_name(system.0, 1).is_null());
-        assert!(pc_solver_event_name(no_solver, 0).is_null() && pc_solver_event_name(solver.0, 1).is_null());
-        assert_eq!((pc_system_event_direction(no_system, 0), pc_system_event_direction(system.0, 1)), (0, 0));
-        assert_eq!((pc_system_event_resets(no_system, 0), pc_system_event_is_terminal(system.0, 1)), (0, 0));
+        assert_eq!(
+            (pc_system_event_count(no_system.as_ref()), pc_solver_event_count(no_solver.as_ref())),
+            (0, 0)
+        );
+        assert!(
+            pc_system_event_name(no_system.as_ref(), 0).is_null()
+                && pc_system_event_name(system.0.as_ref(), 1).is_null()
+        );
+        assert!(
+            pc_solver_event_name(no_solver.as_ref(), 0).is_null()
+                && pc_solver_event_name(solver.0.as_ref(), 1).is_null()
+        );
+        assert_eq!(
+            (
+                pc_system_event_direction(no_system.as_ref(), 0),
+                pc_system_event_direction(system.0.as_ref(), 1)
+            ),
+            (0, 0)
+        );
+        assert_eq!(
+            (
+                pc_system_event_resets(no_system.as_ref(), 0),
+                pc_system_event_is_terminal(system.0.as_ref(), 1)
+            ),
+            (0, 0)
+        );
     }
 }

@@ -126,10 +126,10 @@ fn nulls_are_refused_everywhere() {
         pc_string_free(ptr::null_mut());
         pc_system_options_init(ptr::null_mut(), 16);
         pc_solver_options_init(ptr::null_mut(), 16);
-        assert_eq!(pc_system_dim(ptr::null()), 0);
-        assert!(pc_system_name(ptr::null(), 0).is_null() && pc_system_name(of.0, 99).is_null());
-        assert!(pc_system_reaction_name(of.0, 0).is_null() && pc_builtin_name(usize::MAX).is_null());
-        assert_eq!(CStr::from_ptr(pc_error_message(ptr::null())), c"");
+        assert_eq!(pc_system_dim(None), 0);
+        assert!(pc_system_name(None, 0).is_null() && pc_system_name(of.0.as_ref(), 99).is_null());
+        assert!(pc_system_reaction_name(of.0.as_ref(), 0).is_null() && pc_builtin_name(usize::MAX).is_null());
+        assert_eq!(CStr::from_ptr(pc_error_message(None)), c"");
         // Without a place for the error there is the status alone.
         assert_eq!(pc_model_check(ptr::null(), ptr::null_mut()), PC_INVALID_ARGUMENT);
     }

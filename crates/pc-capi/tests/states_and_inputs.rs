@@ -22,7 +22,7 @@ fn a_state_comes_last_and_is_part_of_everything() {
     for (form, moving) in [(PC_POINCARE, 1.0), (PC_CANONICAL, 4.0)] {
         let system = Model::text(CART).unwrap().system(form).unwrap();
         // SAFETY: a live system.
-        assert_eq!(unsafe { pc_system_state_count(system.0) }, 1);
+        assert_eq!(unsafe { pc_system_state_count(system.0.as_ref()) }, 1);
         assert_eq!(system.name(2), "F");
 
         let y = [0.0, 0.5 * moving, 2.0];

@@ -33,18 +33,16 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
 /// at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
 /// which is all that one may. NULL is allowed.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_cancel_request(cancel: *const pc_cancel) {
-    // SAFETY: null or a live handle, as the preamble demands.
-    if let Some(handle) = unsafe { cancel.as_ref() } {
+pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
+    if let Some(handle) = cancel {
         handle.cancel.cancel();
     }
 }
 
 /// 1 after pc_cancel_request, else 0, as of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_cancel_is_requested(cancel: *const pc_cancel) -> c_int {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { cancel.as_ref() }.map_or(0, |handle| handle.cancel.is_cancelled().into())
+pub extern "C" fn pc_cancel_is_requested(cancel: Option<&pc_cancel>) -> c_int {
+    cancel.map_or(0, |handle| handle.cancel.is_cancelled().into())
 }
 
 /// Frees a handle; what was given it goes on. Null is allowed.

@@ -130,26 +130,23 @@ pub unsafe extern "C" fn pc_dense_rate(
 
 /// The length of the state. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_dim(dense: *const pc_dense) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { dense.as_ref() }.map_or(0, |dense| dense.dim)
+pub extern "C" fn pc_dense_dim(dense: Option<&pc_dense>) -> usize {
+    dense.map_or(0, |dense| dense.dim)
 }
 
 /// Where the motion begins; NaN of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_t_begin(dense: *const pc_dense) -> f64 {
+pub extern "C" fn pc_dense_t_begin(dense: Option<&pc_dense>) -> f64 {
     span(dense).0
 }
 
 /// Where the motion ends, before its beginning if it goes back in time; NaN of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_t_end(dense: *const pc_dense) -> f64 {
+pub extern "C" fn pc_dense_t_end(dense: Option<&pc_dense>) -> f64 {
     span(dense).1
 }
 
-fn span(dense: *const pc_dense) -> (f64, f64) {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    let dense = unsafe { dense.as_ref() };
+fn span(dense: Option<&pc_dense>) -> (f64, f64) {
     dense.and_then(|dense| dense.motion.span()).unwrap_or((f64::NAN, f64::NAN))
 }
 

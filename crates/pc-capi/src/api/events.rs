@@ -83,20 +83,20 @@ pub unsafe extern "C" fn pc_model_add_event_reset(
 
 /// The number of events of the model. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_event_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.events.len())
 }
 
 /// The name of an event, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_event_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.event_names)
 }
 
 /// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
 /// CVODE's CVodeSetRootDirection takes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_direction(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| match event.crosses() {
         Direction::Falling => -1,
         Direction::Both => 0,
@@ -106,21 +106,19 @@ pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, ind
 
 /// 1 if an event ends the integration, else 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_is_terminal(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_is_terminal(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.is_terminal().into())
 }
 
 /// 1 if an event resets the state, else 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_resets(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_resets(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.resets().into())
 }
 
 /// What is known of an event; 0 of null, and beyond the last.
-fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
-    inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
+fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
+    system.and_then(|system| system.inventory.events.get(index)).map_or(0, known)
 }
 
 /// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event

@@ -64,16 +64,13 @@ pub unsafe extern "C" fn pc_model_add_external_force(
 
 /// The number of external forces. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_force_count(system: *const pc_system) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { system.as_ref() }.map_or(0, |system| system.inventory.forces.len())
+pub extern "C" fn pc_system_force_count(system: Option<&pc_system>) -> usize {
+    system.map_or(0, |system| system.inventory.forces.len())
 }
 
 /// The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    let system = unsafe { system.as_ref() };
+pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))
 }
 

@@ -9,7 +9,7 @@ use pc_mech::VectorField;
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{are_usable, clear, free, fresh, handle, numbers, write};
+use crate::ffi::pointer::{are_usable, clear, free, fresh, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::motion_field::MotionField;
@@ -198,7 +198,6 @@ unsafe fn evaluate(
 
 /// The dimension of a kernel's state. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_kernel_dim(kernel: *const pc_kernel) -> usize {
-    // SAFETY: null or a live kernel, as the preamble demands.
-    unsafe { handle(kernel, "kernel") }.map_or(0, |kernel| kernel.dim)
+pub extern "C" fn pc_kernel_dim(kernel: Option<&pc_kernel>) -> usize {
+    kernel.map_or(0, |kernel| kernel.dim)
 }

@@ -135,16 +135,14 @@ fn names(solver: &pc_solver) -> MutexGuard<'_, Vec<CString>> {
 
 /// The number of events that a solver follows: those of the model, then those added. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_solver_event_count(solver: *const pc_solver) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { solver.as_ref() }.map_or(0, |solver| names(solver).len())
+pub extern "C" fn pc_solver_event_count(solver: Option<&pc_solver>) -> usize {
+    solver.map_or(0, |solver| names(solver).len())
 }
 
 /// The name of an event, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_solver_event_name(solver: *const pc_solver, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { solver.as_ref() }.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
+pub extern "C" fn pc_solver_event_name(solver: Option<&pc_solver>, index: usize) -> *const c_char {
+    solver.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
 }
 
 /// Writes how often an event has occurred since the solver was made.

@@ -79,83 +79,81 @@ pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
 /// The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of
 /// NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_dim(system: Option<&pc_system>) -> usize {
     count(system, Inventory::dim)
 }
 
 /// The number of coordinates, which come first in the state. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_coordinate_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_coordinate_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.coordinates)
 }
 
 /// The number of first-order states, which come last in the state. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_state_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_state_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.states)
 }
 
 /// The number of parameters. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_parameter_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_parameter_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.parameters.len())
 }
 
 /// The number of observables: the integrals, "energy", the outputs. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_observable_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_observable_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.observables.len())
 }
 
 /// The number of observables, the first ones, that should stay constant: integrals and energy. 0
 /// of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_conserved_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_conserved_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.conserved)
 }
 
 /// The number of constraints that are kept by projection. 0 of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_constraint_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_constraint_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.constraints.len())
 }
 
 /// The number of reactions; 0 unless pc_model_observe_reactions was asked, and of NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_reaction_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_reaction_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.reactions.len())
 }
 
 /// The name of a component of the state, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.names)
 }
 
 /// The name of a parameter, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_parameter_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_parameter_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.parameters)
 }
 
 /// The name of an observable, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_observable_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_observable_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.observables)
 }
 
 /// The name of a constraint that is kept by projection, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_constraint_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_constraint_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.constraints)
 }
 
 /// The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_reaction_name(system: *const pc_system, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
-    let place = inventory.and_then(|inventory| inventory.reactions.get(index).copied());
+pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usize) -> *const c_char {
+    let place = system.and_then(|system| system.inventory.reactions.get(index).copied());
     name(system, place.unwrap_or(usize::MAX), |inventory| &inventory.observables)
 }
 

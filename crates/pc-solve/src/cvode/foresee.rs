@@ -207,12 +207,12 @@ impl<F: VectorField> Cvode<F> {
             }
             self.foresight.terms += 1;
         }
-        // SAFETY: as above; CVODES copies to the vector.
+        // SAFETY: memory and vector are live and of one context; CVODES copies to the vector.
         let code = unsafe { sys::CVodeGetEstLocalErrors(self.memory.raw(), self.work.raw()) };
         self.context.check("CVodeGetEstLocalErrors", code)?;
         self.foresight.errors.copy_from_slice(self.work.as_slice());
         self.foresight.order = order;
-        // SAFETY: as above.
+        // SAFETY: the memory is live and initialised; the last step is a place for the result.
         unsafe { sys::CVodeGetLastStep(self.memory.raw(), &raw mut self.foresight.last_step) };
         Ok(())
     }
