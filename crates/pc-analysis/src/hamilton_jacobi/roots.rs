@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn roots_are_more_than_names() {
+    fn identities_of_roots_are_used() {
         let graph = Graph::new();
         let [x, e] = graph.symbols(["x", "E"]);
         let r = (2.0 * e - x.square()).sqrt();
