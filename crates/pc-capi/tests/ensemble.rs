@@ -175,7 +175,7 @@ fn members_are_single_runs_to_the_last_bit_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_bad_member_is_told_and_the_others_go_on() {
+fn a_failing_member_is_reported_and_the_others_continue() {
     let system = System::of("heavy-top-lagrange");
     let members = 8;
     let (t, mut states, mut parameters) = spread(&system, members);

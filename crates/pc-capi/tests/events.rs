@@ -123,7 +123,7 @@ fn an_observer_of_events_stops_the_integration() {
 }
 
 #[test]
-fn bounces_without_end_are_an_error() {
+fn accumulating_bounces_are_an_error() {
     let solver = Solver::of(&System::of("bouncing-ball"), &sharp());
     let refusal = solver.advance(5.0).0.unwrap_err();
     assert_eq!(refusal.status, PC_INTEGRATION);
@@ -136,7 +136,7 @@ fn bounces_without_end_are_an_error() {
 }
 
 #[test]
-fn events_are_said_call_by_call() {
+fn events_are_declared_call_by_call() {
     let mut model = ptr::null_mut();
     let [name, y, dy, one, kinetic, potential, when, low, reset] =
         ["ball", "y", "y'", "e", "y'^2/2", "9.81*y", "y", "low \"one\"", "-e*y'"].map(c);

@@ -112,7 +112,7 @@ fn another_thread_cancels() {
 }
 
 #[test]
-fn what_is_derived_goes_on_without_the_handle() {
+fn systems_continue_without_the_cancel_handle() {
     let mut cancel = ptr::null_mut();
     // SAFETY: a place for a handle.
     call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();

@@ -17,7 +17,7 @@ fn of_text(text: &str) -> System {
 }
 
 #[test]
-fn places_where_no_numbers_can_stand_are_refused() {
+fn misaligned_arrays_are_refused() {
     let system = System::of("heavy-top-lagrange");
     let (y, mut ydot) = ([0.5; 8], [0.0; 8]);
     let off = y.as_ptr().cast::<u8>().wrapping_add(1).cast::<f64>();
@@ -31,7 +31,7 @@ fn places_where_no_numbers_can_stand_are_refused() {
     let refusal = rhs(off, out).unwrap_err();
     assert_eq!(
         (refusal.status, refusal.message.as_str()),
-        (PC_INVALID_ARGUMENT, "y does not stand at a multiple of 8 bytes, as its type does")
+        (PC_INVALID_ARGUMENT, "y is misaligned: its address must be a multiple of 8 bytes")
     );
     assert!(rhs(y.as_ptr(), off_out).unwrap_err().message.starts_with("ydot does not stand"));
     let mut kernel = ptr::null_mut();
@@ -46,7 +46,7 @@ fn places_where_no_numbers_can_stand_are_refused() {
 }
 
 #[test]
-fn minus_one_is_no_length() {
+fn minus_one_is_refused_as_a_length() {
     let (mut model, text) = (ptr::null_mut(), c"[coordinates]");
     // SAFETY: a text; the length is refused.
     let refusal = call(|error| unsafe {
@@ -56,7 +56,7 @@ fn minus_one_is_no_length() {
     assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
     assert_eq!(
         refusal.message,
-        "text: 18446744073709551615 numbers are more than any memory has, which is 9223372036854775807; is it −1?"
+        "text: 18446744073709551615 numbers are more than memory can hold, 9223372036854775807 at most; is the length −1?"
     );
     let solver = Solver::of(&System::of("euler-top"), &sharp());
     let times = [1.0];
@@ -68,7 +68,7 @@ fn minus_one_is_no_length() {
 }
 
 #[test]
-fn an_array_that_there_is_not_has_no_length() {
+fn a_null_array_has_length_zero() {
     let (system, mut solver) = (System::of("euler-top"), ptr::null_mut());
     // SAFETY: live objects; what is refused is not looked at.
     unsafe {
@@ -151,7 +151,7 @@ fn a_system_that_is_being_freed_is_busy() {
 }
 
 #[test]
-fn an_output_called_as_a_reaction_is_none() {
+fn an_output_named_like_a_reaction_is_not_one() {
     let text = common::ROD.to_owned() + "[outputs]\n\"λ_rod\" = \"7*x\"\n";
     let model = Model::text(&text).unwrap();
     // SAFETY: a live model.
@@ -166,7 +166,7 @@ fn an_output_called_as_a_reaction_is_none() {
 }
 
 #[test]
-fn where_there_is_no_energy_none_is_written() {
+fn no_energy_is_written_where_there_is_none() {
     let system = of_text(
         "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"sqrt(x)\"\n\
          [integrals]\nroot = \"sqrt(x)\"\n",

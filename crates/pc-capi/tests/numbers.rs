@@ -193,7 +193,7 @@ fn observers_see_stop_and_are_refused() {
 }
 
 #[test]
-fn momenta_go_there_and_back() {
+fn momenta_and_quasi_velocities_are_converted_both_ways() {
     let model = Model::named("heavy-top-lagrange");
     let forms = [pc_form::PC_POINCARE, pc_form::PC_CANONICAL].map(|form| model.system(form).unwrap());
     let ((t, y), (_, p)) = (forms[0].start(), forms[1].start());
@@ -211,7 +211,7 @@ fn momenta_go_there_and_back() {
 }
 
 #[test]
-fn the_parts_make_the_equations() {
+fn the_parts_of_the_equations_fit_together() {
     let model = Model::named("heavy-top-lagrange");
     for form in [pc_form::PC_POINCARE, pc_form::PC_CANONICAL] {
         let system = model.system(form).unwrap();
@@ -302,7 +302,7 @@ fn projection_brings_a_state_to_the_constraints() {
 }
 
 #[test]
-fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
+fn integrals_are_kept_at_their_values_for_the_current_parameters() {
     let model = Model::named("heavy-top-lagrange");
     // SAFETY: a live model and a text.
     call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();
@@ -321,7 +321,7 @@ fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
 }
 
 #[test]
-fn integrals_are_kept_at_their_values_where_one_says() {
+fn integrals_are_kept_at_their_values_at_a_given_state() {
     let model = Model::named("heavy-top-lagrange");
     // SAFETY: a live model and a text.
     call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();

@@ -202,12 +202,12 @@ fn a_wrong_text_is_shown_with_its_place() {
     // SAFETY: zero-terminated, and a place for the handle.
     let named = |error| unsafe { pc_model_builtin(name.as_ptr().cast(), &raw mut model, error) };
     let refusal = call(named).unwrap_err();
-    assert_eq!(refusal.message, "name is not UTF-8 text: byte number 0 (from 0) does not fit");
+    assert_eq!(refusal.message, "name is not UTF-8 text: byte number 0 (from 0) is invalid");
     assert!(model.is_null());
 }
 
 #[test]
-fn what_there_is_not_is_not_found() {
+fn missing_things_are_not_found() {
     let model = Model::named("euler-top");
     let (name, mut other) = (c("no-such-thing"), ptr::null_mut());
     let name = name.as_ptr();

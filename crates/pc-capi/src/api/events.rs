@@ -1,4 +1,4 @@
-//! Events of a model: said call by call, and for an integrator of one's own.
+//! Events of a model: declared call by call, and evaluated for an integrator of the program's own.
 
 use std::ffi::{c_char, c_int};
 
@@ -14,7 +14,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
 use crate::machinery::system::{Inner, Inventory, Room, count, inside, name, pc_system};
 
-/// In which direction the function of an event passes through zero, as the integration goes.
+/// The direction in which the function of an event passes through zero, along the integration.
 #[repr(C)]
 pub enum pc_direction {
     /// From above.
@@ -35,9 +35,9 @@ pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallE
     }
 }
 
-/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
-/// `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
-/// the order in which they were added.
+/// Adds an event: the expression `when` passes through zero in a direction, a pc_direction. If
+/// `terminal` is not 0 it ends an integration with PC_EVENT. Simultaneous events are handled
+/// in the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
     model: *mut pc_model,
@@ -60,9 +60,9 @@ pub unsafe extern "C" fn pc_model_add_event(
     unsafe { draft(model, error, "pc_model_add_event", write) }
 }
 
-/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
-/// velocity `x'` that is called `variable` takes the value of the expression. All resets of an
-/// event take effect together, from the state before it.
+/// Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
+/// velocity `x'` called `variable` takes the value of the expression. All resets of an event
+/// take effect together, from the state before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn pc_model_add_event_reset(
     unsafe { draft(model, error, "pc_model_add_event_reset", write) }
 }
 
-/// The number of events of the model. 0 of NULL.
+/// The number of events of the model; 0 for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_event_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.events.len())
@@ -122,8 +122,8 @@ fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event)
 }
 
 /// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
-/// occurs where its own passes through zero. They are not finite where the model has no value for
-/// them.
+/// occurs where its function passes through zero. A function without a value here is not
+/// finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *const pc_system,

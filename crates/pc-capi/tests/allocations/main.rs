@@ -102,7 +102,7 @@ fn again(mut function: impl FnMut(*mut *mut pc_error) -> pc_status) -> usize {
 }
 
 #[test]
-fn what_allocates_is_counted() {
+fn allocations_are_counted() {
     let before = allocations();
     let held = std::hint::black_box(Box::new(1.0));
     assert_eq!(allocations(), before + 1);
