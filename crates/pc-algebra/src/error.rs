@@ -43,7 +43,8 @@ pub enum AlgebraError {
     AlgebraNeeded,
     /// Operators that are linearly dependent at each point and have no constant structure coefficients.
     #[error(
-        "the frame has rank {rank} with {operators} operators, so its structure coefficients can be found only if they are constant, and [X_{}, X_{}] is not a constant combination of the X_m: the algebra must be given",
+        "the frame has rank {rank} with {operators} operators, so its structure coefficients can be found only if they are \
+         constant, and [X_{}, X_{}] is not a constant combination of the X_m: the algebra must be given",
         pair.0, pair.1
     )]
     RankDeficient {

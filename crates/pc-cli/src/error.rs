@@ -116,7 +116,8 @@ pub enum CliError {
     },
     /// More rows than there is memory for.
     #[error(
-        "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
+        "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
+         --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
         bytes.div_ceil(1 << 20),
         limit >> 20,
         bytes.div_ceil(1 << 20)

@@ -365,8 +365,8 @@ x = "(-0.33)*exp(-((t - 0.13769)/0.02769)^2)"
     assert_eq!(agreement.unwrap().states, 100);
 }
 
-/// w_2 = y φ' + y' and ω = y' say less and less of φ' as y goes to 0, to y⁻⁴ roundings of reactions: states near there say nothing of
-/// the derivation, others do.
+/// w_2 = y φ' + y' and ω = y' say less and less of φ' as y goes to 0, to y⁻⁴ roundings of reactions: states near there
+/// say nothing of the derivation, others do.
 #[test]
 fn states_at_which_rounding_hides_everything_are_skipped() {
     let agreement = verify(

@@ -54,7 +54,10 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() { f64::INFINITY } else { largest }
     }
 
-    /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if there are no such points. It is 0 only where the graph folds f to 0. Σ|terms| includes terms that have cancelled inside a term.
+    /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about
+    /// 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if
+    /// there are no such points. It is 0 only where the graph folds f to 0. Σ|terms| includes terms that have
+    /// cancelled inside a term.
     ///
     /// It does not depend on units: 10⁻¹⁰ x is not zero.
     ///

@@ -153,7 +153,8 @@ impl<'g> Rates<'g> {
         })
     }
 
-    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: no more than rounding where f is an integral. None where all terms vanish, or are not numbers.
+    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: no more than rounding where f
+    /// is an integral. None where all terms vanish, or are not numbers.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).

@@ -139,8 +139,8 @@ fn a_nonlinear_constraint_has_the_forms_with_multipliers() {
     assert!(stderr(&output).starts_with(note), "{}", stderr(&output));
 }
 
-/// Outputs that contain reactions, also forces on bodies: of constraints on positions, of a rolling disk held by multipliers, and of
-/// quasi-velocities that vanish.
+/// Outputs that contain reactions, also forces on bodies: of constraints on positions, of a rolling disk held by
+/// multipliers, and of quasi-velocities that vanish.
 const WITH_REACTIONS: [(&str, &str); 3] = [
     (
         "pendulum",

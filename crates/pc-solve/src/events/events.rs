@@ -159,8 +159,10 @@ pub struct Occurrence {
 /// When occurrences of an event count as accumulated, such as the bounces of a ball that comes to rest: no integration
 /// from event to event passes that time.
 ///
-/// They do if each of their last intervals is shorter than the one before, and continued as a geometric series they would end within a small fraction of the first of the shrinking intervals; or if rounding barely separates their times: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going
-/// on. An event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
+/// They do if each of their last intervals is shorter than the one before, and continued as a geometric series they
+/// would end within a small fraction of the first of the shrinking intervals; or if rounding barely separates their
+/// times: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going on. An
+/// event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
 /// may be passed without being seen.
 ///
 /// A regular motion whose intervals shrink so far before they grow again needs a smaller fraction, down to 0: then
