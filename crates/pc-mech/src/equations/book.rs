@@ -22,8 +22,8 @@ impl<'g> Equations<'g> {
             .collect()
     }
 
-    /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none of those that
-    /// are no polynomials, which are written as they [are](Equations::right_hand_side).
+    /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none for
+    /// those that are not polynomials, which are written as they [are](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         let variables = &self.system.quasi_velocities;
         self.right.iter().map(|&right| sum_of_products(&self.system, right, variables, page)).collect()
