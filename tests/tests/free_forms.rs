@@ -395,9 +395,9 @@ fn wrong_requests_are_refused() {
     let error = refused(&|model| model.choose_independent(["x'", "y'"]), Variables::QuasiVelocities);
     assert!(error.contains("the constraints leave 1 of x', y' free"), "{error}");
     let error = refused(&|model| model.choose_independent(["z"]), Variables::QuasiVelocities);
-    assert!(error.contains("`z` is none; they are x', y'"), "{error}");
+    assert!(error.contains("`z` is not among them; they are x', y'"), "{error}");
     let error = refused(&|_| {}, Variables::Orthonormal);
-    assert!(error.contains("choose these by --independent"), "{error}");
+    assert!(error.contains("choose these with --independent"), "{error}");
     let error = refused(&|model| model.choose_independent(["x'"]), Variables::Given);
     assert!(error.contains("no quasi-velocities are given"), "{error}");
     let mut model = builtin("chaplygin-sleigh");

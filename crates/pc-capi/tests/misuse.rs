@@ -33,7 +33,7 @@ fn misaligned_arrays_are_refused() {
         (refusal.status, refusal.message.as_str()),
         (PC_INVALID_ARGUMENT, "y is misaligned: its address must be a multiple of 8 bytes")
     );
-    assert!(rhs(y.as_ptr(), off_out).unwrap_err().message.starts_with("ydot does not stand"));
+    assert!(rhs(y.as_ptr(), off_out).unwrap_err().message.starts_with("ydot is misaligned"));
     let mut kernel = ptr::null_mut();
     // SAFETY: a live system, then its kernel, which is freed once.
     unsafe {

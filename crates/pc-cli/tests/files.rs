@@ -219,7 +219,7 @@ fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
     let kept = place.entries().1.pop().expect("a file");
     let file = place.1.path().join(&kept);
     let message = format!(
-        "pc: cannot write gone/a.json; the result is in {}\n  because: no file can be made in gone: entity not found\n",
+        "pc: cannot write gone/a.json; the result is in {}\n  because: no file can be created in gone: entity not found\n",
         file.display()
     );
     assert!(output.status.code() == Some(6) && said(&output).ends_with(&message), "{}", said(&output));

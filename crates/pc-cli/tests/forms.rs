@@ -122,8 +122,8 @@ fn senseless_requests_are_refused() {
         2,
         "not supported yet",
     );
-    refused(&["run", "vertical-disk", "--form", "orthonormal"], 4, "choose these by --independent");
-    refused(&["derive", "vertical-disk", "--independent", "φ'"], 4, "cannot be taken for the independent");
-    refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be taken for the independent");
+    refused(&["run", "vertical-disk", "--form", "orthonormal"], 4, "choose these with --independent");
+    refused(&["derive", "vertical-disk", "--independent", "φ'"], 4, "cannot be the independent");
+    refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be the independent");
     refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
 }

@@ -358,7 +358,7 @@ fn a_kind_may_be_given() {
     refuses(
         &given("holonomic"),
         Category::Inconsistent,
-        "m.toml:15:55: [constraints] blade.kind: the constraint `blade` is not holonomic: velocities it allows lead off \
+        "m.toml:15:55: [constraints] blade.kind: the constraint `blade` is not holonomic: the velocities it allows leave \
          every surface (component 1.0e0)\n    blade = { expr = \"-sin(phi)*x' + cos(phi)*y'\", kind = \"holonomic\" }\n    \
          \u{20}                                                     ^^^^^^^^^^^\n  \
          help: leave out its kind, or write it as a function of coordinates and t",

@@ -76,7 +76,7 @@ mod tests {
         // SAFETY: a place for a pointer; the error is freed once.
         unsafe {
             let status = entry(&raw mut error, body);
-            let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap().to_owned();
+            let message = CStr::from_ptr(pc_error_message(error.as_ref())).to_str().unwrap().to_owned();
             pc_error_free(error);
             (status, message)
         }

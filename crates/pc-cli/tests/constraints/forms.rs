@@ -66,7 +66,7 @@ fn emitted_source_has_the_same_motion() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let header = std::fs::read_to_string(path(&format!("{name}.h"))).expect("a header");
         let remark =
-            " *\n * The equations are in x', y'; z' follows from the constraints.\n * These are the ones";
+            " *\n * The equations are in x', y'; z' follows from the constraints.\n * These are the";
         assert_eq!(header.contains(remark), name == "sphere", "{header}");
         assert_eq!(stderr(&output).contains("note: The equations are in x', y'; z' "), name == "sphere");
         let (source, program) = (path(&format!("{name}.c")), path(name));

@@ -1,4 +1,4 @@
-//! Where quasi-velocities and velocities no longer determine each other.
+//! Where quasi-velocities that are defined by velocities no longer determine these, or these them.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
@@ -20,36 +20,27 @@ const VANISHES: f64 = 1e-6;
 /// Halvings, or golden sections, of a step: down to about 1e-9 of it.
 const SECTIONS: usize = 45;
 
-/// The square matrix a of η = a ẋ + a_0, or b of ẋ = b η + b_0, along a motion.
+/// The matrix a of η = a ẋ + a_0 along a motion.
 ///
 /// Where det a = 0 the state (x, η) says nothing of ẋ along ker a. All motions that come there have the same state, whatever
-/// this part of ẋ was, so that what follows is an accident of rounding. Where det a is infinite it is η that is lost in this
-/// way. For b it is the other way round. Between the ends of a step the states are taken on the line that joins them: it
-/// crosses each surface that separates its ends.
+/// this part of ẋ was, so that what follows is an accident of rounding. Where det a is infinite η is lost in the same way.
+/// Between the ends of a step the states are taken on the line that joins them: it crosses each surface that separates its
+/// ends.
+///
+/// Frames that are given by b are not watched: the determinant of b would take as long as a step of a small system does.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
-    /// Rows of the matrix.
+    /// Rows of the matrix, and whether its columns belong to ẋ.
     size: usize,
-    relates: Relation,
+    of_velocities: bool,
     room: Vec<f64>,
     /// A place between the ends of a step.
     between: Vec<f64>,
     /// Time, coordinates, parameters and determinant at the end of the last step: the start of the next one.
     last: Vec<f64>,
-}
-
-/// What the matrix relates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Relation {
-    /// a: velocities to quasi-velocities.
-    ToQuasiVelocities,
-    /// b: quasi-velocities to velocities; b_0 follows its entries.
-    ToVelocities,
-    /// Some quasi-velocities to others.
-    Quasi,
 }
 
 /// How a determinant passes from one end of a step to the other.
@@ -62,18 +53,13 @@ pub(crate) enum Passage {
 }
 
 impl Chart {
-    /// That of a system: of its definitions, or of a square frame that is given; none where the matrix is constant.
+    /// That of a system; none where its quasi-velocities are not defined so, or a is constant.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
     pub(crate) fn of(system: &System<'_>) -> Result<Option<Chart>, MechError> {
-        let frame = system.frame();
-        match frame.definition_matrix() {
-            Some(a) => Chart::new(system, a, Relation::ToQuasiVelocities),
-            // det b vanishes everywhere for redundant coordinates as many as operators: γ̇ = γ × ω.
-            None if frame.operators() == frame.coordinates().len() && frame.rank() == frame.operators() => {
-                Chart::new(system, frame.b(), Relation::ToVelocities)
-            }
+        match system.frame().definition_matrix() {
+            Some(a) => Chart::new(system, a, true),
             None => Ok(None),
         }
     }
@@ -90,13 +76,12 @@ impl Chart {
         let (graph, frame) = (system.graph(), system.frame());
         let Some(a) = frame.definition_matrix() else {
             let of_velocities = frame.velocities(system.quasi_velocities()) == system.quasi_velocities();
-            let relation = if of_velocities { Relation::ToQuasiVelocities } else { Relation::Quasi };
-            return Chart::new(system, change, relation);
+            return Chart::new(system, change, of_velocities);
         };
         let product = Matrix::from_fn(change.rows(), a.columns(), |u, i| {
             graph.dot(change.row(u).iter().copied(), a.column(i))
         });
-        Chart::new(system, &product, Relation::ToQuasiVelocities)
+        Chart::new(system, &product, true)
     }
 
     /// That of a square matrix by which some quasi-velocities determine others; none where it is constant.
@@ -104,13 +89,13 @@ impl Chart {
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
     ) -> Result<Option<Chart>, MechError> {
-        Chart::new(system, a, Relation::Quasi)
+        Chart::new(system, a, false)
     }
 
     fn new<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
-        relates: Relation,
+        of_velocities: bool,
     ) -> Result<Option<Chart>, MechError> {
         let frame = system.frame();
         let moving = || frame.coordinates().iter().copied().chain([frame.time()]);
@@ -122,18 +107,17 @@ impl Chart {
             state: frame.coordinates().to_vec(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
-        let drift: &[Expr<'g>] = if relates == Relation::ToVelocities { frame.b0() } else { &[] };
-        let entries = [a.entries(), drift].concat();
-        let room = vec![0.0; entries.len()];
-        let entries = Evaluator::new(Program::new(system.graph(), &inputs, &entries)?, Backend::Interpreter);
+        let program = Program::new(system.graph(), &inputs, a.entries())?;
+        let entries = Evaluator::new(program, Backend::Interpreter);
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
         let size = a.rows();
+        let room = vec![0.0; size * size];
         let between = vec![0.0; coordinates];
         let last = Vec::with_capacity(coordinates + parameters + 2);
-        Ok(Some(Chart { coordinates, parameters, entries, size, relates, room, between, last }))
+        Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room, between, last }))
     }
 
-    /// The matrix at (t, x), row after row, and b_0.
+    /// The matrix at (t, x), row after row.
     fn matrix(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> &mut [f64] {
         self.entries.eval(t, &x[..self.coordinates], &parameters[..self.parameters], &mut self.room);
         &mut self.room
@@ -141,7 +125,7 @@ impl Chart {
 
     fn determinant(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> f64 {
         let n = self.size;
-        determinant(&mut self.matrix(t, x, parameters)[..n * n], n)
+        determinant(self.matrix(t, x, parameters), n)
     }
 
     /// The determinant at the start of a step, which is that at the end of the one before unless the state has jumped.
@@ -211,7 +195,7 @@ impl Chart {
 
     /// Whether a motion with these velocities, which has passed so, does not move in the direction that is lost there: then it
     /// needs no quasi-velocity to say how it does, or no velocity to say which quasi-velocity it has. Said of no motion where
-    /// the matrix has nothing to do with velocities.
+    /// the columns are not those of ẋ.
     pub(crate) fn rests(
         &mut self,
         passage: Passage,
@@ -219,36 +203,25 @@ impl Chart {
         velocities: &[f64],
         parameters: &[f64],
     ) -> bool {
-        let (n, relates) = (self.size, self.relates);
-        if relates == Relation::Quasi {
+        let n = self.size;
+        if !self.of_velocities {
             return false;
         }
         let entries = self.matrix(t, y, parameters);
-        let Ok(SingularValues { left, values, right }) =
-            SingularValues::of(&Matrix::from_fn(n, n, |i, j| entries[i * n + j]))
-        else {
+        let a = Matrix::from_fn(n, n, |i, j| entries[i * n + j]);
+        let Ok(SingularValues { values, right, .. }) = SingularValues::of(&a) else {
             return false;
         };
-        // a, or the inverse of b, makes of each of these orthogonal parts of the velocities one of the quasi-velocities.
-        let (directions, drift) = match relates {
-            Relation::ToVelocities => (left, &entries[n * n..]),
-            Relation::ToQuasiVelocities | Relation::Quasi => (right, &[][..]),
-        };
-        let part = |k: usize| -> f64 {
-            let drift = |i: usize| drift.get(i).copied().unwrap_or(0.0);
-            velocities.iter().enumerate().map(|(i, v)| directions[(i, k)] * (v - drift(i))).sum()
-        };
-        let lost = match passage {
-            Passage::Zero => n - 1,
-            Passage::Pole => 0,
-        };
-        let loses_velocity = (passage == Passage::Zero) == (relates == Relation::ToQuasiVelocities);
-        let size = |k: usize| match (loses_velocity, relates) {
-            (true, _) => part(k).abs(),
-            (false, Relation::ToVelocities) => part(k).abs() / values[k],
-            (false, _) => part(k).abs() * values[k],
-        };
-        size(lost) <= AT_REST * (0..n).map(size).fold(0.0, f64::max)
+        let part =
+            |k: usize| velocities.iter().enumerate().map(|(i, v)| right[(i, k)] * v).sum::<f64>().abs();
+        match passage {
+            Passage::Zero => {
+                part(n - 1) <= AT_REST * velocities.iter().fold(0.0f64, |largest, v| largest.max(v.abs()))
+            }
+            Passage::Pole => {
+                values[0] * part(0) <= AT_REST * (0..n).map(|k| values[k] * part(k)).fold(0.0, f64::max)
+            }
+        }
     }
 }
 

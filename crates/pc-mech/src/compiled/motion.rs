@@ -293,7 +293,7 @@ impl Motion {
     }
 
     /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of quasi-velocities by
-    /// velocities, or a square frame, do not determine the ones by the others.
+    /// velocities do not determine the ones by the others.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
